@@ -1,0 +1,1 @@
+"""hydrostat: from a shape to a working cable-driven soft robot."""

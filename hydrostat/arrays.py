@@ -1,0 +1,16 @@
+"""Named array types. Their shapes are checked while the tests run (jaxtyping with beartype)."""
+
+import numpy as np
+from jaxtyping import Float, Int
+
+Points = Float[np.ndarray, "points dim"]
+"""Positions [m], one row a point."""
+
+Nodes = Float[np.ndarray, "nodes dim"]
+"""Positions of the nodes of a mesh [m]."""
+
+Elements = Int[np.ndarray, "elements corners"]
+"""Node indices of every element, corners = dim + 1, positively oriented."""
+
+Vector = Float[np.ndarray, " n"]
+"""A plain vector."""

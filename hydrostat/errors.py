@@ -1,0 +1,25 @@
+"""What can go wrong, said once: every error that a user can cause is a `HydrostatError`."""
+
+
+class HydrostatError(Exception):
+    """Base of all errors of hydrostat. Its text is one line: what, where, what is allowed, what to do."""
+
+
+class InputError(HydrostatError):
+    """The input is wrong: a file, a key, a value or an argument."""
+
+
+class OutlineError(InputError):
+    """An outline cannot be a body: it is open, crosses itself, is empty or too thin."""
+
+
+class NotConvergedError(HydrostatError):
+    """A solver stopped before it reached its tolerance.
+
+    Attributes:
+        result: the solver's own result, with its reason and the best point found.
+    """
+
+    def __init__(self, message: str, result: object) -> None:
+        super().__init__(message)
+        self.result = result
