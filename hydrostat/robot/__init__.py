@@ -1,1 +1,35 @@
-"""robot"""
+"""What a robot is: frozen records, checked when made, and the robot.toml they live in."""
+
+from hydrostat.robot.body import Body, Source, mesh_body, outline_body
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.marker import Marker
+from hydrostat.robot.material import MATERIALS, Material, find_material
+from hydrostat.robot.pin import Pin
+from hydrostat.robot.point import Point
+from hydrostat.robot.pose import Pose
+from hydrostat.robot.read import load_robot
+from hydrostat.robot.robot import Robot
+from hydrostat.robot.winch import Mount, Winch
+from hydrostat.robot.write import robot_hash, robot_text, save_robot
+
+__all__ = [
+    "MATERIALS",
+    "Body",
+    "Cable",
+    "Marker",
+    "Material",
+    "Mount",
+    "Pin",
+    "Point",
+    "Pose",
+    "Robot",
+    "Source",
+    "Winch",
+    "find_material",
+    "load_robot",
+    "mesh_body",
+    "outline_body",
+    "robot_hash",
+    "robot_text",
+    "save_robot",
+]

@@ -1,0 +1,170 @@
+"""Newton's method with a safeguarded step: the statics solver."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics.assembly import Assembly
+from hydrostat.mechanics.factorisation import Factorisation
+
+
+class Reason(StrEnum):
+    """Why a solve ended."""
+
+    CONVERGED = "converged"
+    ITERATION_LIMIT = "iteration limit reached"
+    NO_DESCENT = "no step lowers the energy"
+    BAD_START = "the start has an inverted element"
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewtonOptions:
+    """How far and how long Newton goes (M4).
+
+    Attributes:
+        tolerance: largest nodal force left over, as a fraction of the largest applied force.
+        iterations: most iterations.
+        halvings: most halvings of one step.
+    """
+
+    tolerance: float = 1e-10
+    iterations: int = 200
+    halvings: int = 50
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NewtonResult:
+    """Where Newton stopped.
+
+    Attributes:
+        nodes: the best positions found [m]; every element has J > 0.
+        reason: why it stopped.
+        residual: largest component of a nodal force [N].
+        allowed: residual [N] at which it counts as converged.
+        energy: total energy [J].
+        iterations: steps taken.
+        stable: whether the full Hessian there is positive definite: a minimum, no saddle.
+    """
+
+    nodes: Nodes
+    reason: Reason
+    residual: float
+    allowed: float
+    energy: float
+    iterations: int
+    stable: bool
+
+    @property
+    def converged(self) -> bool:
+        """Whether the residual is as small as allowed."""
+        return self.reason is Reason.CONVERGED
+
+
+def minimise(
+    assembly: Assembly,
+    start: Nodes,
+    controls: Vector,
+    *,
+    force_scale: Callable[[Nodes], float],
+    round_off: float,
+    options: NewtonOptions,
+) -> NewtonResult:
+    """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
+
+    The full Hessian is used wherever it is positive definite, the projected one elsewhere (E6). The step is halved
+    until no element is inverted and the energy falls.
+
+    Args:
+        assembly: the energy.
+        start: positions to begin at [m].
+        controls: contractions [m] or tensions [N].
+        force_scale: largest applied force [N] at given nodes; `options.tolerance` is relative to it.
+        round_off: a force [N] below which nothing can be told.
+        options: tolerance and limits.
+    """
+    nodes = start
+    energy = assembly.value(nodes, controls)
+    if not np.isfinite(energy):
+        return NewtonResult(
+            nodes=start,
+            reason=Reason.BAD_START,
+            residual=np.inf,
+            allowed=0.0,
+            energy=np.inf,
+            iterations=0,
+            stable=False,
+        )
+    gradient = assembly.gradient(nodes, controls)
+    for iteration in range(options.iterations + 1):
+        allowed = max(options.tolerance * force_scale(nodes), round_off)
+        residual = float(np.abs(gradient).max())
+        factor = Factorisation(assembly.hessian(nodes, controls))
+        reason = Reason.CONVERGED if residual <= allowed else None
+        if reason is None and iteration == options.iterations:
+            reason = Reason.ITERATION_LIMIT
+        if reason is None:
+            step = _descent(assembly, nodes, controls, gradient, factor)
+            found = _line_search(assembly, nodes, controls, energy, gradient, step, options)
+            reason = Reason.NO_DESCENT if found is None else None
+        if reason is not None:
+            return NewtonResult(
+                nodes=nodes,
+                reason=reason,
+                residual=residual,
+                allowed=allowed,
+                energy=energy,
+                iterations=iteration,
+                stable=factor.definite,
+            )
+        nodes, energy, gradient = found
+    raise AssertionError("unreachable")
+
+
+def _descent(
+    assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation
+) -> Vector:
+    """Newton's direction; with the projected Hessian, slightly shifted if need be, where the full one is indefinite."""
+    if factor.definite:
+        return -factor.solve(gradient)
+    hessian = assembly.hessian(nodes, controls, project=True)
+    diagonal = hessian.diagonal()
+    shift = 0.0
+    while True:
+        shifted = hessian.copy()
+        shifted.setdiag(diagonal + shift * diagonal.max())
+        factor = Factorisation(shifted.tocsc())
+        if factor.definite:
+            return -factor.solve(gradient)
+        shift = max(10 * shift, 1e-10)
+
+
+def _line_search(
+    assembly: Assembly,
+    nodes: Nodes,
+    controls: Vector,
+    energy: float,
+    gradient: Vector,
+    step: Vector,
+    options: NewtonOptions,
+) -> tuple[Nodes, float, Vector] | None:
+    """Next nodes, energy and gradient; None if no length of the step lowers the energy.
+
+    Near the end the energy falls by less than its own rounding error; then a smaller gradient is taken as progress.
+    """
+    slope = float(gradient @ step)
+    rounding = 1e-13 * (abs(energy) + float(np.abs(gradient * step).sum()))
+    length = 1.0
+    for _ in range(options.halvings):
+        trial = nodes + length * step.reshape(nodes.shape)
+        value = assembly.value(trial, controls)
+        if value <= energy + 1e-4 * length * slope:
+            return trial, value, assembly.gradient(trial, controls)
+        if value <= energy + rounding:
+            after = assembly.gradient(trial, controls)
+            if np.linalg.norm(after) < 0.99 * np.linalg.norm(gradient):
+                return trial, value, after
+        length *= 0.5
+    return None

@@ -1,0 +1,40 @@
+"""`PinEnergy`: springs of zero length between points of the body and points of the world."""
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
+
+
+class PinEnergy(Energy):
+    """Sum of k/2 |y - y_pin|^2 over anchors y = sum of weights x nodes (R29, E10)."""
+
+    def __init__(
+        self,
+        *,
+        stencils: Stencils,
+        weights: Float[np.ndarray, "terms corners"],
+        targets: Points,
+        stiffness: Float[np.ndarray, " terms"],
+    ) -> None:
+        """Pins that pull each anchor to its target [m] with its own stiffness [N/m]."""
+        self.stencils = stencils
+        self.weights, self.targets, self.stiffness = weights, targets, stiffness
+
+    def _offsets(self, nodes: Nodes) -> Points:
+        return np.einsum("tc,tcd->td", self.weights, nodes[self.stencils]) - self.targets
+
+    def value(self, nodes: Nodes, controls: Vector) -> float:
+        return float(0.5 * self.stiffness @ (self._offsets(nodes) ** 2).sum(axis=1))
+
+    def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
+        forces = self.stiffness[:, None] * self._offsets(nodes)
+        return self.weights[:, :, None] * forces[:, None, :]
+
+    def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
+        terms, corners = self.weights.shape
+        dim = nodes.shape[1]
+        pairs = self.stiffness[:, None, None] * self.weights[:, :, None] * self.weights[:, None, :]
+        blocks = np.einsum("tab,ij->taibj", pairs, np.eye(dim))
+        return blocks.reshape(terms, corners * dim, corners * dim)

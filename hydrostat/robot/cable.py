@@ -1,0 +1,71 @@
+"""`Cable`: a line from a winch through the body to a stopper."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.robot.point import Point
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cable:
+    """A frictionless cable with one tension along its run (R23, R25, R28).
+
+    Attributes:
+        winch: name of the winch that pulls it.
+        points: via points in the rest pose [m]; the first at the winch, the last the stopper.
+        stiffness: of the whole cable when taut [N/m] (k = 2K, E3).
+        smoothing: half the stretch over which it becomes taut [m] (eps of R25).
+        slack: how much the winch takes in before it begins to be taut [m] (E12).
+        sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length (R14, E11).
+
+    Raises:
+        InputError: fewer than two points, coincident points, or a number out of its range.
+    """
+
+    winch: str
+    points: tuple[Point, ...]
+    stiffness: float = 4e3
+    smoothing: float = 0.5e-3
+    slack: float = 0.0
+    sheathed: tuple[tuple[int, int], ...] = ()
+
+    def __post_init__(self) -> None:
+        count = len(self.points)
+        if count < 2:
+            raise InputError(f"points must hold at least 2 points, not {count}")
+        if not self.stiffness > 0:
+            raise InputError(f"stiffness must be above 0, not {self.stiffness:g} N/m")
+        if not self.smoothing > 0:
+            raise InputError(f"smoothing must be above 0, not {self.smoothing:g} m")
+        if not self.slack >= 0:
+            raise InputError(f"slack must not be negative, not {self.slack:g} m")
+        for start, end in self.sheathed:
+            if not 0 <= start < end < count:
+                raise InputError(
+                    f"sheathed = [{start}, {end}] must be two point indices, rising, from 0 to {count - 1}"
+                )
+        same = np.flatnonzero(self.segments < 1e-9)
+        if same.size:
+            raise InputError(f"points {same[0]} and {same[0] + 1} are the same; remove one of them")
+        if not self.bare.any():
+            raise InputError("the whole cable is sheathed: it cannot move anything")
+
+    @property
+    def segments(self) -> np.ndarray:
+        """Rest length of each segment [m], (points - 1,)."""
+        return np.linalg.norm(np.diff(np.array(self.points), axis=0), axis=1)
+
+    @property
+    def bare(self) -> np.ndarray:
+        """Which segments are not sheathed, (points - 1,) booleans."""
+        bare = np.ones(len(self.points) - 1, dtype=bool)
+        for start, end in self.sheathed:
+            bare[start:end] = False
+        return bare
+
+    @property
+    def length(self) -> float:
+        """Rest length from winch to stopper, sheaths included [m]."""
+        return float(self.segments.sum())

@@ -1,0 +1,61 @@
+"""`Pin`: where the robot is held."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot.point import Point
+
+DEFAULT_STIFFNESS = 100e3
+"""Stiffness of a pin [N/m] (M2): about a hundred times that of a plush body."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """Holds every node within `radius` of `at`, or every node in a box; if there is none, the point itself (R29, E10).
+
+    Attributes:
+        at: middle of the pin [m]; None with `box`.
+        radius: reach [m].
+        box: two opposite corners [m].
+        stiffness: of the whole pin [N/m], shared equally by all that it holds.
+    """
+
+    at: Point | None = None
+    radius: float = 0.0
+    box: tuple[Point, Point] | None = None
+    stiffness: float = DEFAULT_STIFFNESS
+
+    def __post_init__(self) -> None:
+        if (self.at is None) == (self.box is None):
+            raise InputError("a pin has either at (with a radius) or box")
+        if not self.radius >= 0:
+            raise InputError(f"radius must not be negative, not {self.radius:g} m")
+        if not self.stiffness > 0:
+            raise InputError(f"stiffness must be above 0, not {self.stiffness:g} N/m")
+
+    def anchors(self, mesh: Mesh) -> Anchors:
+        """What the pin holds.
+
+        Raises:
+            InputError: the pin lies outside the body and holds nothing.
+        """
+        held = mesh.nodes[self._holds(mesh)]
+        if len(held) == 0:
+            centre = np.mean(self.box, axis=0) if self.at is None else np.array(self.at)
+            held = centre[None, :]
+        anchors = locate(mesh, held)
+        if not anchors.inside.all():
+            raise InputError(
+                "the pin lies outside the body and holds no node; move it, or widen its radius or box"
+            )
+        return anchors
+
+    def _holds(self, mesh: Mesh) -> np.ndarray:
+        if self.box is not None:
+            low, high = np.min(self.box, axis=0), np.max(self.box, axis=0)
+            return ((mesh.nodes >= low) & (mesh.nodes <= high)).all(axis=1)
+        return np.linalg.norm(mesh.nodes - np.array(self.at), axis=1) <= self.radius

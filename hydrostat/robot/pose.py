@@ -1,0 +1,26 @@
+"""`Pose`: where markers should go."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hydrostat.errors import InputError
+from hydrostat.robot.point import Point
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """Targets for some markers.
+
+    Attributes:
+        name: unique in the robot.
+        targets: place for each named marker [m].
+    """
+
+    name: str
+    targets: Mapping[str, Point]
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise InputError("name must not be empty")
+        if not self.targets:
+            raise InputError("targets must name at least one marker")

@@ -1,0 +1,178 @@
+"""`Robot`: all that is known of one robot, checked when it is made."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.robot.body import Body
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.marker import Marker
+from hydrostat.robot.pin import Pin
+from hydrostat.robot.point import Point
+from hydrostat.robot.pose import Pose
+from hydrostat.robot.winch import Mount, Winch
+
+
+@dataclass(frozen=True, kw_only=True)
+class Robot:
+    """A body with what holds it, pulls it and is tracked on it.
+
+    Attributes:
+        name: of the robot.
+        body: the soft part.
+        pins: where it is held; together they must leave it no rigid motion.
+        winches: in the order of every array of contractions.
+        cables: in the order of every array of tensions.
+        markers: tracked points.
+        poses: by name.
+        length_unit: of the coordinates in its file.
+
+    Raises:
+        InputError: parts that do not fit together, such as a cable point outside the body.
+    """
+
+    name: str
+    body: Body
+    pins: tuple[Pin, ...]
+    winches: tuple[Winch, ...] = ()
+    cables: tuple[Cable, ...] = ()
+    markers: tuple[Marker, ...] = ()
+    poses: Mapping[str, Pose]
+    length_unit: str = "mm"
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise InputError("name must not be empty")
+        _unique("winch", [winch.name for winch in self.winches])
+        _unique("marker", [marker.name for marker in self.markers])
+        self._check_dimensions()
+        self._check_pins()
+        self._check_markers_and_poses()
+        self._check_cables()
+
+    def winch(self, name: str) -> Winch:
+        """The winch of this name.
+
+        Raises:
+            InputError: there is none.
+        """
+        for winch in self.winches:
+            if winch.name == name:
+                return winch
+        raise InputError(
+            f'there is no winch "{name}"; {_choices("winches", [winch.name for winch in self.winches])}'
+        )
+
+    def pose(self, name: str) -> Pose:
+        """The pose of this name.
+
+        Raises:
+            InputError: there is none.
+        """
+        if name not in self.poses:
+            raise InputError(f'there is no pose "{name}"; {_choices("poses", list(self.poses))}')
+        return self.poses[name]
+
+    def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
+        """The same robot with other winches and cables."""
+        return replace(self, winches=tuple(winches), cables=tuple(cables))
+
+    def _check_dimensions(self) -> None:
+        dim = self.body.mesh.dim
+        for key, point in self._points():
+            if len(point) != dim:
+                raise InputError(f"{key} has {len(point)} coordinates, but the body has {dim} dimensions")
+
+    def _points(self) -> Iterable[tuple[str, Point]]:
+        for index, pin in enumerate(self.pins):
+            yield from (
+                (f"pin[{index}]", point) for point in ((pin.at,) if pin.at is not None else pin.box or ())
+            )
+        for index, winch in enumerate(self.winches):
+            yield f"winch[{index}].at", winch.at
+        for index, cable in enumerate(self.cables):
+            yield from (
+                (f"cable[{index}].points[{place}]", point) for place, point in enumerate(cable.points)
+            )
+        for index, marker in enumerate(self.markers):
+            yield f"marker[{index}].at", marker.at
+        for index, pose in enumerate(self.poses.values()):
+            yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
+
+    def _check_pins(self) -> None:
+        if not self.pins:
+            raise InputError(
+                "there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one"
+            )
+        held = []
+        for index, pin in enumerate(self.pins):
+            try:
+                held.append(pin.anchors(self.body.mesh).positions(self.body.mesh.nodes))
+            except InputError as error:
+                raise InputError(f"pin[{index}]: {error}") from None
+        spread = np.linalg.svd(np.concatenate(held) - np.mean(np.concatenate(held), axis=0), compute_uv=False)
+        if (spread > 1e-6 * self.body.mesh.size).sum() < self.body.mesh.dim - 1:
+            raise InputError(
+                "pin[0]: the pins hold too few nodes, the body can still turn about them; widen a radius or add a pin"
+            )
+
+    def _check_markers_and_poses(self) -> None:
+        names = [marker.name for marker in self.markers]
+        for index, marker in enumerate(self.markers):
+            self._check_inside(f"marker[{index}].at", [marker.at])
+        for index, pose in enumerate(self.poses.values()):
+            for name in pose.targets:
+                if name not in names:
+                    key = f"pose[{index}].targets.{name}"
+                    raise InputError(f'{key}: there is no marker "{name}"; {_choices("markers", names)}')
+
+    def _check_cables(self) -> None:
+        for index, winch in enumerate(self.winches):
+            if winch.mount is Mount.BODY:
+                self._check_inside(f"winch[{index}].at", [winch.at])
+        for index, cable in enumerate(self.cables):
+            try:
+                winch = self.winch(cable.winch)
+            except InputError as error:
+                raise InputError(f"cable[{index}].winch: {error}") from None
+            gap = float(np.linalg.norm(np.subtract(cable.points[0], winch.at)))
+            if gap > (0.0 if winch.mount is Mount.WORLD else 2 * winch.spool_radius):
+                raise InputError(
+                    f"cable[{index}].points[0]: a cable begins at its winch, "
+                    f'but this is {self._text(gap)} from winch "{winch.name}" at {self._text(winch.at)}'
+                )
+            self._check_inside(f"cable[{index}].points", cable.points, skip_first=winch.mount is Mount.WORLD)
+
+    def _check_inside(self, key: str, points: Iterable[Point], *, skip_first: bool = False) -> None:
+        points = list(points)
+        distances = self.body.distances(np.array(points))
+        for place, distance in enumerate(distances):
+            if distance > 0 and not (skip_first and place == 0):
+                where = f"{key}[{place}]" if len(points) > 1 else key
+                raise InputError(
+                    f"{where} = {self._text(points[place])} lies {self._text(float(distance))} outside the body; move it inside"
+                )
+
+    def _text(self, value: Point | float) -> str:
+        """A point or length in the unit of the file, to a tenth of a thousandth."""
+        from hydrostat.units import LENGTH, unit_factor
+
+        scale = float(unit_factor(self.length_unit, LENGTH))
+        if isinstance(value, float):
+            return f"{value / scale:.4g} {self.length_unit}"
+        return "[" + ", ".join(f"{coordinate / scale:.4g}" for coordinate in value) + "]"
+
+
+def _unique(kind: str, names: list[str]) -> None:
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise InputError(
+                f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique'
+            )
+
+
+def _choices(kind: str, names: list[str]) -> str:
+    return f"its {kind} are: {', '.join(names)}" if names else f"it has no {kind}"

@@ -1,0 +1,48 @@
+"""`Winch`: a motor with a spool that takes in cable."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from hydrostat.errors import InputError
+from hydrostat.robot.point import Point
+
+
+class Mount(StrEnum):
+    """Where a winch sits: in the body, or fixed in the world beside it."""
+
+    BODY = "body"
+    WORLD = "world"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Winch:
+    """All cables of a winch share its contraction (R12, R27).
+
+    Attributes:
+        name: unique in the robot.
+        at: place in the rest pose [m].
+        spool_radius: [m].
+        travel: the most cable it can take in [m].
+        release: the most cable it can let out beyond the rest length [m].
+        mount: `Mount.WORLD` fixes `at` in space: there its cables begin.
+
+    Raises:
+        InputError: an empty name or a number out of its range.
+    """
+
+    name: str
+    at: Point
+    spool_radius: float = 0.006
+    travel: float = 0.06
+    release: float = 0.0
+    mount: Mount = Mount.BODY
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise InputError("name must not be empty")
+        if not self.spool_radius > 0:
+            raise InputError(f"spool_radius must be above 0, not {self.spool_radius:g} m")
+        if not self.travel > 0:
+            raise InputError(f"travel must be above 0, not {self.travel:g} m")
+        if not self.release >= 0:
+            raise InputError(f"release must not be negative, not {self.release:g} m")

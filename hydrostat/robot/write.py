@@ -1,0 +1,150 @@
+"""`save_robot`: a `Robot` as a folder that reads back to the very same robot."""
+
+import hashlib
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from hydrostat import units
+from hydrostat.robot.body import Body
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
+from hydrostat.robot.point import Point
+from hydrostat.robot.robot import Robot
+from hydrostat.robot.winch import Mount
+
+
+def save_robot(robot: Robot, folder: str | Path) -> Path:
+    """Write robot.toml and the body's file into a folder, made if need be; returns the path of robot.toml.
+
+    Each file is written under a temporary name and renamed, so that a reader never sees half of it.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    replace_file(folder / robot.body.file, robot.body.content)
+    return replace_file(folder / "robot.toml", robot_text(robot).encode())
+
+
+def replace_file(path: Path, content: bytes) -> Path:
+    """Write a file whole or not at all."""
+    part = path.with_name(f".{path.name}.part")
+    part.write_bytes(content)
+    os.replace(part, path)
+    return path
+
+
+def robot_hash(robot: Robot) -> str:
+    """SHA-256 of all that defines the robot, its body's file included."""
+    return hashlib.sha256(robot_text(robot).encode() + b"\0" + robot.body.content).hexdigest()
+
+
+def robot_text(robot: Robot) -> str:
+    """The robot as the text of robot.toml."""
+    import tomlkit
+
+    writer = _Writer(robot)
+    document = tomlkit.document()
+    document["format"] = 1
+    document["name"] = robot.name
+    if robot.length_unit != "mm":
+        document["length_unit"] = robot.length_unit
+    document["body"] = writer.body(robot.body)
+    groups: dict[str, Iterable[dict[str, Any]]] = {
+        "pin": map(writer.pin, robot.pins),
+        "winch": map(writer.winch, robot.winches),
+        "cable": map(writer.cable, robot.cables),
+        "marker": ({"name": marker.name, "at": writer.point(marker.at)} for marker in robot.markers),
+        "pose": map(writer.pose, robot.poses.values()),
+    }
+    for key, entries in groups.items():
+        tables = tomlkit.aot()
+        for entry in entries:
+            table = tomlkit.table()
+            table.update(entry)
+            tables.append(table)
+        if len(tables):
+            document[key] = tables
+    return tomlkit.dumps(document)
+
+
+class _Writer:
+    """Turns records into plain values for the file, coordinates in its length unit."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.unit = robot.length_unit
+
+    def number(self, value: float) -> Any:
+        """A bare number that reads back to the very same length [m]."""
+        import tomlkit
+
+        text = units.plain(units.scale_down(value, self.unit, units.LENGTH))
+        return tomlkit.value(text)
+
+    def point(self, point: Point) -> Any:
+        import tomlkit
+
+        array = tomlkit.array()
+        array.extend(self.number(value) for value in point)
+        return array
+
+    def points(self, points: Iterable[Point]) -> Any:
+        import tomlkit
+
+        array = tomlkit.array()
+        array.extend(self.point(point) for point in points)
+        return array
+
+    def body(self, body: Body) -> dict[str, Any]:
+        material: Any = body.material.name
+        if not material:
+            import tomlkit
+
+            material = tomlkit.inline_table()
+            material["young"] = units.format_quantity(body.material.young, units.PRESSURE)
+            material["poisson"] = body.material.poisson
+            material["density"] = units.format_quantity(body.material.density, units.DENSITY)
+        lengths = {key: getattr(body, key) for key in ("size", "element_size", "thickness")}
+        return {str(body.source): body.file, **_lengths(lengths), "material": material}
+
+    def pin(self, pin: Pin) -> dict[str, Any]:
+        entry: dict[str, Any] = {}
+        if pin.box is not None:
+            entry["box"] = self.points(pin.box)
+        if pin.at is not None:
+            entry["at"] = self.point(pin.at)
+            entry["radius"] = self.number(pin.radius)
+        if pin.stiffness != DEFAULT_STIFFNESS:
+            entry["stiffness"] = units.format_quantity(pin.stiffness, units.STIFFNESS)
+        return entry
+
+    def winch(self, winch: Any) -> dict[str, Any]:
+        lengths = {
+            "spool_radius": winch.spool_radius,
+            "travel": winch.travel,
+            "release": winch.release or None,
+        }
+        mount = {"mount": str(winch.mount)} if winch.mount is not Mount.BODY else {}
+        return {"name": winch.name, "at": self.point(winch.at), **_lengths(lengths), **mount}
+
+    def cable(self, cable: Cable) -> dict[str, Any]:
+        entry: dict[str, Any] = {"winch": cable.winch, "points": self.points(cable.points)}
+        entry["stiffness"] = units.format_quantity(cable.stiffness, units.STIFFNESS)
+        entry.update(_lengths({"smoothing": cable.smoothing, "slack": cable.slack or None}))
+        if cable.sheathed:
+            entry["sheathed"] = [list(pair) for pair in cable.sheathed]
+        return entry
+
+    def pose(self, pose: Any) -> dict[str, Any]:
+        import tomlkit
+
+        targets = tomlkit.inline_table()
+        for name, point in pose.targets.items():
+            targets[name] = self.point(point)
+        return {"name": pose.name, "targets": targets}
+
+
+def _lengths(values: dict[str, float | None]) -> dict[str, str]:
+    return {
+        key: units.format_quantity(value, units.LENGTH) for key, value in values.items() if value is not None
+    }

@@ -1,0 +1,28 @@
+"""`SolvedPose`: a robot at rest under given contractions."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics import NewtonResult
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SolvedPose:
+    """An equilibrium.
+
+    Attributes:
+        contractions: cable taken in by each winch [m], in winch order.
+        nodes: positions of the nodes [m].
+        markers: position of each marker [m].
+        tensions: of each cable [N], in cable order.
+        energy: total energy [J].
+        result: how the solver ended: reason, residual [N], iterations, stability.
+    """
+
+    contractions: Vector
+    nodes: Nodes
+    markers: Mapping[str, Vector]
+    tensions: Vector
+    energy: float
+    result: NewtonResult
