@@ -1,1 +1,10 @@
-"""geometry"""
+"""Shapes without physics: outlines and their drawings, meshes, and points stuck to the material."""
+
+from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.outline import Outline
+from hydrostat.geometry.quality import smallest_angle
+from hydrostat.geometry.svg import read_svg
+from hydrostat.geometry.triangulate import triangulate
+
+__all__ = ["Anchors", "Mesh", "Outline", "locate", "read_svg", "smallest_angle", "triangulate"]

@@ -1,8 +1,15 @@
 """`Outline`: the closed boundary of a flat body."""
 
+import re
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from shapely import Polygon, is_ccw
+from shapely.validation import explain_validity
 
 from hydrostat.arrays import Points
+from hydrostat.errors import OutlineError
 
 
 @dataclass(frozen=True, eq=False)
@@ -10,9 +17,67 @@ class Outline:
     """One outer ring and any holes, as dense polygons.
 
     Attributes:
-        exterior: corners of the outer ring [m], counter-clockwise, first point not repeated.
-        holes: corners of each hole [m], clockwise.
+        exterior: corners of the outer ring [m], first point not repeated; kept counter-clockwise, however given.
+        holes: corners of each hole [m]; kept clockwise, however given.
+
+    Raises:
+        OutlineError: a ring with fewer than three corners or not finite, no area, or rings that cross or touch.
     """
 
     exterior: Points
     holes: tuple[Points, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "exterior", _ring(self.exterior, counter_clockwise=True))
+        object.__setattr__(self, "holes", tuple(_ring(hole, counter_clockwise=False) for hole in self.holes))
+        found = fault(self.polygon)
+        if found:
+            what, (x, y) = found
+            raise OutlineError(f"the outline {what} at ({1e3 * x:.4g}, {1e3 * y:.4g}) mm: redraw it there")
+
+    @cached_property
+    def polygon(self) -> Polygon:
+        """The same shape for shapely [m]."""
+        return Polygon(self.exterior, self.holes)
+
+    @property
+    def rings(self) -> tuple[Points, ...]:
+        """The outer ring, then the holes [m]; the body lies to the left of each."""
+        return (self.exterior, *self.holes)
+
+    @property
+    def area(self) -> float:
+        """Area without the holes [m^2]."""
+        return float(self.polygon.area)
+
+    @property
+    def size(self) -> float:
+        """Longest side of the bounding box [m]."""
+        return float(np.ptp(self.exterior, axis=0).max())
+
+
+def fault(polygon: Polygon) -> tuple[str, tuple[float, float]] | None:
+    """What keeps a polygon from being a body, in words, and where; None if nothing does."""
+    if polygon.is_valid and polygon.area > 0.0:
+        return None
+    explanation = explain_validity(polygon)
+    place = re.search(r"\[(\S+) (\S+)\]", explanation)
+    point = (float(place[1]), float(place[2])) if place else polygon.exterior.coords[0][:2]
+    if not polygon.area > 0.0:
+        return "has no area", point
+    crosses_itself = not all(ring.is_simple for ring in (polygon.exterior, *polygon.interiors))
+    return ("crosses itself" if crosses_itself else "is crossed or touched by a hole"), point
+
+
+def _ring(points: Points, *, counter_clockwise: bool) -> Points:
+    """A read-only copy of a ring, turned the asked way round, no point repeated in a row."""
+    ring = np.array(points, dtype=float)
+    if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
+        raise OutlineError("an outline needs finite points in the plane, (points, 2)")
+    ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
+    if len(ring) < 3:
+        raise OutlineError(f"an outline needs three different corners at least, this one has {len(ring)}")
+    if is_ccw(Polygon(ring).exterior) != counter_clockwise:
+        ring = np.ascontiguousarray(ring[::-1])
+    ring.setflags(write=False)
+    return ring
