@@ -31,9 +31,7 @@ PRESSURE = Dimension("a pressure", "Pa", "kPa", "30 kPa")
 DENSITY = Dimension("a density", "kg/m^3", "kg/m^3", "40 kg/m^3")
 STIFFNESS = Dimension("a stiffness", "N/m", "N/mm", "4 N/mm")
 
-_QUANTITY = re.compile(
-    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([A-Za-zµμ][A-Za-zµμ0-9*/^. ]{0,30})?\s*"
-)
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([A-Za-zµμ][A-Za-zµμ0-9*/^. ]{0,30})?\s*")
 
 
 def parse_quantity(text: object, dimension: Dimension) -> float:
@@ -43,9 +41,7 @@ def parse_quantity(text: object, dimension: Dimension) -> float:
         InputError: no text, no number, no unit, an unknown unit, or a unit of another dimension.
     """
     if not isinstance(text, str):
-        raise InputError(
-            f'{text!r} has no unit; write {dimension.name} as text, for example "{dimension.example}"'
-        )
+        raise InputError(f'{text!r} has no unit; write {dimension.name} as text, for example "{dimension.example}"')
     match = _QUANTITY.fullmatch(text)
     if not match:
         raise InputError(f'"{text}" is not {dimension.name}; write for example "{dimension.example}"')

@@ -37,9 +37,7 @@ class Assembly:
     def gradient(self, nodes: Nodes, controls: Vector) -> Float[np.ndarray, " dofs"]:
         """dE/dx [N], (nodes x dim,)."""
         blocks = [energy.gradient(nodes, controls).ravel() for energy in self.energies]
-        return np.bincount(
-            np.concatenate([dofs.ravel() for dofs in self._dofs]), np.concatenate(blocks), self.size
-        )
+        return np.bincount(np.concatenate([dofs.ravel() for dofs in self._dofs]), np.concatenate(blocks), self.size)
 
     def hessian(self, nodes: Nodes, controls: Vector, *, project: bool = False) -> csc_array:
         """d2E/dx2 [N/m], sparse; with `project` every block is made positive semidefinite first (E6)."""
@@ -65,9 +63,7 @@ class Assembly:
 
     def _pattern(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Column pointers and row indices of the Hessian, and the slot of every block entry."""
-        keys = np.concatenate(
-            [(dofs[:, None, :] * self.size + dofs[:, :, None]).ravel() for dofs in self._dofs]
-        )
+        keys = np.concatenate([(dofs[:, None, :] * self.size + dofs[:, :, None]).ravel() for dofs in self._dofs])
         entries, slots = np.unique(keys, return_inverse=True)
         columns, rows = np.divmod(entries, self.size)
         indptr = np.searchsorted(columns, np.arange(self.size + 1))

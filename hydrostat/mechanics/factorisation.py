@@ -19,9 +19,7 @@ class Factorisation:
         self.definite = False
         self.singular = True
         try:
-            self._lu = splu(
-                matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-            )
+            self._lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:
             return
         pivots = self._lu.U.diagonal()

@@ -18,9 +18,7 @@ class NeoHookean(Energy):
 
     convex: ClassVar[bool] = False
 
-    def __init__(
-        self, nodes: Nodes, elements: Elements, *, mu: float, lame: float, thickness: float = 1.0
-    ) -> None:
+    def __init__(self, nodes: Nodes, elements: Elements, *, mu: float, lame: float, thickness: float = 1.0) -> None:
         """Material of Lame's parameters `mu` and `lame` [Pa] on the rest shape `nodes`.
 
         `thickness` [m] is that of a flat body; leave it out in space.
@@ -33,9 +31,7 @@ class NeoHookean(Energy):
         self.mu, self.lame = mu, lame
         self.volumes = np.linalg.det(spans) / (2.0 if dim == 2 else 6.0) * thickness
         self.shape_gradients = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
-        self._stiffness = mu * np.einsum(
-            "e,eci,ebi->ecb", self.volumes, self.shape_gradients, self.shape_gradients
-        )
+        self._stiffness = mu * np.einsum("e,eci,ebi->ecb", self.volumes, self.shape_gradients, self.shape_gradients)
 
     def deformation_gradients(self, nodes: Nodes) -> Float[np.ndarray, "elements dim dim"]:
         """F of each element (R21)."""

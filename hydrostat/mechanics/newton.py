@@ -123,9 +123,7 @@ def minimise(
     raise AssertionError("unreachable")
 
 
-def _descent(
-    assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation
-) -> Vector:
+def _descent(assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation) -> Vector:
     """Newton's direction; with the projected Hessian, slightly shifted if need be, where the full one is indefinite."""
     if factor.definite:
         return -factor.solve(gradient)

@@ -49,9 +49,7 @@ class Pin:
             held = centre[None, :]
         anchors = locate(mesh, held)
         if not anchors.inside.all():
-            raise InputError(
-                "the pin lies outside the body and holds no node; move it, or widen its radius or box"
-            )
+            raise InputError("the pin lies outside the body and holds no node; move it, or widen its radius or box")
         return anchors
 
     def _holds(self, mesh: Mesh) -> np.ndarray:

@@ -70,9 +70,7 @@ class _Reader:
         poses: dict[str, Pose] = {}
         for index, entry in enumerate(table.pose):
             if entry.name in poses:
-                self._fail(
-                    f"pose[{index}].name", f'there are two of the name "{entry.name}"; names must be unique'
-                )
+                self._fail(f"pose[{index}].name", f'there are two of the name "{entry.name}"; names must be unique')
             poses[entry.name] = self._at(f"pose[{index}]", lambda entry=entry: self._pose(entry))
         body = self._body()
         try:
@@ -103,9 +101,7 @@ class _Reader:
         from hydrostat.robot.schema import allowed_keys
 
         location = tuple(
-            step
-            for step in error["loc"]
-            if not str(step).startswith(("MaterialTable", "function-", "constrained-"))
+            step for step in error["loc"] if not str(step).startswith(("MaterialTable", "function-", "constrained-"))
         )
         key = location[-1] if location else ""
         if error["type"] == "extra_forbidden":
@@ -121,8 +117,7 @@ class _Reader:
     def _records(self, key: str, make: Callable[[Any], _Record]) -> tuple[_Record, ...]:
         entries = getattr(self.table, key)
         return tuple(
-            self._at(f"{key}[{index}]", lambda entry=entry: make(entry))
-            for index, entry in enumerate(entries)
+            self._at(f"{key}[{index}]", lambda entry=entry: make(entry)) for index, entry in enumerate(entries)
         )
 
     def _point(self, coordinates: list[Decimal]) -> tuple[float, ...]:
@@ -146,17 +141,13 @@ class _Reader:
     def _cable(self, entry: Any) -> Cable:
         points = tuple(self._point(point) for point in entry.points)
         sheathed = {} if entry.sheathed is None else {"sheathed": tuple(entry.sheathed)}
-        return Cable(
-            winch=entry.winch, points=points, **sheathed, **_given(entry, "stiffness", "smoothing", "slack")
-        )
+        return Cable(winch=entry.winch, points=points, **sheathed, **_given(entry, "stiffness", "smoothing", "slack"))
 
     def _marker(self, entry: Any) -> Marker:
         return Marker(name=entry.name, at=self._point(entry.at))
 
     def _pose(self, entry: Any) -> Pose:
-        return Pose(
-            name=entry.name, targets={name: self._point(point) for name, point in entry.targets.items()}
-        )
+        return Pose(name=entry.name, targets={name: self._point(point) for name, point in entry.targets.items()})
 
     def _body(self) -> Body:
         entry = self.table.body
@@ -171,9 +162,7 @@ class _Reader:
             unit = float(units.unit_factor(self.unit, units.LENGTH))
             return self._at(
                 "body",
-                lambda: mesh_body(
-                    file, unit=unit, material=material, size=entry.size, thickness=entry.thickness
-                ),
+                lambda: mesh_body(file, unit=unit, material=material, size=entry.size, thickness=entry.thickness),
             )
         for key, example in (("element_size", "12 mm"), ("thickness", "40 mm")):
             if getattr(entry, key) is None:
@@ -242,9 +231,7 @@ def _line(text: str, key: str) -> int | None:
     lines = text.splitlines()
     heads = [number for number, line in enumerate(lines) if re.match(rf"\s*\[\[?\s*{table}\s*\]", line)]
     if len(heads) <= index:
-        return next(
-            (number + 1 for number, line in enumerate(lines) if re.match(rf"\s*{table}\s*=", line)), None
-        )
+        return next((number + 1 for number, line in enumerate(lines) if re.match(rf"\s*{table}\s*=", line)), None)
     for number in range(heads[index] + 1, len(lines)):
         if re.match(r"\s*\[\[?\s*[A-Za-z_]+\s*\]", lines[number]):
             break

@@ -62,9 +62,7 @@ class Robot:
         for winch in self.winches:
             if winch.name == name:
                 return winch
-        raise InputError(
-            f'there is no winch "{name}"; {_choices("winches", [winch.name for winch in self.winches])}'
-        )
+        raise InputError(f'there is no winch "{name}"; {_choices("winches", [winch.name for winch in self.winches])}')
 
     def pose(self, name: str) -> Pose:
         """The pose of this name.
@@ -88,15 +86,11 @@ class Robot:
 
     def _points(self) -> Iterable[tuple[str, Point]]:
         for index, pin in enumerate(self.pins):
-            yield from (
-                (f"pin[{index}]", point) for point in ((pin.at,) if pin.at is not None else pin.box or ())
-            )
+            yield from ((f"pin[{index}]", point) for point in ((pin.at,) if pin.at is not None else pin.box or ()))
         for index, winch in enumerate(self.winches):
             yield f"winch[{index}].at", winch.at
         for index, cable in enumerate(self.cables):
-            yield from (
-                (f"cable[{index}].points[{place}]", point) for place, point in enumerate(cable.points)
-            )
+            yield from ((f"cable[{index}].points[{place}]", point) for place, point in enumerate(cable.points))
         for index, marker in enumerate(self.markers):
             yield f"marker[{index}].at", marker.at
         for index, pose in enumerate(self.poses.values()):
@@ -104,9 +98,7 @@ class Robot:
 
     def _check_pins(self) -> None:
         if not self.pins:
-            raise InputError(
-                "there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one"
-            )
+            raise InputError("there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one")
         held = []
         for index, pin in enumerate(self.pins):
             try:
@@ -169,9 +161,7 @@ class Robot:
 def _unique(kind: str, names: list[str]) -> None:
     for index, name in enumerate(names):
         if name in names[:index]:
-            raise InputError(
-                f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique'
-            )
+            raise InputError(f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique')
 
 
 def _choices(kind: str, names: list[str]) -> str:

@@ -145,6 +145,4 @@ class _Writer:
 
 
 def _lengths(values: dict[str, float | None]) -> dict[str, str]:
-    return {
-        key: units.format_quantity(value, units.LENGTH) for key, value in values.items() if value is not None
-    }
+    return {key: units.format_quantity(value, units.LENGTH) for key, value in values.items() if value is not None}

@@ -54,9 +54,7 @@ class Simulation:
             raise InputError("a contraction is not a finite number")
         return values
 
-    def solve(
-        self, contractions: Contractions, *, start: SolvedPose | None = None, strict: bool = True
-    ) -> SolvedPose:
+    def solve(self, contractions: Contractions, *, start: SolvedPose | None = None, strict: bool = True) -> SolvedPose:
         """Equilibrium at the given contractions.
 
         Args:
@@ -137,9 +135,7 @@ class Simulation:
         return SolvedPose(
             contractions=contractions,
             nodes=result.nodes,
-            markers={
-                marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)
-            },
+            markers={marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)},
             tensions=self.tensions(result.nodes, contractions),
             energy=result.energy,
             result=result,

@@ -1,0 +1,45 @@
+"""`ReachedPose`: what inverse kinematics found for one pose."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.robot import Pose
+from hydrostat.simulation import SolvedPose
+
+
+class InverseReason(StrEnum):
+    """Why inverse kinematics ended."""
+
+    REACHED = "every marker is at its target"
+    OPTIMAL = "no allowed contraction brings the markers nearer"
+    ITERATION_LIMIT = "iteration limit reached"
+    NO_EQUILIBRIUM = "no equilibrium could be found on the way"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ReachedPose:
+    """The best pose that the winches can make.
+
+    Attributes:
+        target: what was asked for.
+        pose: the equilibrium found; its `contractions` are the answer.
+        errors: distance of each targeted marker from its target [m].
+        reason: why the search ended.
+        iterations: Gauss-Newton steps taken.
+        solves: equilibria computed.
+    """
+
+    target: Pose
+    pose: SolvedPose
+    errors: Mapping[str, float]
+    reason: InverseReason
+    iterations: int
+    solves: int
+
+    @property
+    def rms_error(self) -> float:
+        """Root of the mean squared distance over the targeted markers [m]."""
+        return float(np.sqrt(np.mean(np.square(list(self.errors.values())))))
