@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import count
 
 import numpy as np
 
@@ -98,29 +99,31 @@ def minimise(
             stable=False,
         )
     gradient = assembly.gradient(nodes, controls)
-    for iteration in range(options.iterations + 1):
+    for iteration in count():
         allowed = max(options.tolerance * force_scale(nodes), round_off)
         residual = float(np.abs(gradient).max())
         factor = Factorisation(assembly.hessian(nodes, controls))
-        reason = Reason.CONVERGED if residual <= allowed else None
-        if reason is None and iteration == options.iterations:
+        if residual <= allowed:
+            reason = Reason.CONVERGED
+        elif iteration == options.iterations:
             reason = Reason.ITERATION_LIMIT
-        if reason is None:
+        else:
             step = _descent(assembly, nodes, controls, gradient, factor)
             found = _line_search(assembly, nodes, controls, energy, gradient, step, options)
-            reason = Reason.NO_DESCENT if found is None else None
-        if reason is not None:
-            return NewtonResult(
-                nodes=nodes,
-                reason=reason,
-                residual=residual,
-                allowed=allowed,
-                energy=energy,
-                iterations=iteration,
-                stable=factor.definite,
-            )
-        nodes, energy, gradient = found
-    raise AssertionError("unreachable")
+            if found is not None:
+                nodes, energy, gradient = found
+                continue
+            reason = Reason.NO_DESCENT
+        return NewtonResult(
+            nodes=nodes,
+            reason=reason,
+            residual=residual,
+            allowed=allowed,
+            energy=energy,
+            iterations=iteration,
+            stable=factor.definite,
+        )
+    raise AssertionError("count() never ends")
 
 
 def _descent(assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation) -> Vector:

@@ -59,7 +59,10 @@ class Body:
         distances = locate(self.mesh, points).distances
         if self.outline is None:
             return distances
-        return np.where(distances > 0, self.outline.distances(points), 0.0)
+        from shapely import distance
+        from shapely import points as shapely_points
+
+        return np.where(distances > 0, distance(self.outline.polygon, shapely_points(points)), 0.0)
 
 
 def outline_body(

@@ -33,7 +33,7 @@ class Material:
             raise InputError(f"young must be above 0, not {self.young:g} Pa")
         if not -1 < self.poisson < 0.5:
             raise InputError(
-                f"poisson must lie between -1 and 0.5, both excluded, not {self.poisson:g}; nearly incompressible is 0.45"
+                f"poisson must be above -1 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
             )
         if not (math.isfinite(self.density) and self.density > 0):
             raise InputError(f"density must be above 0, not {self.density:g} kg/m^3")

@@ -45,8 +45,8 @@ class Pin:
         """
         held = mesh.nodes[self._holds(mesh)]
         if len(held) == 0:
-            centre = np.mean(self.box, axis=0) if self.at is None else np.array(self.at)
-            held = centre[None, :]
+            middle = self.at if self.box is None else np.mean(self.box, axis=0)
+            held = np.array([middle], dtype=float)
         anchors = locate(mesh, held)
         if not anchors.inside.all():
             raise InputError("the pin lies outside the body and holds no node; move it, or widen its radius or box")

@@ -144,18 +144,17 @@ class Robot:
         for place, distance in enumerate(distances):
             if distance > 0 and not (skip_first and place == 0):
                 where = f"{key}[{place}]" if len(points) > 1 else key
-                raise InputError(
-                    f"{where} = {self._text(points[place])} lies {self._text(float(distance))} outside the body; move it inside"
-                )
+                out = f"lies {self._text(float(distance))} outside the body"
+                raise InputError(f"{where} = {self._text(points[place])} {out}; move it inside")
 
     def _text(self, value: Point | float) -> str:
         """A point or length in the unit of the file, to a tenth of a thousandth."""
         from hydrostat.units import LENGTH, unit_factor
 
         scale = float(unit_factor(self.length_unit, LENGTH))
-        if isinstance(value, float):
-            return f"{value / scale:.4g} {self.length_unit}"
-        return "[" + ", ".join(f"{coordinate / scale:.4g}" for coordinate in value) + "]"
+        if isinstance(value, tuple):
+            return "[" + ", ".join(f"{coordinate / scale:.4g}" for coordinate in value) + "]"
+        return f"{value / scale:.4g} {self.length_unit}"
 
 
 def _unique(kind: str, names: list[str]) -> None:

@@ -112,7 +112,7 @@ class Simulation:
     def _in_steps(self, goal: Vector, failed: NewtonResult) -> NewtonResult:
         """From rest by smaller and smaller steps; the first failure if even those do not arrive."""
         for steps in (4, 16):
-            nodes = self.robot.body.mesh.nodes
+            nodes, result = self.robot.body.mesh.nodes, failed
             for step in range(1, steps + 1):
                 result = self._minimise(nodes, goal * (step / steps))
                 nodes = result.nodes
