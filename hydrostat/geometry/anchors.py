@@ -7,7 +7,14 @@ from jaxtyping import Bool, Float, Int
 from scipy.sparse import csr_array
 
 from hydrostat.arrays import Nodes, Points
+from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
+
+_HAIR = 1e-9
+"""A point this little outside counts as inside, in heights of its element."""
+
+_AT_ONCE = 500_000
+"""Pairs of point and element tried together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,53 +51,77 @@ def locate(mesh: Mesh, points: Points) -> Anchors:
     """Stick points to the rest shape of a mesh.
 
     A point outside is stuck to the nearest place of the body; `distances` says how far that was.
+
+    Raises:
+        InputError: the points are not finite or have another dimension than the mesh.
     """
-    corners = mesh.nodes[mesh.elements]
-    inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
-    stencils, weights, distances = [], [], []
-    for point in points:
-        local = np.einsum("eij,ej->ei", inverse, point - corners[:, 0])
-        barycentric = np.column_stack([1.0 - local.sum(axis=1), local])
-        element = int(np.argmax(barycentric.min(axis=1)))
-        if barycentric[element].min() >= -1e-9:
-            weight, distance = np.clip(barycentric[element], 0.0, None), 0.0
-        else:
-            element, weight = _nearest(corners, point)
-            distance = float(np.linalg.norm(weight @ corners[element] - point))
-        stencils.append(mesh.elements[element])
-        weights.append(weight / weight.sum())
-        distances.append(distance)
-    count, width = len(points), mesh.dim + 1
-    return Anchors(
-        np.array(stencils, dtype=mesh.elements.dtype).reshape(count, width),
-        np.array(weights, dtype=float).reshape(count, width),
-        np.array(distances, dtype=float),
-    )
+    points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != mesh.dim or not np.isfinite(points).all():
+        raise InputError(f"points on a mesh of dimension {mesh.dim} must be finite, (points, {mesh.dim})")
+    held = np.zeros(len(points), dtype=np.int64)
+    weights = np.zeros((len(points), mesh.dim + 1))
+    distances = np.zeros(len(points))
+    inverses = np.linalg.inv(np.swapaxes(_spans(mesh.nodes[mesh.elements]), 1, 2))
+    for part in np.array_split(np.arange(len(points)), 1 + len(points) * len(mesh.elements) // _AT_ONCE):
+        held[part], weights[part] = _holders(mesh, inverses, points[part])
+    for outside in np.flatnonzero(weights.min(axis=1) < -_HAIR):
+        held[outside], weights[outside], distances[outside] = _nearest(mesh, points[outside])
+    weights = np.clip(weights, 0.0, None)
+    return Anchors(mesh.elements[held], weights / weights.sum(axis=1, keepdims=True), distances)
 
 
-def _nearest(corners: Float[np.ndarray, "elements corners dim"], point: Float[np.ndarray, " dim"]) -> tuple[int, np.ndarray]:
-    """Element and weights of the place of the body nearest to a point outside it (active-set projection)."""
-    reach = np.linalg.norm(corners - point, axis=2)
-    candidates = np.argsort(reach.min(axis=1), kind="stable")[:64]
-    best_weight, best_element, best = np.ones(corners.shape[1]), 0, np.inf
-    for element in candidates:
-        weight = _project(corners[element], point)
-        distance = float(np.linalg.norm(weight @ corners[element] - point))
-        if distance < best:
-            best_weight, best_element, best = weight, int(element), distance
-    return best_element, best_weight
+def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndarray, "simplices sides dim"]:
+    """Edges from the first corner of each simplex to the others."""
+    return corners[:, 1:] - corners[:, :1]
 
 
-def _project(corners: Float[np.ndarray, "corners dim"], point: Float[np.ndarray, " dim"]) -> np.ndarray:
-    """Barycentric weights of the point of a simplex nearest to `point`: drop negative corners and solve again."""
-    keep = np.arange(len(corners))
-    while True:
-        base = corners[keep]
-        spans = (base[1:] - base[0]).T
-        local = np.linalg.lstsq(spans, point - base[0], rcond=None)[0] if len(keep) > 1 else np.zeros(0)
-        weight = np.concatenate([[1.0 - local.sum()], local])
-        if weight.min() >= 0.0:
-            full = np.zeros(len(corners))
-            full[keep] = weight
-            return full
-        keep = np.delete(keep, int(np.argmin(weight)))
+def _holders(
+    mesh: Mesh, inverses: Float[np.ndarray, "elements dim dim"], points: Points
+) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"]]:
+    """The element in which each point lies deepest, and its barycentric weights there (negative outside)."""
+    offsets = points[:, None] - mesh.nodes[mesh.elements[:, 0]]
+    local = np.einsum("eij,pej->pei", inverses, offsets)
+    weights = np.concatenate([1.0 - local.sum(axis=2, keepdims=True), local], axis=2)
+    deepest = np.argmax(weights.min(axis=2), axis=1)
+    return deepest, weights[np.arange(len(points)), deepest]
+
+
+def _nearest(mesh: Mesh, point: Float[np.ndarray, " dim"]) -> tuple[int, Float[np.ndarray, " corners"], float]:
+    """Element, weights and distance [m] of the place on the boundary nearest to a point outside."""
+    corners = mesh.nodes[mesh.boundary]
+    shares = _on_segments(corners, point) if mesh.dim == 2 else _on_triangles(corners, point)
+    distances = np.linalg.norm(np.einsum("fc,fcd->fd", shares, corners) - point, axis=1)
+    facet = int(np.argmin(distances))
+    element = int(mesh.boundary_elements[facet])
+    weights = np.zeros(mesh.dim + 1)
+    for node, share in zip(mesh.boundary[facet], shares[facet], strict=True):
+        weights[mesh.elements[element] == node] = share
+    return element, weights, float(distances[facet])
+
+
+def _on_segments(
+    corners: Float[np.ndarray, "facets 2 dim"], point: Float[np.ndarray, " dim"]
+) -> Float[np.ndarray, "facets 2"]:
+    """Weights of the place of each segment nearest to a point."""
+    along = corners[:, 1] - corners[:, 0]
+    fraction = np.einsum("fd,fd->f", point - corners[:, 0], along) / np.einsum("fd,fd->f", along, along)
+    fraction = np.clip(fraction, 0.0, 1.0)
+    return np.column_stack([1.0 - fraction, fraction])
+
+
+def _on_triangles(
+    corners: Float[np.ndarray, "facets 3 3"], point: Float[np.ndarray, " 3"]
+) -> Float[np.ndarray, "facets 3"]:
+    """Weights of the place of each triangle nearest to a point: its foot if inside, else on the nearest side."""
+    spans = _spans(corners)
+    gram = np.einsum("fid,fjd->fij", spans, spans)
+    local = np.linalg.solve(gram, np.einsum("fid,fd->fi", spans, point - corners[:, 0])[..., None])[..., 0]
+    best = np.column_stack([1.0 - local.sum(axis=1), local])
+    least = np.where((best >= 0.0).all(axis=1), -1.0, np.inf)
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        weights = np.zeros_like(best)
+        weights[:, [first, second]] = _on_segments(corners[:, [first, second]], point)
+        away = np.linalg.norm(np.einsum("fc,fcd->fd", weights, corners) - point, axis=1)
+        best[away < least] = weights[away < least]
+        least = np.minimum(least, away)
+    return best

@@ -16,26 +16,34 @@ class Mesh:
     """Linear simplices: triangles (dim 2) or tetrahedra (dim 3), positively oriented.
 
     Attributes:
-        nodes: rest positions [m], (nodes, dim).
-        elements: node indices, (elements, dim + 1).
+        nodes: rest positions [m], (nodes, dim); kept as a read-only copy.
+        elements: node indices, (elements, dim + 1); kept as a read-only copy.
 
     Raises:
-        InputError: indices out of range, or an element of zero or negative volume.
+        InputError: wrong shapes, nodes that are not finite, indices out of range, or an element of zero or negative volume.
     """
 
     nodes: Nodes
     elements: Elements
 
     def __post_init__(self) -> None:
-        if self.elements.shape[1] != self.dim + 1:
-            raise InputError(f"a mesh of dimension {self.dim} needs {self.dim + 1} nodes an element, not {self.elements.shape[1]}")
-        if self.elements.size and (self.elements.min() < 0 or self.elements.max() >= len(self.nodes)):
+        nodes = np.array(self.nodes, dtype=float)
+        elements = np.array(self.elements, dtype=np.int64)
+        object.__setattr__(self, "nodes", nodes)
+        object.__setattr__(self, "elements", elements)
+        if nodes.ndim != 2 or nodes.shape[1] not in (2, 3) or not np.isfinite(nodes).all():
+            raise InputError("a mesh needs finite nodes in the plane or in space, (nodes, 2) or (nodes, 3)")
+        if elements.ndim != 2 or elements.shape[1] != self.dim + 1:
+            raise InputError(
+                f"a mesh of dimension {self.dim} needs {self.dim + 1} nodes an element, not {elements.shape[-1]}"
+            )
+        if elements.size and (elements.min() < 0 or elements.max() >= len(nodes)):
             raise InputError("the mesh names a node that it does not have")
         bad = np.flatnonzero(~(self.volumes > 0))
         if bad.size:
             raise InputError(f"{bad.size} mesh elements have no positive volume, the first is number {bad[0]}")
-        self.nodes.setflags(write=False)
-        self.elements.setflags(write=False)
+        nodes.setflags(write=False)
+        elements.setflags(write=False)
 
     @property
     def dim(self) -> int:
@@ -58,11 +66,23 @@ class Mesh:
     @cached_property
     def boundary(self) -> Int[np.ndarray, "facets dim"]:
         """Facets that belong to one element only, oriented with the body inside (left in the plane)."""
-        facets = np.concatenate([np.delete(self.elements, corner, axis=1) for corner in range(self.dim + 1)])
-        signs = np.repeat([(-1) ** corner for corner in range(self.dim + 1)], len(self.elements))
-        facets[signs < 0, :2] = facets[signs < 0, 1::-1]
+        return self._outer_facets[0]
+
+    @cached_property
+    def boundary_elements(self) -> Int[np.ndarray, " facets"]:
+        """The element that each facet of `boundary` belongs to."""
+        return self._outer_facets[1]
+
+    @cached_property
+    def _outer_facets(self) -> tuple[np.ndarray, np.ndarray]:
+        """Boundary facets and their elements: leaving out an odd corner turns the rest over."""
+        corners = range(self.dim + 1)
+        facets = np.concatenate([np.delete(self.elements, corner, axis=1) for corner in corners])
+        odd = np.repeat([corner % 2 == 1 for corner in corners], len(self.elements))
+        facets[odd, :2] = facets[odd, 1::-1]
         _, index, count = np.unique(np.sort(facets, axis=1), axis=0, return_index=True, return_counts=True)
-        return facets[np.sort(index[count == 1])]
+        outer = np.sort(index[count == 1])
+        return facets[outer], outer % max(len(self.elements), 1)
 
     @cached_property
     def boundary_nodes(self) -> Int[np.ndarray, " nodes"]:

@@ -10,6 +10,9 @@ from hydrostat.geometry.delaunay import doubled_areas
 from hydrostat.geometry.draft import Division, Draft
 from hydrostat.geometry.spacing import Spacing
 
+STRAY = 0.18
+"""No smoothing takes a side of the mesh farther from the outline than this, in element sizes."""
+
 _EQUILATERAL = 2.0 * np.sqrt(3.0)
 
 
@@ -39,11 +42,19 @@ def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Dra
     Boundary nodes that are no corners slide along their ring.
     """
     for _ in range(rounds):
-        moved = _minimise(draft, power, iterations)
-        if moved is None or moved.lost.size or _score(moved, power) >= _score(draft, power) - 1e-9:
+        candidates = (_minimise(draft, power, iterations, slide) for slide in (True, False))
+        moved = next((moved for moved in candidates if _sound(moved)), draft)
+        if not _score(moved, power) < _score(draft, power) - 1e-3:
             return draft
         draft = moved
     return draft
+
+
+def _sound(draft: Draft) -> bool:
+    """Whether nodes on the rings are in order and all sides are there, near to the outline."""
+    parts = draft.divisions
+    ordered = all((np.diff(part.stations) > 0.0).all() and part.ends[-1] > part.stations[-1] for part in parts)
+    return ordered and not draft.lost.size and max(part.sagitta().max() for part in parts) < STRAY
 
 
 def _score(draft: Draft, power: float) -> float:
@@ -70,9 +81,9 @@ def _energy(points: Points, triangles: Elements, power: float) -> tuple[float, P
     return float((ratio**power).sum()), gradient
 
 
-def _minimise(draft: Draft, power: float, iterations: int) -> Draft | None:
-    """The draft moved at fixed triangles; None if nodes on a ring got out of order."""
-    slides = ~np.concatenate([part.fixed for part in draft.divisions])
+def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft:
+    """The draft moved at fixed triangles, its boundary nodes only if they may slide."""
+    slides = ~np.concatenate([part.fixed for part in draft.divisions]) & slide
     triangles = draft.triangles
     start = np.concatenate([np.zeros(int(slides.sum())), draft.interior.ravel()])
 
@@ -86,9 +97,7 @@ def _minimise(draft: Draft, power: float, iterations: int) -> Draft | None:
         return value, np.concatenate([along, gradient[len(tangents) :].ravel()])
 
     best = minimize(objective, start, jac=True, method="L-BFGS-B", options={"maxiter": iterations}).x
-    moved = _moved(draft, best, slides)
-    ordered = all((np.diff(part.stations) > 0.0).all() and part.ends[-1] > part.stations[-1] for part in moved.divisions)
-    return moved if ordered else None
+    return _moved(draft, best, slides)
 
 
 def _ring_points(draft: Draft) -> Points:

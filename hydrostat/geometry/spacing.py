@@ -15,6 +15,8 @@ GROWTH = 0.3
 
 _STEP = 1 / 12
 _BEND_REACH = 1 / 6
+_BEND = 0.7  # a chord of length s leaves a circle of radius r by s^2 / 8r: less than 0.09
+_LEAST_BEND = 0.35
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +73,7 @@ def sample(curves: tuple[Curve, ...], corners: tuple[Vector, ...]) -> Samples:
         if sharp.size:
             gaps = np.abs(stations[:, None] - sharp)
             bend[np.minimum(gaps, curve.length - gaps).min(axis=1) <= 1.2 * reach] = 0.0
-        bends = np.minimum(1.0, 1.0 / np.maximum(bend, 1e-9))
+        bends = np.clip(np.sqrt(_BEND / np.maximum(bend, 1e-9)), _LEAST_BEND, 1.0)
         inward = np.column_stack([-tangents[:, 1], tangents[:, 0]])
         parts.append((curve.at(stations), inward, np.full(count, float(ring)), stations, bends))
     return Samples(*(np.concatenate(column) for column in zip(*parts, strict=True)))
