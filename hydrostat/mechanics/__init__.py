@@ -6,7 +6,7 @@ from hydrostat.mechanics.energy import Energy
 from hydrostat.mechanics.factorisation import Factorisation
 from hydrostat.mechanics.fibre import FibreEnergy
 from hydrostat.mechanics.neo_hookean import NeoHookean
-from hydrostat.mechanics.newton import NewtonOptions, NewtonResult, Reason, minimise
+from hydrostat.mechanics.newton import NewtonOptions, NewtonResult, Reason, RoundOff, minimise
 from hydrostat.mechanics.pin import PinEnergy
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "NewtonResult",
     "PinEnergy",
     "Reason",
+    "RoundOff",
     "TensionLaw",
     "minimise",
     "nearest_semidefinite",

@@ -81,7 +81,7 @@ class CableEnergy(Energy):
         """
         self.stencils = stencil[None, :]
         self.controls = np.array([control])
-        self._control = control
+        self.control = control
         self.law, self.slack = law, slack
         index = np.flatnonzero(bare)
         self._differences = weights[index + 1] - weights[index]
@@ -95,7 +95,7 @@ class CableEnergy(Energy):
 
     def stretch(self, nodes: Nodes, controls: Vector) -> float:
         """S [m]: how much longer the cable is than it should be; negative when slack."""
-        return self.length(nodes) - self.rest_length + float(controls[self._control]) - self.slack
+        return self.length(nodes) - self.rest_length + float(controls[self.control]) - self.slack
 
     def tension(self, nodes: Nodes, controls: Vector) -> float:
         """T [N]."""

@@ -28,6 +28,7 @@ class NeoHookean(Energy):
         spans = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
         inverse = np.linalg.inv(spans)
         self.stencils = elements
+        self._rest = corners
         self.mu, self.lame = mu, lame
         self.volumes = np.linalg.det(spans) / (2.0 if dim == 2 else 6.0) * thickness
         self.shape_gradients = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
@@ -38,13 +39,15 @@ class NeoHookean(Energy):
         return np.swapaxes(nodes[self.stencils], 1, 2) @ self.shape_gradients
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        F = self.deformation_gradients(nodes)
-        J = _determinants(F)
-        if not J.min() > 0:
+        """Computed from the displacement gradient G = F - I, so that little is lost to rounding near rest."""
+        G = np.swapaxes(nodes[self.stencils] - self._rest, 1, 2) @ self.shape_gradients
+        trace = np.trace(G, axis1=1, axis2=2)
+        change = _determinants(np.eye(G.shape[1]) + G) - 1.0 if G.shape[1] == 3 else trace + _determinants(G)
+        if not change.min() > -1.0:
             return np.inf
-        log_j = np.log(J)
-        stretch = np.einsum("eij,eij->e", F, F) - F.shape[1]
-        return float(self.volumes @ (self.mu * (0.5 * stretch - log_j) + 0.5 * self.lame * log_j**2))
+        log_j = np.log1p(change)
+        stretch = trace + 0.5 * np.einsum("eij,eij->e", G, G)
+        return float(self.volumes @ (self.mu * (stretch - log_j) + 0.5 * self.lame * log_j**2))
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         F = self.deformation_gradients(nodes)

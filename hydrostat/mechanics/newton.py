@@ -36,6 +36,19 @@ class NewtonOptions:
     halvings: int = 50
 
 
+@dataclass(frozen=True, kw_only=True)
+class RoundOff:
+    """What is lost in the rounding errors of a body whose modulus x volume is some energy.
+
+    Attributes:
+        force: [N].
+        energy: [J].
+    """
+
+    force: float
+    energy: float
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NewtonResult:
     """Where Newton stopped.
@@ -70,7 +83,7 @@ def minimise(
     controls: Vector,
     *,
     force_scale: Callable[[Nodes], float],
-    round_off: float,
+    round_off: RoundOff,
     options: NewtonOptions,
 ) -> NewtonResult:
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
@@ -83,7 +96,7 @@ def minimise(
         start: positions to begin at [m].
         controls: contractions [m] or tensions [N].
         force_scale: largest applied force [N] at given nodes; `options.tolerance` is relative to it.
-        round_off: a force [N] below which nothing can be told.
+        round_off: forces and energies too small to be told apart.
         options: tolerance and limits.
     """
     nodes = start
@@ -100,7 +113,7 @@ def minimise(
         )
     gradient = assembly.gradient(nodes, controls)
     for iteration in count():
-        allowed = max(options.tolerance * force_scale(nodes), round_off)
+        allowed = max(options.tolerance * force_scale(nodes), round_off.force)
         residual = float(np.abs(gradient).max())
         factor = Factorisation(assembly.hessian(nodes, controls))
         if residual <= allowed:
@@ -109,7 +122,7 @@ def minimise(
             reason = Reason.ITERATION_LIMIT
         else:
             step = _descent(assembly, nodes, controls, gradient, factor)
-            found = _line_search(assembly, nodes, controls, energy, gradient, step, options)
+            found = _line_search(assembly, nodes, controls, energy, gradient, step, round_off.energy, options)
             if found is not None:
                 nodes, energy, gradient = found
                 continue
@@ -149,23 +162,24 @@ def _line_search(
     energy: float,
     gradient: Vector,
     step: Vector,
+    noise: float,
     options: NewtonOptions,
 ) -> tuple[Nodes, float, Vector] | None:
     """Next nodes, energy and gradient; None if no length of the step lowers the energy.
 
-    Near the end the energy falls by less than its own rounding error; then a smaller gradient is taken as progress.
+    Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
     """
     slope = float(gradient @ step)
-    rounding = 1e-13 * (abs(energy) + float(np.abs(gradient * step).sum()))
     length = 1.0
     for _ in range(options.halvings):
         trial = nodes + length * step.reshape(nodes.shape)
         value = assembly.value(trial, controls)
-        if value <= energy + 1e-4 * length * slope:
-            return trial, value, assembly.gradient(trial, controls)
-        if value <= energy + rounding:
+        if -length * slope > noise:
+            if value <= energy + 1e-4 * length * slope:
+                return trial, value, assembly.gradient(trial, controls)
+        elif value <= energy + 10 * noise:
             after = assembly.gradient(trial, controls)
-            if np.linalg.norm(after) < 0.99 * np.linalg.norm(gradient):
+            if abs(after @ step) <= 0.9 * abs(slope):
                 return trial, value, after
         length *= 0.5
     return None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import CableEnergy, Energy, NeoHookean, PinEnergy, TensionLaw
+from hydrostat.mechanics import CableEnergy, Energy, NeoHookean, PinEnergy, RoundOff, TensionLaw
 from hydrostat.robot import Cable, Mount, Robot
 
 
@@ -18,12 +18,11 @@ def cable_energies(robot: Robot) -> list[CableEnergy]:
     return [_cable(robot, cable, order[cable.winch]) for cable in robot.cables]
 
 
-def round_off(robot: Robot) -> float:
-    """A force [N] lost in the rounding errors of the body's own forces."""
+def round_off(robot: Robot) -> RoundOff:
+    """What the rounding errors of the body's own forces hide."""
     body = robot.body
-    mesh = body.mesh
-    area = float(mesh.volumes.sum()) * (body.thickness or 1.0) / mesh.size
-    return 1e-13 * body.material.young * area
+    scale = body.material.young * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+    return RoundOff(force=1e-13 * scale / body.mesh.size, energy=1e-15 * scale)
 
 
 def _body(robot: Robot) -> NeoHookean:
