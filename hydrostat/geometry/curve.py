@@ -4,8 +4,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from jaxtyping import Float
 
 from hydrostat.arrays import Points, Vector
+
+Stations = Float[np.ndarray, " _"]
+"""Arc lengths, or values at them."""
 
 
 @dataclass(frozen=True, eq=False)

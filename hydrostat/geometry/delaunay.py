@@ -7,7 +7,7 @@ from shapely import Polygon, contains_xy
 
 from hydrostat.arrays import Elements, Points
 
-Edges = Int[np.ndarray, "edges 2"]
+Edges = Int[np.ndarray, "_ 2"]
 """Pairs of point indices."""
 
 

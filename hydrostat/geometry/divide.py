@@ -5,7 +5,7 @@ from shapely import STRtree, linestrings
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.curve import Curve
+from hydrostat.geometry.curve import Curve, Stations
 from hydrostat.geometry.draft import Division, Draft
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.spacing import Spacing, sample, widths
@@ -56,7 +56,7 @@ def _refuse_thin(places: Points, neck: Vector, element_size: float) -> None:
         )
 
 
-def _corners(curve: Curve) -> Vector:
+def _corners(curve: Curve) -> Stations:
     """Stations of the true corners: where a ring turns much on a short way, and little just before and after."""
     reach = min(_CORNER_REACH, curve.length / 24)
     stations = curve.stations[:-1]
@@ -71,7 +71,7 @@ def _corners(curve: Curve) -> Vector:
     return np.sort(np.array(found))
 
 
-def _divide_ring(curve: Curve, sharp: Vector, stations: Vector, wanted: Vector) -> Division:
+def _divide_ring(curve: Curve, sharp: Stations, stations: Vector, wanted: Vector) -> Division:
     """Space nodes evenly between corners, measured in wanted spacings."""
     turns = np.concatenate([stations + turn * curve.length for turn in (0, 1, 2)])
     density = 1.0 / np.tile(wanted, 3)
@@ -106,7 +106,7 @@ def _simple(divisions: tuple[Division, ...]) -> Draft:
     for _ in range(20):
         if draft.polygon.is_valid:
             return draft
-        lines = linestrings(draft.points[draft.edges])
+        lines = np.asarray(linestrings(draft.points[draft.edges]))
         first, second = STRtree(lines).query(lines, predicate="intersects")
         neighbours = (draft.edges[first][:, :, None] == draft.edges[second][:, None, :]).any(axis=(1, 2))
         for edge in np.unique(first[~neighbours])[::-1]:

@@ -20,7 +20,8 @@ class Mesh:
         elements: node indices, (elements, dim + 1); kept as a read-only copy.
 
     Raises:
-        InputError: wrong shapes, nodes that are not finite, indices out of range, or an element of zero or negative volume.
+        InputError: wrong shapes, nodes that are not finite, indices out of range, or an element without positive
+            volume.
     """
 
     nodes: Nodes

@@ -5,11 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from jaxtyping import Float
 from shapely import Polygon, is_ccw
 from shapely.validation import explain_validity
 
-from hydrostat.arrays import Points
 from hydrostat.errors import OutlineError
+
+Ring = Float[np.ndarray, "_ 2"]
+"""Corners of a closed polygon [m], first point not repeated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +27,8 @@ class Outline:
         OutlineError: a ring with fewer than three corners or not finite, no area, or rings that cross or touch.
     """
 
-    exterior: Points
-    holes: tuple[Points, ...] = ()
+    exterior: Ring
+    holes: tuple[Ring, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "exterior", _ring(self.exterior, counter_clockwise=True))
@@ -41,7 +44,7 @@ class Outline:
         return Polygon(self.exterior, self.holes)
 
     @property
-    def rings(self) -> tuple[Points, ...]:
+    def rings(self) -> tuple[Ring, ...]:
         """The outer ring, then the holes [m]; the body lies to the left of each."""
         return (self.exterior, *self.holes)
 
@@ -62,19 +65,20 @@ def fault(polygon: Polygon) -> tuple[str, tuple[float, float]] | None:
         return None
     explanation = explain_validity(polygon)
     place = re.search(r"\[(\S+) (\S+)\]", explanation)
-    point = (float(place[1]), float(place[2])) if place else polygon.exterior.coords[0][:2]
-    if not polygon.area > 0.0:
-        return "has no area", point
+    x, y = (place[1], place[2]) if place else polygon.exterior.coords[0][:2]
+    point = float(x), float(y)
     crosses_itself = not all(ring.is_simple for ring in (polygon.exterior, *polygon.interiors))
+    if not (polygon.convex_hull if crosses_itself else polygon).area > 0.0:
+        return "has no area", point
     return ("crosses itself" if crosses_itself else "is crossed or touched by a hole"), point
 
 
-def _ring(points: Points, *, counter_clockwise: bool) -> Points:
+def _ring(points: Ring, *, counter_clockwise: bool) -> Ring:
     """A read-only copy of a ring, turned the asked way round, no point repeated in a row."""
     ring = np.array(points, dtype=float)
     if ring.ndim != 2 or ring.shape[1] != 2 or not np.isfinite(ring).all():
         raise OutlineError("an outline needs finite points in the plane, (points, 2)")
-    ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
+    ring = ring[np.any(ring != np.roll(ring, -1, axis=0), axis=1)]
     if len(ring) < 3:
         raise OutlineError(f"an outline needs three different corners at least, this one has {len(ring)}")
     if is_ccw(Polygon(ring).exterior) != counter_clockwise:

@@ -38,8 +38,8 @@ def spread(draft: Draft, spacing: Spacing, steps: int) -> Draft:
 def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Draft:
     """Minimise the sum over triangles of (mean ratio) ** power, triangulating anew between rounds.
 
-    The mean ratio is (a^2 + b^2 + c^2) / (4 sqrt(3) area): one for an equilateral triangle, without bound for a flat one.
-    Boundary nodes that are no corners slide along their ring.
+    The mean ratio is (a^2 + b^2 + c^2) / (4 sqrt(3) area): one for an equilateral triangle, without bound for a
+    flat one. Boundary nodes that are no corners slide along their ring.
     """
     for _ in range(rounds):
         candidates = (_minimise(draft, power, iterations, slide) for slide in (True, False))
@@ -53,8 +53,9 @@ def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Dra
 def _sound(draft: Draft) -> bool:
     """Whether nodes on the rings are in order and all sides are there, near to the outline."""
     parts = draft.divisions
-    ordered = all((np.diff(part.stations) > 0.0).all() and part.ends[-1] > part.stations[-1] for part in parts)
-    return ordered and not draft.lost.size and max(part.sagitta().max() for part in parts) < STRAY
+    ordered = all(bool((part.ends > part.stations).all()) for part in parts)
+    near = max(float(part.sagitta().max()) for part in parts) < STRAY
+    return ordered and near and not draft.lost.size
 
 
 def _score(draft: Draft, power: float) -> float:

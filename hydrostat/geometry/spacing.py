@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 from shapely import Polygon, contains_xy
 
-from hydrostat.arrays import Points, Vector
-from hydrostat.geometry.curve import Curve
+from hydrostat.arrays import Vector
+from hydrostat.geometry.curve import Curve, Stations
 
 GROWTH = 0.3
 """How much the spacing may grow for each unit of distance."""
@@ -28,10 +28,10 @@ class Spacing:
         values: the spacing there.
     """
 
-    places: Points
-    values: Vector
+    places: Float[np.ndarray, "places 2"]
+    values: Float[np.ndarray, " places"]
 
-    def __call__(self, points: Points) -> Vector:
+    def __call__(self, points: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, " points"]:
         """Wanted distance of neighbours at some points."""
         fine = np.flatnonzero(self.values < 0.999)
         wanted = np.ones(len(points))
@@ -54,14 +54,14 @@ class Samples:
         bends: spacing that the bend of the ring allows.
     """
 
-    places: Points
-    inward: Points
+    places: Float[np.ndarray, "samples 2"]
+    inward: Float[np.ndarray, "samples 2"]
     rings: Float[np.ndarray, " samples"]
-    stations: Vector
-    bends: Vector
+    stations: Float[np.ndarray, " samples"]
+    bends: Float[np.ndarray, " samples"]
 
 
-def sample(curves: tuple[Curve, ...], corners: tuple[Vector, ...]) -> Samples:
+def sample(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Samples:
     """Sample rings; `corners` are the stations of the true corners, whose bend does not count."""
     parts = []
     for ring, (curve, sharp) in enumerate(zip(curves, corners, strict=True)):
@@ -79,16 +79,14 @@ def sample(curves: tuple[Curve, ...], corners: tuple[Vector, ...]) -> Samples:
     return Samples(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def widths(
-    samples: Samples, curves: tuple[Curve, ...], polygon: Polygon
-) -> tuple[Vector, Vector]:
+def widths(samples: Samples, curves: tuple[Curve, ...], polygon: Polygon) -> tuple[Vector, Vector]:
     """How wide the body is at each sample, at most 1, and the same without pointed tips.
 
     Two samples span a width if they face each other through the body and the way between them along the outline is
     long compared with it, which it is not across a tip or a corner.
     """
     width, neck = np.ones(len(samples.places)), np.ones(len(samples.places))
-    pairs = cKDTree(samples.places).query_pairs(1.0, output_type="ndarray")
+    pairs = KDTree(samples.places).query_pairs(1.0, output_type="ndarray")
     first, second = pairs[:, 0], pairs[:, 1]
     across = samples.places[second] - samples.places[first]
     distance = np.linalg.norm(across, axis=1)

@@ -3,20 +3,19 @@
 import io
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from jaxtyping import Float
 from shapely import Polygon
 
-from hydrostat.arrays import Points
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.outline import Outline, fault
-from hydrostat.geometry.svg_document import SvgDocument, open_svg
+from hydrostat.geometry.outline import Outline, Ring, fault
+from hydrostat.geometry.svg_document import MOST_POINTS, SvgDocument, open_svg
 
 if TYPE_CHECKING:
     from svgelements import Path
 
-_MOST_POINTS = 200_000
 _CHORD_ERROR = 2e-5
 _GAP = 1e-3
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError)
@@ -49,14 +48,14 @@ def read_svg(content: bytes, *, name: str, size: float | None = None) -> Outline
     return _placed(body, holes, document.unit, size)
 
 
-def _closed_rings(document: SvgDocument, name: str) -> list[Points]:
+def _closed_rings(document: SvgDocument, name: str) -> list[Ring]:
     """The closed rings of a drawing in its own units, largest box first."""
     rings, open_lines = [], []
     count = 0
     for line, closed in _lines(document, name):
         count += len(line)
-        if count > _MOST_POINTS:
-            raise OutlineError(f"{name}: more than {_MOST_POINTS} points: simplify the drawing")
+        if count > MOST_POINTS:
+            raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing")
         if not np.isfinite(line).all():
             raise OutlineError(f"{name}: a coordinate is not a finite number: save the drawing again")
         extent = float(np.ptp(line, axis=0).max())
@@ -73,13 +72,13 @@ def _closed_rings(document: SvgDocument, name: str) -> list[Points]:
     return [line for extent, line in rings if extent > 0.0]
 
 
-def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Points, bool]]:
+def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
     """Every visible subpath of a drawing as points in its own units, and whether it closes itself."""
     from svgelements import SVG, Path, Shape
 
     try:
         for element in SVG.parse(io.BytesIO(document.content), reify=True, ppi=96).elements():
-            if isinstance(element, Shape) and element.values.get("visibility") not in ("hidden", "collapse"):
+            if isinstance(element, Shape) and (element.values or {}).get("visibility") not in ("hidden", "collapse"):
                 for subpath in Path(element).as_subpaths():
                     path = Path(subpath)
                     points = _flatten(path)
@@ -90,11 +89,13 @@ def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Points, bool]]:
         raise OutlineError(f"{name}: cannot be read as SVG ({reason}): save it again as plain SVG") from error
 
 
-def _flatten(path: "Path") -> Points:
+def _flatten(path: "Path") -> Ring:
     """Points along a path, close enough that its chords stray less than a fixed part of its box."""
     box = path.bbox()
     if box is None:
         return np.zeros((0, 2))
+    if not np.isfinite(box).all():
+        return np.full((2, 2), np.nan)
     tolerance = _CHORD_ERROR * max(box[2] - box[0], box[3] - box[1]) or 1.0
     pieces = [np.zeros((0, 2))]
     for segment in path:
@@ -110,8 +111,8 @@ def _flatten(path: "Path") -> Points:
     return points[np.r_[True, np.any(np.diff(points, axis=0) != 0.0, axis=1)]] if len(points) else points
 
 
-def _chords(segment: object, tolerance: float) -> int:
-    """How many chords keep within `tolerance` of an arc or Bezier segment: n^2 = max|second derivative| / (8 tolerance)."""
+def _chords(segment: Any, tolerance: float) -> int:
+    """How many chords keep within `tolerance` of a bend: n^2 = max|second derivative| / (8 tolerance)."""
     if type(segment).__name__ == "Arc":
         bend = max(segment.rx, segment.ry) * segment.sweep**2
     elif type(segment).__name__ == "QuadraticBezier":
@@ -119,10 +120,10 @@ def _chords(segment: object, tolerance: float) -> int:
     else:
         knots = [complex(point) for point in (segment.start, segment.control1, segment.control2, segment.end)]
         bend = 6.0 * max(abs(a - 2 * b + c) for a, b, c in zip(knots, knots[1:], knots[2:], strict=False))
-    return int(min(max(np.ceil(np.sqrt(bend / (8.0 * tolerance))), 1), _MOST_POINTS))
+    return int(min(max(np.ceil(np.sqrt(bend / (8.0 * tolerance))), 1), MOST_POINTS))
 
 
-def _body_and_holes(rings: list[Points], name: str) -> tuple[Points, list[Points]]:
+def _body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
     """The largest ring, and the rings inside it."""
     shapes = []
     for ring in rings:
@@ -158,9 +159,7 @@ def _body_and_holes(rings: list[Points], name: str) -> tuple[Points, list[Points
     return np.array(body.exterior.coords), [np.array(hole.exterior.coords) for hole in holes]
 
 
-def _placed(
-    body: Points, holes: list[Points], unit: tuple[float, float] | None, size: float | None
-) -> Outline:
+def _placed(body: Ring, holes: list[Ring], unit: tuple[float, float] | None, size: float | None) -> Outline:
     """The outline in metres, y up, its box centred at the origin."""
     low, high = body.min(axis=0), body.max(axis=0)
     scale = np.array(unit or (1.0, 1.0))
@@ -171,6 +170,6 @@ def _placed(
     return Outline((body - middle) * scale, tuple((hole - middle) * scale for hole in holes))
 
 
-def _place(point: Points | tuple[float, float]) -> str:
+def _place(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:
     """A point of the drawing in words."""
     return f"({point[0]:.4g}, {point[1]:.4g})"

@@ -1,7 +1,6 @@
 """`SvgDocument`: the XML of a drawing, checked before anything trusts it, and the length of its unit."""
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from xml.etree import ElementTree
 from xml.parsers import expat
@@ -11,8 +10,11 @@ from hydrostat.errors import OutlineError
 MOST_BYTES = 20_000_000
 """A drawing larger than this is refused."""
 
+MOST_POINTS = 200_000
+"""A drawing with more points, counting what it repeats, is refused."""
+
 _MOST_DEPTH = 200
-_MOST_SHAPES = 100_000
+_NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
 _METRES = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6, "q": 0.25e-3}
 _PIXEL = 0.0254 / 96
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z]*)\s*")
@@ -53,8 +55,7 @@ def open_svg(content: bytes, *, name: str) -> SvgDocument:
     if _tag(root) != "svg":
         raise OutlineError(f"{name}: not an SVG drawing, its first element is <{_tag(root)}>: save it as SVG")
     _strip(root)
-    if sum(_expanded(root, _targets(root), (), name)) > _MOST_SHAPES:
-        raise OutlineError(f"{name}: more than {_MOST_SHAPES} shapes: save the outline alone")
+    _count(root, name)
     unit = _normalise(root)
     return SvgDocument(ElementTree.tostring(root), unit)
 
@@ -76,7 +77,7 @@ def _guard(content: bytes, name: str) -> None:
     def entity(*_arguments: object) -> None:
         raise OutlineError(f"{name}: declares XML entities, which are not read: save it as plain SVG")
 
-    parser = expat.ParserCreate()
+    parser = expat.ParserCreate(namespace_separator="}")
     parser.StartElementHandler, parser.EndElementHandler = start, end
     parser.EntityDeclHandler = entity
     try:
@@ -99,26 +100,20 @@ def _strip(element: ElementTree.Element) -> None:
             _strip(child)
 
 
-def _targets(root: ElementTree.Element) -> dict[str, ElementTree.Element]:
-    """Elements by their id."""
-    return {element.attrib["id"]: element for element in root.iter() if "id" in element.attrib}
-
-
-def _expanded(
-    element: ElementTree.Element, targets: dict[str, ElementTree.Element], above: tuple[str, ...], name: str
-) -> Iterator[int]:
-    """A one for each element, `use` followed; stops with an error at a circle or when it goes on too long."""
-    count = 0
-    stack = [(element, above)]
+def _count(root: ElementTree.Element, name: str) -> None:
+    """Refuse drawings with too many points, or that repeat themselves without end by way of `use`."""
+    targets = {element.attrib["id"]: element for element in root.iter() if "id" in element.attrib}
+    points = 0
+    stack: list[tuple[ElementTree.Element, tuple[str, ...]]] = [(root, ())]
     while stack:
-        current, users = stack.pop()
-        count += 1
-        yield 1
-        if count > _MOST_SHAPES:
-            return
-        stack.extend((child, users) for child in current)
-        if _tag(current) == "use":
-            link = next((text for key, text in current.attrib.items() if key.rpartition("}")[2] == "href"), "")
+        element, users = stack.pop()
+        drawn = element.get("d", "") + element.get("points", "")
+        points += 1 + sum(1 for _ in _NUMBER.finditer(drawn)) // 2
+        if points > MOST_POINTS:
+            raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing, save the outline alone")
+        stack.extend((child, users) for child in element)
+        if _tag(element) == "use":
+            link = next((text for key, text in element.attrib.items() if key.rpartition("}")[2] == "href"), "")
             target = link.strip().removeprefix("#")
             if target in users:
                 raise OutlineError(f"{name}: the <use> of #{target} holds itself: ungroup the clones")
@@ -135,11 +130,8 @@ def _length(text: str | None) -> tuple[float, str] | None:
 def _normalise(root: ElementTree.Element) -> tuple[float, float] | None:
     """Make one user unit one pixel; return the length of a user unit along x and y [m], if it has one."""
     sides = [_length(root.get(key)) for key in ("width", "height")]
-    numbers = [float(text) for text in re.findall(r"[-+.\deE]+", root.get("viewBox", "")) if _length(text.lstrip("-"))
-               or set(text) <= set("+-0.")]  # fmt: skip
-    box = numbers[2:] if len(numbers) == 4 and min(numbers[2:]) > 0.0 else None
+    box = _box(root.attrib.pop("viewBox", ""))
     keep = root.attrib.pop("preserveAspectRatio", "").strip()
-    root.attrib.pop("viewBox", None)
     for key, side, extent in zip(("width", "height"), sides, box or (None, None), strict=True):
         pixels = extent or (side[0] * _METRES.get(side[1], _PIXEL) / _PIXEL if side else 1000.0)
         root.set(key, repr(pixels))
@@ -151,4 +143,14 @@ def _normalise(root: ElementTree.Element) -> tuple[float, float] | None:
         return None
     if keep.startswith("none"):
         return units[0], units[-1]
-    return (max(units),) * 2 if "slice" in keep else (min(units),) * 2
+    unit = max(units) if "slice" in keep else min(units)
+    return unit, unit
+
+
+def _box(text: str) -> tuple[float, float] | None:
+    """Width and height of a viewBox in user units; None if there is none, or it is empty."""
+    try:
+        _, _, width, height = map(float, text.replace(",", " ").split())
+    except ValueError:
+        return None
+    return (width, height) if 0.0 < width < 1e9 and 0.0 < height < 1e9 else None

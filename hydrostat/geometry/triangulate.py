@@ -1,7 +1,8 @@
 """Triangles from an outline."""
 
 import numpy as np
-from shapely import contains_xy, distance, linestrings, multilinestrings, points as shapely_points
+from shapely import contains_xy, distance
+from shapely import points as shapely_points
 
 from hydrostat.arrays import Points
 from hydrostat.errors import InputError, OutlineError
@@ -18,8 +19,8 @@ _FEWEST, _MOST = 8, 200_000
 def triangulate(outline: Outline, element_size: float) -> Mesh:
     """Fill an outline with triangles as near to equilateral as it allows.
 
-    Corners stay; elsewhere the nodes on the outline follow it to within a fifth of an element. Elements are smaller where
-    the body is thin or the outline bends much. The same outline and size give the same mesh.
+    Corners stay; elsewhere the sides of the mesh follow the outline to within a fifth of an element. Elements are
+    smaller where the body is thin or the outline bends much. The same outline and size give the same mesh.
 
     Args:
         outline: the body.
@@ -50,11 +51,12 @@ def _check(outline: Outline, element_size: float) -> None:
     count = outline.area / (0.25 * np.sqrt(3.0) * element_size**2)
     size = f"elements of {1e3 * element_size:.4g} mm"
     if count < _FEWEST:
-        most = 1e3 * element_size * np.sqrt(count / _FEWEST)
-        raise InputError(f"{size} are too large for a body of {1e3 * outline.size:.4g} mm: take {0.9 * most:.2g} mm or less")
+        most = 0.9e3 * element_size * np.sqrt(count / _FEWEST)
+        body = f"a body of {1e3 * outline.size:.4g} mm"
+        raise InputError(f"{size} are too large for {body}: take {most:.2g} mm or less")
     if count > _MOST:
-        least = 1e3 * element_size * np.sqrt(count / _MOST)
-        raise InputError(f"{size} make {count:.0f} elements, at most {_MOST} are made: take {1.1 * least:.2g} mm or more")
+        least = 1.1e3 * element_size * np.sqrt(count / _MOST)
+        raise InputError(f"{size} would be {count:.3g}, at most {_MOST} are made: take {least:.2g} mm or more")
 
 
 def _whole(draft: Draft) -> Draft:
@@ -82,8 +84,7 @@ def _seeds(draft: Draft, spacing: Spacing) -> Points:
     column, row = np.meshgrid(np.arange(-columns, columns + 1), np.arange(-rows, rows + 1))
     lattice = middle + np.column_stack([(column + 0.5 * (row % 2)).ravel(), rise * row.ravel()])
     lattice = lattice[contains_xy(draft.polygon, lattice[:, 0], lattice[:, 1])]
-    sides = multilinestrings([linestrings(draft.points[draft.edges])])
-    away = distance(sides, shapely_points(lattice))
+    away = distance(draft.polygon.boundary, shapely_points(lattice))
     wanted = spacing(lattice)
     return lattice[(wanted > 0.9) & (away > 0.65 * wanted)]
 
@@ -96,8 +97,7 @@ def _gaps(draft: Draft, spacing: Spacing) -> Points:
     order = np.argsort(-excess, kind="stable")
     order = order[excess[order] > 0.8]
     order = order[contains_xy(draft.polygon, centres[order, 0], centres[order, 1])]
-    sides = multilinestrings([linestrings(draft.points[draft.edges])])
-    order = order[distance(sides, shapely_points(centres[order])) > 0.5 * wanted[order]]
+    order = order[distance(draft.polygon.boundary, shapely_points(centres[order])) > 0.5 * wanted[order]]
     taken: list[int] = []
     for index in order:
         if not taken or np.linalg.norm(centres[taken] - centres[index], axis=1).min() > 0.8 * wanted[index]:

@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+from builders import box_mesh, strip_mesh
+
+from hydrostat.errors import InputError
+from hydrostat.geometry import Mesh
+
+TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+
+
+def test_boundary_in_the_plane_has_the_body_on_its_left() -> None:
+    """Oracle: Green's theorem: the integral of x dy around the body is its area."""
+    mesh = strip_mesh(5, 3)
+    start, end = mesh.nodes[mesh.boundary[:, 0]], mesh.nodes[mesh.boundary[:, 1]]
+    area = (0.5 * (start[:, 0] + end[:, 0]) * (end[:, 1] - start[:, 1])).sum()
+    assert area == pytest.approx(0.2 * 0.05)
+    assert mesh.volumes.sum() == pytest.approx(area)
+    assert len(mesh.boundary) == 2 * (5 + 3)
+
+
+def test_boundary_in_space_points_outwards() -> None:
+    """Oracle: the divergence theorem: a third of the flux of x through the surface is the volume."""
+    mesh = box_mesh((3, 2, 2))
+    corners = mesh.nodes[mesh.boundary]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    volume = np.einsum("fd,fd->", corners.mean(axis=1), normals) / 3
+    assert volume == pytest.approx(0.1 * 0.05 * 0.05)
+    outward = corners.mean(axis=1) - mesh.nodes[mesh.elements[mesh.boundary_elements]].mean(axis=1)
+    assert np.einsum("fd,fd->f", outward, normals).min() > 0
+    assert len(mesh.boundary) == 4 * (3 * 2 + 3 * 2 + 2 * 2)
+
+
+@pytest.mark.parametrize("mesh", [strip_mesh(4, 3), box_mesh((2, 2, 2))], ids=["flat", "solid"])
+def test_counts(mesh: Mesh) -> None:
+    """Oracle: every boundary facet lies in the element named for it; edges are unique and sorted."""
+    for facet, element in zip(mesh.boundary, mesh.elements[mesh.boundary_elements], strict=True):
+        assert set(facet) <= set(element)
+    assert np.array_equal(mesh.edges, np.unique(mesh.edges, axis=0))
+    assert (mesh.edges[:, 0] < mesh.edges[:, 1]).all()
+    assert mesh.size == pytest.approx(float(np.ptp(mesh.nodes, axis=0).max()))
+
+
+def test_keeps_a_copy() -> None:
+    """Oracle: the mesh does not change with the caller's array, nor freezes it."""
+    nodes = TRIANGLE.copy()
+    mesh = Mesh(nodes, np.array([[0, 1, 2]]))
+    nodes[0] = 9.0
+    assert mesh.nodes[0, 0] == 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        mesh.nodes[0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("nodes", "elements", "message"),
+    [
+        (TRIANGLE, [[0, 1, 3]], "names a node that it does not have"),
+        (TRIANGLE, [[0, 1, -1]], "names a node that it does not have"),
+        (TRIANGLE, [[0, 2, 1]], "1 mesh elements have no positive volume, the first is number 0"),
+        (TRIANGLE, [[0, 1, 1]], "no positive volume"),
+        (TRIANGLE, [[0, 1]], "needs 3 nodes an element, not 2"),
+        (TRIANGLE * np.nan, [[0, 1, 2]], "finite nodes"),
+        (np.zeros((3, 1)), [[0, 1]], "in the plane or in space"),
+    ],
+)
+def test_refused(nodes: np.ndarray, elements: list[list[int]], message: str) -> None:
+    """Oracle: one line that says what is wrong."""
+    with pytest.raises(InputError, match=message):
+        Mesh(nodes, np.array(elements))
