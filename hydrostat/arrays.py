@@ -12,5 +12,5 @@ Nodes = Float[np.ndarray, "nodes dim"]
 Elements = Int[np.ndarray, "elements corners"]
 """Node indices of every element, corners = dim + 1, positively oriented."""
 
-Vector = Float[np.ndarray, " n"]
-"""A plain vector."""
+Vector = Float[np.ndarray, " _"]
+"""A plain vector; the lengths of two in one signature have nothing to do with each other."""

@@ -122,7 +122,9 @@ def minimise(
             reason = Reason.ITERATION_LIMIT
         else:
             step = _descent(assembly, nodes, controls, gradient, factor)
-            found = _line_search(assembly, nodes, controls, energy, gradient, step, round_off.energy, options)
+            found = None
+            if step is not None:
+                found = _line_search(assembly, nodes, controls, energy, gradient, step, round_off.energy, options)
             if found is not None:
                 nodes, energy, gradient = found
                 continue
@@ -139,20 +141,28 @@ def minimise(
     raise AssertionError("count() never ends")
 
 
-def _descent(assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation) -> Vector:
-    """Newton's direction; with the projected Hessian, slightly shifted if need be, where the full one is indefinite."""
+def _descent(
+    assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation
+) -> Vector | None:
+    """Newton's direction; with the projected Hessian, slightly shifted if need be, where the full one is indefinite.
+
+    None where no shift makes it definite: it is not finite, or 0.
+    """
     if factor.definite:
         return -factor.solve(gradient)
     hessian = assembly.hessian(nodes, controls, project=True)
     diagonal = hessian.diagonal()
-    shift = 0.0
-    while True:
+    for shift in _SHIFTS:
         shifted = hessian.copy()
         shifted.setdiag(diagonal + shift * diagonal.max())
         factor = Factorisation(shifted.tocsc())
         if factor.definite:
             return -factor.solve(gradient)
-        shift = max(10 * shift, 1e-10)
+    return None
+
+
+_SHIFTS = (0.0, *np.logspace(-10, 1, 12))
+"""What is added to the diagonal of the projected Hessian, as fractions of its largest entry, until it is definite."""
 
 
 def _line_search(

@@ -1,0 +1,151 @@
+"""Random contractions on every example: how often, how fast and why not the statics solver arrives.
+
+    python benchmarks/robustness.py [--count 1000] [--seed 0] [EXAMPLE ...]
+
+Each winch draws from 0 to 40 % of the length of its shortest cable. Every pose is judged afresh, not by what the solver
+says: the largest nodal force must be under 1e-8 of the largest cable force, every element's J above 0, no number NaN.
+The exit code is 1 if one pose fails.
+"""
+
+import argparse
+import sys
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from machine import machine
+
+import numpy as np  # isort: skip
+
+import hydrostat as hs
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics import NewtonResult
+from hydrostat.robot import Robot
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+LARGEST_SHARE = 0.4
+TOLERANCE = 1e-8
+
+
+@dataclass
+class Sweep:
+    """What came of the random contractions of one robot.
+
+    Attributes:
+        name: of the robot.
+        nodes: of its mesh.
+        reasons: how often a solve ended for each reason.
+        failures: contractions [m] and what was wrong, for every pose that is not an equilibrium.
+        iterations: Newton steps of each pose, all attempts counted.
+        retries: poses that Newton did not reach at once, but by smaller steps.
+        unstable: equilibria that are no minimum.
+        seconds: CPU time of each pose.
+    """
+
+    name: str
+    nodes: int
+    reasons: Counter[str] = field(default_factory=Counter)
+    failures: list[tuple[list[float], str]] = field(default_factory=list)
+    iterations: list[int] = field(default_factory=list)
+    retries: int = 0
+    unstable: int = 0
+    seconds: list[float] = field(default_factory=list)
+
+
+class CountingSimulation(hs.Simulation):
+    """A simulation that remembers every call of Newton."""
+
+    def __init__(self, robot: Robot) -> None:
+        super().__init__(robot)
+        self.calls: list[NewtonResult] = []
+
+    def _minimise(self, nodes: Nodes, contractions: Vector) -> NewtonResult:
+        self.calls.append(super()._minimise(nodes, contractions))
+        return self.calls[-1]
+
+
+def example_folders() -> list[Path]:
+    """Every example that has a robot.toml."""
+    return sorted(file.parent for file in EXAMPLES.glob("*/robot.toml"))
+
+
+def reaches(robot: Robot) -> Vector:
+    """Largest contraction of each winch [m]."""
+    return np.array(
+        [
+            LARGEST_SHARE * min(cable.length for cable in robot.cables if cable.winch == winch.name)
+            for winch in robot.winches
+        ]
+    )
+
+
+def sweep(folder: Path, count: int, *, seed: int = 0) -> Sweep:
+    """Solve `count` random contractions from rest."""
+    robot = hs.load_robot(folder)
+    simulation = CountingSimulation(robot)
+    result = Sweep(folder.name, len(robot.body.mesh.nodes))
+    largest, random = reaches(robot), np.random.default_rng(seed)
+    for _ in range(count):
+        contractions = random.uniform(0, largest)
+        simulation.calls.clear()
+        began = time.process_time()
+        pose = simulation.solve(contractions, strict=False)
+        result.seconds.append(time.process_time() - began)
+        result.iterations.append(sum(call.iterations for call in simulation.calls))
+        result.retries += len(simulation.calls) > 1
+        result.reasons[str(pose.result.reason)] += 1
+        result.unstable += pose.result.converged and not pose.result.stable
+        wrong = fault(simulation, pose)
+        if wrong:
+            result.failures.append((contractions.tolist(), f"{wrong} ({pose.result.reason})"))
+    return result
+
+
+def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
+    """What is wrong with a pose, in words; empty if nothing is."""
+    if not (np.isfinite(pose.nodes).all() and np.isfinite(pose.tensions).all() and np.isfinite(pose.energy)):
+        return "a number is not finite"
+    mesh = simulation.robot.body.mesh
+    corners = pose.nodes[mesh.elements]
+    ratios = np.linalg.det(corners[:, 1:] - corners[:, :1]) / np.linalg.det(
+        mesh.nodes[mesh.elements][:, 1:] - mesh.nodes[mesh.elements][:, :1]
+    )
+    if not ratios.min() > 0:
+        return f"J = {ratios.min():.2g}"
+    residual = float(np.abs(simulation.assembly.gradient(pose.nodes, pose.contractions)).max())
+    allowed = max(TOLERANCE * float(pose.tensions.max(initial=0.0)), pose.result.allowed)
+    return "" if residual < allowed or residual == 0.0 else f"residual {residual:.2g} N, allowed {allowed:.2g} N"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("examples", nargs="*", help="names of example folders; all if left out")
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args(arguments)
+    folders = [folder for folder in example_folders() if not options.examples or folder.name in options.examples]
+    print(f"{machine()}\n{options.count} random contractions each, seed {options.seed}\n")
+    print(
+        "| example | nodes | converged | retried | no minimum | iterations median / p99 / max | CPU ms median / p99 |"
+    )
+    print("|---|---|---|---|---|---|---|", flush=True)
+    failed = False
+    for folder in folders:
+        found = sweep(folder, options.count, seed=options.seed)
+        failed |= bool(found.failures)
+        steps, seconds = (np.percentile(values, [50, 99, 100]) for values in (found.iterations, found.seconds))
+        print(
+            f"| {found.name} | {found.nodes} | {options.count - len(found.failures)} of {options.count} "
+            f"| {found.retries} | {found.unstable} | {steps[0]:.0f} / {steps[1]:.0f} / {steps[2]:.0f} "
+            f"| {1e3 * seconds[0]:.0f} / {1e3 * seconds[1]:.0f} |",
+            flush=True,
+        )
+        for contractions, wrong in found.failures[:10]:
+            print(f"  {found.name}: {wrong} at {[float(f'{value:.6g}') for value in contractions]}", file=sys.stderr)
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,219 @@
+"""`check_energy`: whether an `Energy` keeps its contract."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics.energy import Energy
+from hydrostat.testing.conformance_error import ConformanceError
+from hydrostat.testing.differences import central_differences, steps
+
+
+def check_energy(
+    energy: Energy, nodes: Nodes, controls: Vector, *, tolerance: float = 1e-6, coordinates: int = 200, seed: int = 0
+) -> None:
+    """Check all that an energy promises, at one state; run it at several, strongly deformed ones too.
+
+    The oracle is central differences: of the value for the gradient, of the gradient for the Hessian and for the
+    control derivative. Each is tried at several steps and judged by the best, for a wrong derivative agrees at none.
+    Further: shapes, symmetry, terms that depend on nothing but their stencil and their control, a value that is never
+    NaN, and the claim of `convex`.
+
+    Args:
+        energy: what to check.
+        nodes: a state where its value is finite [m].
+        controls: all controls of the robot.
+        tolerance: largest relative error of a derivative.
+        coordinates: how many nodal coordinates to vary, drawn at random from a larger body.
+        seed: of the draws.
+
+    Raises:
+        ConformanceError: the first check that failed, how far it is off and where.
+    """
+    check = _EnergyCheck(energy, nodes, controls, tolerance, np.random.default_rng(seed), coordinates)
+    check.shapes()
+    check.values()
+    check.gradient()
+    check.hessian()
+    check.control_gradient()
+    check.convexity()
+
+
+class _EnergyCheck:
+    """One energy at one state, and a method for each promise."""
+
+    def __init__(
+        self,
+        energy: Energy,
+        nodes: Nodes,
+        controls: Vector,
+        tolerance: float,
+        random: np.random.Generator,
+        coordinates: int,
+    ) -> None:
+        self.energy, self.nodes, self.controls = energy, nodes, controls
+        self.tolerance, self.random = tolerance, random
+        self.size = float(np.ptp(nodes, axis=0).max())
+        self.point = nodes.ravel()
+        count = min(coordinates, nodes.size)
+        self.variables = np.sort(random.choice(nodes.size, count, replace=False))
+
+    def shapes(self) -> None:
+        """The value is finite here, and every array has the shape that the contract names."""
+        if not np.isfinite(self.energy.value(self.nodes, self.controls)):
+            raise ConformanceError("value", "it must be finite at the state that is checked")
+        energy, (terms, corners), dim = self.energy, self.energy.stencils.shape, self.nodes.shape[1]
+        self._shape("gradient", energy.gradient(self.nodes, self.controls), (terms, corners, dim))
+        self._shape("hessian", energy.hessian(self.nodes, self.controls), (terms, corners * dim, corners * dim))
+        if energy.controls is not None:
+            self._shape("controls", energy.controls, (terms,))
+            derivative = energy.control_gradient(self.nodes, self.controls)
+            self._shape("control gradient", derivative, (terms, corners, dim))
+
+    def values(self) -> None:
+        """The value is never NaN; wherever it is finite, so are the gradient and the Hessian."""
+        for nodes in self._states():
+            value = self.energy.value(nodes, self.controls)
+            if np.isnan(value) or value == -np.inf:
+                raise ConformanceError("value", f"{value} at some positions; where it is not defined it must be +inf")
+            if np.isfinite(value):
+                for name, blocks in (("gradient", self.energy.gradient), ("hessian", self.energy.hessian)):
+                    if not np.isfinite(blocks(nodes, self.controls)).all():
+                        raise ConformanceError(name, "it is not finite at some positions where the value is")
+
+    def gradient(self) -> None:
+        """The gradient blocks, summed over the terms, are the derivative of the value."""
+        blocks = self.energy.gradient(self.nodes, self.controls)
+        total = np.zeros(self.nodes.shape)
+        np.add.at(total, self.energy.stencils, blocks)
+        stiffness = float(np.abs(self.energy.hessian(self.nodes, self.controls)).max())
+        rounding = 64 * np.finfo(float).eps * abs(self.energy.value(self.nodes, self.controls))
+
+        def error(step: float) -> np.ndarray:
+            found = central_differences(self._value, self.point, self.variables, step)[0]
+            exact = total.ravel()[self.variables]
+            # Neither a force below the rounding of the value, nor one that the step itself brings about, can be told.
+            scale = max(_largest(found), _largest(exact), stiffness * step, rounding / step / self.tolerance)
+            return np.abs(found - exact) / scale if scale else np.abs(found - exact)
+
+        worst, place = self._best(error, self.size)
+        index = tuple(int(i) for i in np.unravel_index(self.variables[place[0]], self.nodes.shape))
+        if worst > self.tolerance and index[0] not in self.energy.stencils:
+            raise ConformanceError(
+                "stencil", "the value depends on a node of no stencil", index=index, relative_error=worst
+            )
+        self._judge("gradient", "[node, axis] is not the derivative of the value", worst, index)
+
+    def hessian(self) -> None:
+        """Each Hessian block is symmetric and the derivative of its gradient block, which depends on no other node."""
+        hessian = self.energy.hessian(self.nodes, self.controls)
+        blocks = self.energy.gradient(self.nodes, self.controls)
+        terms, size, dim = *hessian.shape[:2], self.nodes.shape[1]
+        forces = np.abs(blocks).max(axis=(1, 2), initial=0.0) / self.size
+        scales = np.maximum(np.abs(hessian).max(axis=(1, 2), initial=0.0), forces)
+        scales = np.maximum(scales, 1e-9 * scales.max(initial=0.0))
+        scales[scales == 0.0] = 1.0
+        skew = np.abs(hessian - np.swapaxes(hessian, 1, 2)) / scales[:, None, None]
+        self._judge("hessian", "[term, row, column] is not symmetric", skew.max(), _place(skew))
+        dofs = (self.energy.stencils[:, :, None] * dim + np.arange(dim)).reshape(terms, size)
+        expected = np.zeros((terms, size, len(self.variables)))
+        for column in range(size):
+            place = np.searchsorted(self.variables, dofs[:, column])
+            place[place == len(self.variables)] = 0
+            chosen = np.flatnonzero(self.variables[place] == dofs[:, column])
+            expected[chosen, :, place[chosen]] += hessian[chosen, :, column]
+
+        def error(step: float) -> np.ndarray:
+            found = central_differences(self._gradient, self.point, self.variables, step).reshape(terms, size, -1)
+            return np.abs(found - expected) / scales[:, None, None]
+
+        worst, (term, row, place) = self._best(error, self.size)
+        variable = int(self.variables[place])
+        if worst > self.tolerance and variable not in dofs[term]:
+            index = (term, variable // dim)
+            raise ConformanceError(
+                "stencil", "[term, node]: it depends on a node outside its stencil", index=index, relative_error=worst
+            )
+        column = int(np.flatnonzero(dofs[term] == variable)[0]) if variable in dofs[term] else 0
+        self._judge("hessian", "[term, row, column] is not the derivative of the gradient", worst, (term, row, column))
+
+    def control_gradient(self) -> None:
+        """The control derivative is that of the gradient, and terms depend on no control but their own."""
+        blocks = self.energy.gradient(self.nodes, self.controls)
+        count = len(self.controls)
+        expected = np.zeros((*blocks.shape, count))
+        if self.energy.controls is not None:
+            derivative = self.energy.control_gradient(self.nodes, self.controls)
+            expected[np.arange(len(blocks)), :, :, self.energy.controls] = derivative
+        if not count:
+            return
+        natural = max(self.size, float(np.abs(self.controls).max()))
+
+        def force(controls: Vector) -> np.ndarray:
+            return self.energy.gradient(self.nodes, controls).ravel()
+
+        def error(step: float) -> np.ndarray:
+            found = central_differences(force, self.controls, np.arange(count), step).reshape(expected.shape)
+            scale = max(_largest(found), _largest(expected), _largest(blocks) / natural)
+            return np.abs(found - expected) / (scale or 1.0)
+
+        worst, index = self._best(error, natural)
+        self._judge("control gradient", "[term, corner, axis, control] is not the derivative", worst, index)
+
+    def convexity(self) -> None:
+        """An energy that says it is convex has no block with a negative eigenvalue."""
+        if not self.energy.convex:
+            return
+        for nodes in self._states():
+            if not np.isfinite(self.energy.value(nodes, self.controls)):
+                continue
+            eigenvalues = np.linalg.eigvalsh(self.energy.hessian(nodes, self.controls))
+            least = -eigenvalues[:, 0] / np.maximum(np.abs(eigenvalues).max(axis=1), np.finfo(float).tiny)
+            worst = float(least.max(initial=0.0))
+            if worst > 1e-9:
+                term = int(np.argmax(least))
+                raise ConformanceError(
+                    "convexity", "this term's Hessian has a negative eigenvalue", index=(term,), relative_error=worst
+                )
+
+    def _states(self) -> Iterator[Nodes]:
+        """The state itself, and others scattered more and more about it."""
+        yield self.nodes
+        for amplitude in (1e-3, 1e-2, 0.03, 0.1, 0.3, 1.0, 100.0):
+            yield self.nodes + amplitude * self.size * self.random.standard_normal(self.nodes.shape)
+
+    def _value(self, point: np.ndarray) -> np.ndarray:
+        return np.array([self.energy.value(point.reshape(self.nodes.shape), self.controls)])
+
+    def _gradient(self, point: np.ndarray) -> np.ndarray:
+        return self.energy.gradient(point.reshape(self.nodes.shape), self.controls).ravel()
+
+    def _best(self, error: Callable[[float], np.ndarray], scale: float) -> tuple[float, tuple[int, ...]]:
+        """Largest entry, and its place, of the error at the step where that is smallest."""
+        best: tuple[float, tuple[int, ...]] | None = None
+        for step in steps(scale):
+            errors = np.nan_to_num(error(step), nan=np.inf)
+            worst = float(errors.max())
+            if best is None or worst < best[0]:
+                best = worst, _place(errors)
+            if worst <= self.tolerance:
+                break
+        assert best is not None
+        return best
+
+    def _shape(self, check: str, array: np.ndarray, shape: tuple[int, ...]) -> None:
+        if array.shape != shape:
+            raise ConformanceError(check, f"it has the shape {array.shape}, the contract names {shape}")
+
+    def _judge(self, check: str, message: str, error: float, index: tuple[int, ...]) -> None:
+        if error > self.tolerance:
+            raise ConformanceError(check, message, index=index, relative_error=error)
+
+
+def _largest(array: np.ndarray) -> float:
+    return float(np.nanmax(np.abs(array), initial=0.0))
+
+
+def _place(array: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(i) for i in np.unravel_index(int(np.argmax(array)), array.shape))

@@ -1,0 +1,132 @@
+"""All energies, each at random and strongly deformed states."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from builders import box_mesh, strip_mesh
+
+from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.mechanics import CableEnergy, Energy, FibreEnergy, NeoHookean, PinEnergy, TensionLaw
+
+SIZE = {2: (0.1, 0.05), 3: (0.1, 0.05, 0.05)}
+CONTROLS = 3
+LAW = TensionLaw(stiffness=4e3, smoothing=0.5e-3)
+
+
+@dataclass(frozen=True)
+class State:
+    """An energy with positions and controls to check it at."""
+
+    energy: Energy
+    nodes: np.ndarray
+    controls: np.ndarray
+
+
+def rough_mesh(dim: int, random: np.random.Generator) -> Mesh:
+    """A small mesh whose inner nodes are off the grid."""
+    mesh = strip_mesh(4, 2, size=SIZE[2]) if dim == 2 else box_mesh((2, 1, 1), size=SIZE[3])
+    return Mesh(mesh.nodes + 0.003 * random.uniform(-1, 1, mesh.nodes.shape), mesh.elements)
+
+
+def deform(mesh: Mesh, random: np.random.Generator) -> np.ndarray:
+    """Positions after stretches of 0.6 to 1.7, a rotation and a jitter, with J > 0.15 in every element."""
+    dim = mesh.dim
+    while True:
+        first, second = (np.linalg.qr(random.standard_normal((dim, dim)))[0] for _ in range(2))
+        affine = first @ np.diag(random.uniform(0.6, 1.7, dim)) @ second
+        if np.linalg.det(affine) < 0:
+            affine[0] *= -1
+        nodes = mesh.nodes @ affine.T + 0.008 * random.uniform(-1, 1, mesh.nodes.shape)
+        if (Mesh.volumes.func(_Loose(nodes, mesh.elements)) > 0.15 * mesh.volumes).all():
+            return nodes
+
+
+@dataclass(frozen=True)
+class _Loose:
+    """Nodes and elements, not yet known to be a mesh."""
+
+    nodes: np.ndarray
+    elements: np.ndarray
+
+    @property
+    def dim(self) -> int:
+        return self.nodes.shape[1]
+
+
+def neo_hookean(dim: int, random: np.random.Generator) -> State:
+    mesh = rough_mesh(dim, random)
+    thickness = 0.03 if dim == 2 else 1.0
+    energy = NeoHookean(mesh.nodes, mesh.elements, mu=11e3, lame=17e3, thickness=thickness)
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def cable(
+    dim: int, random: np.random.Generator, *, stretch: float, world: bool = False, sheathed: tuple[int, ...] = ()
+) -> State:
+    """A cable whose contraction is such that its stretch is as asked."""
+    mesh = rough_mesh(dim, random)
+    points = random.uniform(0.1, 0.9, (5, dim)) * SIZE[dim]
+    anchors = locate(mesh, points)
+    weights = anchors.matrix(len(mesh.nodes)).toarray()
+    offsets = np.zeros_like(points)
+    if world:
+        weights[0], offsets[0] = 0.0, -0.03
+    stencil = np.flatnonzero(weights.any(axis=0))
+    bare = np.array([segment not in sheathed for segment in range(4)])
+    energy = CableEnergy(
+        mesh.nodes,
+        stencil=stencil,
+        weights=weights[:, stencil],
+        offsets=offsets,
+        bare=bare,
+        law=LAW,
+        control=1,
+        slack=0.002,
+    )
+    nodes, controls = deform(mesh, random), random.uniform(0, 0.02, CONTROLS)
+    controls[1] += stretch - energy.stretch(nodes, controls)
+    return State(energy, nodes, controls)
+
+
+def pins(dim: int, random: np.random.Generator) -> State:
+    mesh = rough_mesh(dim, random)
+    anchors = locate(mesh, random.uniform(0.1, 0.9, (4, dim)) * SIZE[dim])
+    energy = PinEnergy(
+        stencils=anchors.stencils,
+        weights=anchors.weights,
+        targets=random.uniform(0, 0.1, (4, dim)),
+        stiffness=np.array([1e2, 1e3, 1e4, 1e5]),
+    )
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def edge_fibres(dim: int, random: np.random.Generator) -> State:
+    mesh = rough_mesh(dim, random)
+    energy = FibreEnergy(stencils=mesh.edges, weights=np.tile([-1.0, 1.0], (len(mesh.edges), 1)))
+    return State(energy, deform(mesh, random), random.uniform(0, 5, len(mesh.edges)))
+
+
+def element_fibres(dim: int, random: np.random.Generator) -> State:
+    mesh = rough_mesh(dim, random)
+    ends = random.dirichlet(np.ones(dim + 1), (2, len(mesh.elements)))
+    energy = FibreEnergy(stencils=mesh.elements, weights=ends[1] - ends[0])
+    return State(energy, deform(mesh, random), random.uniform(0, 5, len(mesh.elements)))
+
+
+_EPS = LAW.smoothing
+ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
+    "neo-hookean": neo_hookean,
+    "pins": pins,
+    "fibres on edges": edge_fibres,
+    "fibres in elements": element_fibres,
+    "slack cable": lambda dim, random: cable(dim, random, stretch=-0.01),
+    "cable barely taut": lambda dim, random: cable(dim, random, stretch=0.1 * _EPS),
+    "cable in the cubic zone": lambda dim, random: cable(dim, random, stretch=1.3 * _EPS),
+    "taut cable": lambda dim, random: cable(dim, random, stretch=0.02),
+    "cable from the world": lambda dim, random: cable(dim, random, stretch=0.02, world=True),
+    "sheathed cable": lambda dim, random: cable(dim, random, stretch=0.02, sheathed=(1, 2)),
+    "sheathed at the winch": lambda dim, random: cable(dim, random, stretch=1.2 * _EPS, sheathed=(0,), world=True),
+}
+"""Makers of a state, by name: dimension and random numbers in."""

@@ -1,0 +1,108 @@
+"""The assembled sum. Oracle: the same sum over terms by plain loops into dense arrays."""
+
+import numpy as np
+import pytest
+from states import CONTROLS, LAW, deform, rough_mesh
+
+from hydrostat.geometry.anchors import locate
+from hydrostat.mechanics import Assembly, CableEnergy, NeoHookean, PinEnergy, nearest_semidefinite
+
+
+def energies(dim: int, seed: int) -> tuple[Assembly, np.ndarray, np.ndarray]:
+    random = np.random.default_rng([dim, seed])
+    mesh = rough_mesh(dim, random)
+    anchors = locate(mesh, mesh.nodes[:3] * 0.9 + 0.005)
+    parts = [
+        NeoHookean(mesh.nodes, mesh.elements, mu=11e3, lame=17e3),
+        PinEnergy(
+            stencils=anchors.stencils, weights=anchors.weights, targets=mesh.nodes[:3], stiffness=np.full(3, 1e3)
+        ),
+    ]
+    for control in (2, 0):
+        stencil = np.sort(random.choice(len(mesh.nodes), 5, replace=False))
+        parts.append(
+            CableEnergy(
+                mesh.nodes,
+                stencil=stencil,
+                weights=random.dirichlet(np.ones(5), 4),
+                offsets=np.zeros((4, dim)),
+                bare=np.array([True, False, True]),
+                law=LAW,
+                control=control,
+            )
+        )
+    assembly = Assembly(parts, node_count=len(mesh.nodes), dim=dim, control_count=CONTROLS)
+    return assembly, deform(mesh, random), np.array([0.05, 0.0, 0.05])
+
+
+def dense(
+    assembly: Assembly, nodes: np.ndarray, controls: np.ndarray
+) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
+    dim, size = nodes.shape[1], nodes.size
+    value, gradient, hessian = 0.0, np.zeros(size), np.zeros((size, size))
+    mixed = np.zeros((size, len(controls)))
+    for energy in assembly.energies:
+        value += energy.value(nodes, controls)
+        blocks, seconds = energy.gradient(nodes, controls), energy.hessian(nodes, controls)
+        for term, stencil in enumerate(energy.stencils):
+            dofs = [int(node) * dim + axis for node in stencil for axis in range(dim)]
+            for i, row in enumerate(dofs):
+                gradient[row] += blocks[term].ravel()[i]
+                for j, column in enumerate(dofs):
+                    hessian[row, column] += seconds[term, i, j]
+                if energy.controls is not None:
+                    mixed[row, energy.controls[term]] += energy.control_gradient(nodes, controls)[term].ravel()[i]
+    return value, gradient, hessian, mixed
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_sum_is_that_of_plain_loops(dim: int, seed: int) -> None:
+    assembly, nodes, controls = energies(dim, seed)
+    value, gradient, hessian, mixed = dense(assembly, nodes, controls)
+    found = assembly.hessian(nodes, controls)
+    assert assembly.value(nodes, controls) == pytest.approx(value, rel=1e-13)
+    assert assembly.gradient(nodes, controls) == pytest.approx(gradient, abs=1e-12 * np.abs(gradient).max())
+    assert found.toarray() == pytest.approx(hessian, abs=1e-12 * np.abs(hessian).max())
+    assert found.has_sorted_indices
+    derivative = assembly.control_derivative(nodes, controls).toarray()
+    assert derivative == pytest.approx(mixed, abs=1e-12 * np.abs(mixed).max())
+    assert mixed[:, [0, 2]].any(axis=0).all()
+    assert not mixed[:, 1].any()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_the_projected_sum_has_no_negative_eigenvalue(dim: int) -> None:
+    """The state is chosen indefinite, so that the projection has something to do."""
+    assembly, nodes, controls = energies(dim, 0)
+    nodes = nodes * 0.4
+    before = np.linalg.eigvalsh(assembly.hessian(nodes, controls).toarray())
+    after = np.linalg.eigvalsh(assembly.hessian(nodes, controls, project=True).toarray())
+    assert before[0] < -1e-3 * before[-1]
+    assert after[0] > -1e-12 * after[-1]
+
+
+def test_without_controls_the_control_derivative_is_empty() -> None:
+    assembly, nodes, controls = energies(2, 0)
+    bare = Assembly(assembly.energies[:2], node_count=len(nodes), dim=2, control_count=CONTROLS)
+    assert bare.control_derivative(nodes, controls).shape == (nodes.size, CONTROLS)
+    assert bare.control_derivative(nodes, controls).nnz == 0
+
+
+def test_the_value_is_infinite_where_one_energy_is() -> None:
+    assembly, nodes, controls = energies(2, 0)
+    assert assembly.value(nodes * [1, -1], controls) == np.inf
+
+
+def test_nearest_semidefinite_only_lifts_negative_eigenvalues() -> None:
+    """Closed form: known eigenvectors, eigenvalues clipped at 0; a definite block stays as it is, to the bit."""
+    random = np.random.default_rng(0)
+    values = np.array([[-3.0, -1e-3, 0.5, 2.0], [0.0, 1e-3, 1.0, 5.0], [-4.0, -3.0, -2.0, -1.0]])
+    vectors = np.linalg.qr(random.standard_normal((3, 4, 4)))[0]
+    blocks = (vectors * values[:, None, :]) @ np.swapaxes(vectors, 1, 2)
+    blocks = 0.5 * (blocks + np.swapaxes(blocks, 1, 2))
+    expected = (vectors * np.maximum(values, 0)[:, None, :]) @ np.swapaxes(vectors, 1, 2)
+    found = nearest_semidefinite(blocks)
+    assert found == pytest.approx(expected, abs=1e-13)
+    definite = blocks[1:2] + np.eye(4)
+    assert (nearest_semidefinite(definite) == definite).all()

@@ -1,0 +1,177 @@
+"""The conformance suite can fail: every kind of slip is found, by its name. Oracle: energies broken on purpose."""
+
+import numpy as np
+import pytest
+from states import deform, element_fibres, neo_hookean, pins, rough_mesh
+
+from hydrostat.mechanics import CableEnergy, FibreEnergy, NeoHookean, PinEnergy, TensionLaw
+from hydrostat.mechanics.energy import Energy
+from hydrostat.testing import ConformanceError, check_energy
+
+
+class HessianOffByTenMillionths(NeoHookean):
+    def hessian(self, nodes, controls):
+        return super().hessian(nodes, controls) * (1 + 1e-5)
+
+
+class HessianWithoutVolumeTerm(NeoHookean):
+    def hessian(self, nodes, controls):
+        lame, self.lame = self.lame, 0.0
+        blocks = super().hessian(nodes, controls)
+        self.lame = lame
+        return blocks
+
+
+class HessianOfOneTermWrong(PinEnergy):
+    """The softest pin of four, a thousandth as stiff as the stiffest."""
+
+    def hessian(self, nodes, controls):
+        blocks = super().hessian(nodes, controls)
+        blocks[0] *= 1.001
+        return blocks
+
+
+class HessianNotSymmetric(NeoHookean):
+    def hessian(self, nodes, controls):
+        blocks = super().hessian(nodes, controls)
+        blocks[3, 0, 1] *= 1.01
+        return blocks
+
+
+class GradientWithoutVolumeTerm(NeoHookean):
+    def gradient(self, nodes, controls):
+        lame, self.lame = self.lame, 0.0
+        blocks = super().gradient(nodes, controls)
+        self.lame = lame
+        return blocks
+
+
+class ConvexityClaimed(NeoHookean):
+    convex = True
+
+
+class ValueNaN(NeoHookean):
+    def value(self, nodes, controls):
+        value = super().value(nodes, controls)
+        return value if np.isfinite(value) else np.nan
+
+
+class ValueReadsAnotherNode(PinEnergy):
+    def value(self, nodes, controls):
+        free = np.setdiff1d(np.arange(len(nodes)), self.stencils)[0]
+        return super().value(nodes, controls) + 0.5 * float(nodes[free] @ nodes[free])
+
+
+class TermReadsAnotherNode(PinEnergy):
+    """Right as a whole, but two of its terms have swapped their stencils."""
+
+    def gradient(self, nodes, controls):
+        blocks = super().gradient(nodes, controls)
+        blocks[0] += nodes[self.stencils[1]]
+        return blocks
+
+
+class ControlDerivativeNegative(FibreEnergy):
+    def control_gradient(self, nodes, controls):
+        return -super().control_gradient(nodes, controls)
+
+    def gradient(self, nodes, controls):
+        return controls[:, None, None] * super().control_gradient(nodes, controls)
+
+
+class ControlOfAnother(FibreEnergy):
+    def __init__(self, **arguments):
+        super().__init__(**arguments)
+        self.controls = np.arange(len(self.stencils))[::-1].copy()
+
+
+class GradientFlat(PinEnergy):
+    def gradient(self, nodes, controls):
+        return super().gradient(nodes, controls).reshape(len(self.stencils), -1)
+
+
+BROKEN = [
+    (HessianOffByTenMillionths, "hessian"),
+    (HessianWithoutVolumeTerm, "hessian"),
+    (HessianOfOneTermWrong, "hessian"),
+    (HessianNotSymmetric, "hessian"),
+    (GradientWithoutVolumeTerm, "gradient"),
+    (GradientFlat, "gradient"),
+    (ConvexityClaimed, "convexity"),
+    (ValueNaN, "value"),
+    (ValueReadsAnotherNode, "stencil"),
+    (TermReadsAnotherNode, "gradient"),
+    (ControlDerivativeNegative, "control gradient"),
+    (ControlOfAnother, "control gradient"),
+]
+MAKERS = {NeoHookean: neo_hookean, PinEnergy: pins, FibreEnergy: element_fibres}
+
+
+@pytest.mark.parametrize(("broken", "check"), BROKEN)
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_broken_energy_is_found(broken: type[Energy], check: str, dim: int) -> None:
+    state = MAKERS[broken.__mro__[1]](dim, np.random.default_rng(dim))
+    energy = state.energy
+    check_energy(energy, state.nodes, state.controls)
+    if broken is ControlOfAnother:
+        assert isinstance(energy, FibreEnergy)
+        energy = ControlOfAnother(stencils=energy.stencils, weights=energy.weights)
+    else:
+        energy.__class__ = broken
+    with pytest.raises(ConformanceError, match=check) as caught:
+        check_energy(energy, state.nodes, state.controls)
+    assert caught.value.check == check
+
+
+def test_a_term_that_reads_outside_its_stencil_is_found() -> None:
+    """Value and summed gradient are right, the split into terms is not: two terms hold each other's gradient."""
+
+    class Swapped(PinEnergy):
+        def gradient(self, nodes, controls):
+            blocks = super().gradient(nodes, controls)
+            shift = 10.0 * nodes[self.stencils[1]]
+            shared = np.isin(self.stencils[0], self.stencils[2]) & ~np.isin(self.stencils[0], self.stencils[1])
+            for corner in np.flatnonzero(shared):
+                blocks[0, corner] += shift[0]
+                blocks[2, self.stencils[2] == self.stencils[0, corner]] -= shift[0]
+            return blocks
+
+    nodes = rough_mesh(2, np.random.default_rng(0)).nodes
+    energy = Swapped(
+        stencils=np.array([[0, 1, 2], [3, 4, 8], [1, 2, 6]]),
+        weights=np.full((3, 3), 1 / 3),
+        targets=np.zeros((3, 2)),
+        stiffness=np.ones(3),
+    )
+    with pytest.raises(ConformanceError, match="stencil"):
+        check_energy(energy, nodes, np.zeros(0))
+
+
+def test_a_cable_that_forgets_a_node_is_found() -> None:
+    """Its stencil lacks a node: the length changes with it, the gradient does not."""
+
+    class Forgetful(CableEnergy):
+        def value(self, nodes, controls):
+            return super().value(nodes, controls) + self.law.energy(float(np.linalg.norm(nodes[0] - nodes[-1])))
+
+    random = np.random.default_rng(0)
+    mesh = rough_mesh(2, random)
+    energy = Forgetful(
+        mesh.nodes,
+        stencil=np.array([1, 3]),
+        weights=np.eye(2),
+        offsets=np.zeros((2, 2)),
+        bare=np.array([True]),
+        law=TensionLaw(stiffness=4e3, smoothing=0.5e-3),
+        control=0,
+    )
+    with pytest.raises(ConformanceError, match="stencil") as caught:
+        check_energy(energy, deform(mesh, random), np.array([0.02]))
+    assert caught.value.index[0] in (0, len(mesh.nodes) - 1)
+    assert caught.value.relative_error > 1e-3
+
+
+def test_a_state_without_energy_is_refused() -> None:
+    state = neo_hookean(2, np.random.default_rng(0))
+    with pytest.raises(ConformanceError, match="finite at the state"):
+        check_energy(state.energy, state.nodes * [1, -1], state.controls)

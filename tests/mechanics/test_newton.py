@@ -1,0 +1,162 @@
+"""Newton's method. Oracles: its own promises (reasons, J > 0, never NaN) and the order of its convergence."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from builders import strip_mesh
+
+from hydrostat.mechanics import (
+    Assembly,
+    CableEnergy,
+    NeoHookean,
+    NewtonOptions,
+    NewtonResult,
+    PinEnergy,
+    Reason,
+    RoundOff,
+    TensionLaw,
+    minimise,
+)
+
+MESH = strip_mesh(12, 3)
+OPTIONS = NewtonOptions()
+ROUND_OFF = RoundOff(force=1e-13, energy=1e-16)
+
+
+class Uphill(PinEnergy):
+    """Its gradient points the wrong way: no step that Newton takes lowers the energy."""
+
+    def gradient(self, nodes, controls):
+        return -super().gradient(nodes, controls)
+
+
+class NotANumber(PinEnergy):
+    """Its Hessian is NaN."""
+
+    def hessian(self, nodes, controls):
+        return np.full_like(super().hessian(nodes, controls), np.nan)
+
+
+def strip(pin: type[PinEnergy] = PinEnergy) -> Assembly:
+    """A strip held at its left end, with one cable along its upper half."""
+    held = np.flatnonzero(MESH.nodes[:, 0] == 0.0)
+    upper = np.flatnonzero(np.abs(MESH.nodes[:, 1] - MESH.nodes[:, 1].max()) < 1e-9)
+    return Assembly(
+        [
+            NeoHookean(MESH.nodes, MESH.elements, mu=11e3, lame=17e3, thickness=0.03),
+            pin(
+                stencils=held[:, None],
+                weights=np.ones((len(held), 1)),
+                targets=MESH.nodes[held],
+                stiffness=np.full(len(held), 2.5e4),
+            ),
+            CableEnergy(
+                MESH.nodes,
+                stencil=upper,
+                weights=np.eye(len(upper)),
+                offsets=np.zeros((len(upper), 2)),
+                bare=np.full(len(upper) - 1, True),
+                law=TensionLaw(stiffness=4e3, smoothing=0.5e-3),
+                control=0,
+            ),
+        ],
+        node_count=len(MESH.nodes),
+        dim=2,
+        control_count=1,
+    )
+
+
+def solve(
+    contraction: float, *, assembly: Assembly | None = None, start: np.ndarray | None = None, **options: float
+) -> NewtonResult:
+    assembly = assembly or strip()
+    controls = np.array([contraction])
+    cable = assembly.energies[2]
+    assert isinstance(cable, CableEnergy)
+    return minimise(
+        assembly,
+        MESH.nodes if start is None else start,
+        controls,
+        force_scale=lambda nodes: cable.tension(nodes, controls),
+        round_off=ROUND_OFF,
+        options=replace(OPTIONS, **options),
+    )
+
+
+def test_it_converges_to_a_minimum_and_says_so() -> None:
+    result = solve(0.03)
+    assembly, controls = strip(), np.array([0.03])
+    assert result.reason is Reason.CONVERGED
+    assert result.converged
+    assert result.stable
+    assert np.linalg.eigvalsh(assembly.hessian(result.nodes, controls).toarray())[0] > 0
+    assert result.residual == np.abs(assembly.gradient(result.nodes, controls)).max()
+    assert result.residual <= result.allowed
+    assert result.energy == assembly.value(result.nodes, controls)
+
+
+def test_at_rest_there_is_nothing_to_do() -> None:
+    result = solve(0.0)
+    assert result.converged
+    assert result.iterations == 0
+    assert (result.nodes == MESH.nodes).all()
+
+
+def test_the_end_converges_quadratically() -> None:
+    """Residuals after 0, 1, 2 ... steps: near the end each is at most a constant times the square of the last.
+
+    Forces are taken as fractions of the tension; below 1e-12 rounding rules.
+    """
+    cable, end = strip().energies[2], solve(0.03)
+    assert isinstance(cable, CableEnergy)
+    tension = cable.tension(end.nodes, np.array([0.03]))
+    fractions = [solve(0.03, iterations=steps).residual / tension for steps in range(end.iterations + 1)]
+    pairs = [(a, b) for a, b in pairwise(fractions) if a < 1e-2 and b > 1e-12]
+    assert len(pairs) >= 2
+    for before, after in pairs[-2:]:
+        assert np.log(after) / np.log(before) > 1.6
+
+
+@pytest.mark.parametrize("iterations", [0, 1, 3])
+def test_the_iteration_limit_is_kept_and_named(iterations: int) -> None:
+    result = solve(0.03, iterations=iterations)
+    assert result.reason is Reason.ITERATION_LIMIT
+    assert result.iterations == iterations
+    assert np.isfinite(result.nodes).all()
+
+
+def test_an_inverted_start_is_named() -> None:
+    result = solve(0.03, start=MESH.nodes * [1, -1])
+    assert result.reason is Reason.BAD_START
+    assert (result.nodes == MESH.nodes * [1, -1]).all()
+
+
+def test_no_descent_is_named_not_hidden() -> None:
+    """A gradient that lies: Newton stops where it is and says that no step helps."""
+    assembly = strip(Uphill)
+    result = solve(0.03, assembly=assembly, start=MESH.nodes + np.array([0.01, 0.0]))
+    assert result.reason in (Reason.NO_DESCENT, Reason.ITERATION_LIMIT)
+    assert not result.converged
+    assert np.isfinite(result.nodes).all()
+    assert solve(0.03, halvings=0).reason is Reason.NO_DESCENT
+
+
+def test_a_hessian_that_is_not_a_number_ends_without_one() -> None:
+    result = solve(0.03, assembly=strip(NotANumber))
+    assert result.reason is Reason.NO_DESCENT
+    assert np.isfinite(result.nodes).all()
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_from_a_wild_start_it_ends_with_numbers_and_no_inverted_element(seed: int) -> None:
+    """Starts shaken by up to 40 % of an element, contractions up to 60 % of the strip."""
+    random = np.random.default_rng(seed)
+    start = MESH.nodes + 0.4 * 0.0166 * random.uniform(-0.5, 0.5, MESH.nodes.shape)
+    result = solve(random.uniform(0.0, 0.12), start=start)
+    corners = result.nodes[MESH.elements]
+    assert np.isfinite(result.nodes).all()
+    assert (np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all()
+    assert np.isfinite([result.energy, result.residual, result.allowed]).all()
+    assert result.converged
