@@ -43,7 +43,7 @@ class Network:
     Attributes:
         robot: the robot with the new network.
         activations: one for each pose (Fig 3.9a).
-        candidates: indices of the fibres that passed the threshold, strongest first (Fig 3.9b).
+        candidates: for each pose, the fibres that passed the threshold, strongest first (Fig 3.9b).
         trees: routes that were grown from them [m] (Fig 3.9c).
         reached: what the new network reaches of each pose by its own winches; the true score (E24).
         score: the thesis's score of the network, between 0 and 1 (R43).
@@ -53,7 +53,7 @@ class Network:
 
     robot: Robot
     activations: tuple[Activation, ...]
-    candidates: Int[np.ndarray, " candidates"]
+    candidates: tuple[Int[np.ndarray, " candidates"], ...]
     trees: tuple[Points, ...]
     reached: tuple[ReachedPose, ...]
     score: float

@@ -65,7 +65,9 @@ class _Search:
     def __init__(self, simulation: Simulation, target: Pose, options: InverseOptions) -> None:
         robot = simulation.robot
         if not robot.cables:
-            raise InputError("the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them")
+            raise InputError(
+                "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
+            )
         self.simulation, self.target, self.options = simulation, target, options
         self.low = np.array([-winch.release for winch in robot.winches])
         self.high = np.array([winch.travel for winch in robot.winches])
@@ -91,14 +93,14 @@ class _Search:
             if self._objective(best) - (self._objective(taut) - promise) <= gain_wanted:
                 return self._done(best, InverseReason.OPTIMAL, iteration)
             trial = self._solve(taut.contractions + step, taut)
-            gain = -np.inf if trial is None else self._objective(taut) - self._objective(trial)
-            radius = _next_radius(radius, gain / promise, np.abs(step / (self.high - self.low)).max())
-            if trial is not None and self._objective(trial) < self._objective(best):
-                small = self._objective(best) - self._objective(trial) <= gain_wanted
+            ratio = -np.inf if trial is None else (self._objective(taut) - self._objective(trial)) / promise
+            radius = _next_radius(radius, ratio, np.abs(step / (self.high - self.low)).max())
+            gained = 0.0 if trial is None else self._objective(best) - self._objective(trial)
+            if trial is not None and gained > 0:
                 best = trial
-                if small:
-                    return self._done(best, InverseReason.OPTIMAL, iteration + 1)
-            elif radius < 1e-6:
+            if gained <= gain_wanted and ratio > 0.25:
+                return self._done(best, InverseReason.OPTIMAL, iteration + 1)
+            if radius < 1e-6:
                 reason = InverseReason.NO_EQUILIBRIUM if trial is None else InverseReason.OPTIMAL
                 return self._done(best, reason, iteration + 1)
         return self._done(best, InverseReason.ITERATION_LIMIT, self.options.iterations)
@@ -124,17 +126,30 @@ class _Search:
         """Best bounded step of the linearised problem, and by how much it promises to lower the objective."""
         from scipy.optimize import lsq_linear
 
-        jacobian = np.einsum("pc,pcdw->pdw", self.anchors.weights, self.simulation.jacobian(pose)[self.anchors.stencils])
+        moves = self.simulation.jacobian(pose)
+        jacobian = np.einsum("pc,pcdw->pdw", self.anchors.weights, moves[self.anchors.stencils])
         matrix = np.vstack([jacobian.reshape(-1, len(self.high)), np.diag(self.effort)])
         residual = self._residual(pose)
         reach = radius * (self.high - self.low)
-        low = np.maximum(self.low - pose.contractions, -reach)
+        low = np.maximum.reduce([self.low - pose.contractions, -reach, -self._until_slack(pose, moves)])
         high = np.minimum(self.high - pose.contractions, reach)
         free = high > low
         step = np.zeros_like(low)
         step[free] = lsq_linear(matrix[:, free], -residual, (low[free], high[free]), method="bvls").x
         after = residual + matrix @ step
         return step, float(residual @ residual - after @ after) / 2
+
+    def _until_slack(self, pose: SolvedPose, moves: Float[np.ndarray, "nodes dim winches"]) -> Vector:
+        """How far each winch can let out before its last cable is slack, to first order [m]: a cable cannot push."""
+        reach = np.zeros_like(self.low)
+        for cable in self.simulation.cables:
+            stretch = cable.stretch(pose.nodes, pose.contractions)
+            tangent = cable.law.tangent(stretch)
+            if tangent > 0:
+                rate = 1.0 + float(np.sum(cable.length_gradient(pose.nodes) * moves[cable.stencils[0], :, cable.control]))
+                until = cable.law.tension(stretch) / tangent / max(rate, 1e-6)
+                reach[cable.control] = max(reach[cable.control], until)
+        return reach
 
     def _residual(self, pose: SolvedPose) -> Float[np.ndarray, " rows"]:
         """Marker errors, then effort, all [m]."""

@@ -105,22 +105,23 @@ class CableEnergy(Energy):
         return self.law.energy(self.stretch(nodes, controls))
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self.tension(nodes, controls) * self._length_gradient(nodes)[None]
+        return self.tension(nodes, controls) * self.length_gradient(nodes)[None]
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         stretch = self.stretch(nodes, controls)
         tension, tangent = self.law.tension(stretch), self.law.tangent(stretch)
-        gradient = self._length_gradient(nodes).ravel()
+        gradient = self.length_gradient(nodes).ravel()
         return (tangent * np.outer(gradient, gradient) + tension * self._length_hessian(nodes))[None]
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self.law.tangent(self.stretch(nodes, controls)) * self._length_gradient(nodes)[None]
+        return self.law.tangent(self.stretch(nodes, controls)) * self.length_gradient(nodes)[None]
 
     def _segments(self, nodes: Nodes) -> tuple[Points, Float[np.ndarray, " segments"]]:
         spans = self._differences @ nodes[self.stencils[0]] + self._offsets
         return spans, np.sqrt(np.einsum("sd,sd->s", spans, spans))
 
-    def _length_gradient(self, nodes: Nodes) -> Float[np.ndarray, "corners dim"]:
+    def length_gradient(self, nodes: Nodes) -> Float[np.ndarray, "corners dim"]:
+        """Dl/dx at the stencil's nodes."""
         spans, lengths = self._segments(nodes)
         return self._differences.T @ (spans / np.maximum(lengths, _SHORTEST)[:, None])
 

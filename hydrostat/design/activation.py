@@ -1,0 +1,133 @@
+"""`activate`: which muscle fibres, pulled how hard, bring a body into a pose (R36 to R38)."""
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.design.fibres import Fibres
+from hydrostat.design.network import Activation
+from hydrostat.design.options import DesignOptions
+from hydrostat.geometry.anchors import locate
+from hydrostat.mechanics import Assembly, Factorisation, NewtonOptions, NewtonResult, minimise
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import body_energies, round_off
+
+
+def activate(robot: Robot, target: Pose, fibres: Fibres, options: DesignOptions) -> Activation:
+    """Tensions t >= 0 of least effort that bring the markers near their targets.
+
+    Minimises 1/2 |markers - targets|^2 + rho/2 |t|^2 by Gauss-Newton while the target moves from rest to where it
+    should be. The thesis leaves the regulariser open (E26, M8): squared tensions make the answer unique and spread it
+    over many fibres; a sum of tensions instead would be sparse, but folds a limb at one hinge and misses the pose.
+    """
+    return _Activation(robot, target, fibres, options).run()
+
+
+class _Activation:
+    """One run: body and fibres assembled, markers located."""
+
+    def __init__(self, robot: Robot, target: Pose, fibres: Fibres, options: DesignOptions) -> None:
+        mesh = robot.body.mesh
+        self.robot, self.target, self.fibres, self.options = robot, target, fibres, options
+        self.assembly = Assembly(
+            [*body_energies(robot), fibres.energy()],
+            node_count=len(mesh.nodes),
+            dim=mesh.dim,
+            control_count=len(fibres),
+        )
+        places = {marker.name: marker.at for marker in robot.markers}
+        self.anchors = locate(mesh, np.array([places[name] for name in target.targets]))
+        self.goals = np.array(list(target.targets.values()), dtype=float)
+        self.round_off = round_off(robot)
+
+    def run(self) -> Activation:
+        """Approach the target in stages, two Gauss-Newton steps each, and a few more at the end."""
+        nodes = self.robot.body.mesh.nodes
+        tensions = np.zeros(len(self.fibres))
+        start = self.anchors.positions(nodes)
+        rho = self._weight(nodes, tensions)
+        for stage in range(1, self.options.stages + 1):
+            goals = start + (self.goals - start) * stage / self.options.stages
+            for _ in range(2 if stage < self.options.stages else 6):
+                nodes, tensions, moved = self._step(nodes, tensions, goals, rho)
+                if not moved:
+                    break
+        errors = np.linalg.norm(self.anchors.positions(nodes) - self.goals, axis=1)
+        return Activation(
+            target=self.target,
+            fibres=self.fibres,
+            tensions=tensions,
+            nodes=nodes,
+            errors={name: float(error) for name, error in zip(self.target.targets, errors, strict=True)},
+        )
+
+    def _weight(self, nodes: Nodes, tensions: Vector) -> float:
+        """Rho [m^2/N^2], measured by what the strongest fibre can do at rest."""
+        return self.options.effort * float((self._jacobian(nodes, tensions) ** 2).sum(axis=0).max())
+
+    def _jacobian(self, nodes: Nodes, tensions: Vector) -> Float[np.ndarray, "rows fibres"]:
+        """D markers / d tensions by the adjoint: one solve for each marker coordinate, none for each fibre."""
+        markers, dim = self.goals.shape
+        rows = np.zeros((self.assembly.size, markers * dim))
+        for marker in range(markers):
+            for axis in range(dim):
+                dofs = self.anchors.stencils[marker] * dim + axis
+                rows[dofs, marker * dim + axis] = self.anchors.weights[marker]
+        adjoint = Factorisation(self.assembly.hessian(nodes, tensions)).solve(rows)
+        return -(self.assembly.control_derivative(nodes, tensions).T @ adjoint).T
+
+    def _step(self, nodes: Nodes, tensions: Vector, goals: Nodes, rho: float) -> tuple[Nodes, Vector, bool]:
+        """One Gauss-Newton step, shortened until the objective falls; whether it moved."""
+        jacobian = self._jacobian(nodes, tensions)
+        miss = (goals - self.anchors.positions(nodes)).ravel()
+        wanted = least_effort(jacobian, miss + jacobian @ tensions, rho)
+        before = self._objective(nodes, tensions, goals, rho)
+        for length in (1.0, 0.5, 0.25, 0.1):
+            trial = tensions + length * (wanted - tensions)
+            solved = self._rest(nodes, trial)
+            if solved.converged and self._objective(solved.nodes, trial, goals, rho) < before * (1 - 1e-6):
+                return solved.nodes, trial, True
+        return nodes, tensions, False
+
+    def _rest(self, nodes: Nodes, tensions: Vector) -> NewtonResult:
+        return minimise(
+            self.assembly,
+            nodes,
+            tensions,
+            force_scale=lambda _: float(tensions.max(initial=0.0)),
+            round_off=self.round_off,
+            options=NewtonOptions(tolerance=1e-7, iterations=60),
+        )
+
+    def _objective(self, nodes: Nodes, tensions: Vector, goals: Nodes, rho: float) -> float:
+        miss = self.anchors.positions(nodes) - goals
+        return float(0.5 * (miss**2).sum() + 0.5 * rho * tensions @ tensions)
+
+
+def least_effort(jacobian: Float[np.ndarray, "rows fibres"], wanted: Float[np.ndarray, " rows"], rho: float) -> Vector:
+    """Minimiser t >= 0 of 1/2 |J t - b|^2 + rho/2 |t|^2.
+
+    There are few rows and many fibres, so the dual is solved: t = max(0, J^T y) / rho with y = b - J t, by semismooth
+    Newton with a line search on the dual's value, which is smooth and concave.
+    """
+    y = np.zeros_like(wanted)
+    value = _dual(jacobian, wanted, rho, y)
+    for _ in range(200):
+        pull = np.maximum(jacobian.T @ y, 0.0)
+        active = jacobian[:, pull > 0]
+        slope = wanted - y - jacobian @ pull / rho
+        if np.abs(slope).max() <= 1e-12 * np.abs(wanted).max():
+            break
+        step = np.linalg.solve(np.eye(len(y)) + active @ active.T / rho, slope)
+        length = 1.0
+        while (trial := _dual(jacobian, wanted, rho, y + length * step)) < value + 1e-4 * length * slope @ step:
+            length *= 0.5
+            if length < 1e-8:
+                return pull / rho
+        y, value = y + length * step, trial
+    return np.maximum(jacobian.T @ y, 0.0) / rho
+
+
+def _dual(jacobian: np.ndarray, wanted: np.ndarray, rho: float, y: np.ndarray) -> float:
+    pull = np.maximum(jacobian.T @ y, 0.0)
+    return float(wanted @ y - 0.5 * y @ y - 0.5 * pull @ pull / rho)

@@ -1,0 +1,126 @@
+"""`grow_routes`: from strong muscle fibres to the routes that cables can take (R39, R40, Fig 3.9c)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.design.region import Region
+
+FibreEnds = Float[np.ndarray, "fibres 2 dim"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class GrowthLimits:
+    """When a fibre may be joined to a route.
+
+    Attributes:
+        distance: largest gap to bridge [m].
+        steps: most fibres joined.
+        turn: sharpest turn [degrees].
+        spacing: length of a mesh edge [m]; fibres nearer than 0.6 of it to a route belong to it.
+    """
+
+    distance: float
+    steps: int
+    turn: float
+    spacing: float
+
+
+def strongest(tensions: Vector, count: int, *, weakest: float = 0.02) -> Int[np.ndarray, " candidates"]:
+    """Indices of the `count` fibres of largest tension, above a fraction of the largest, strongest first (R39)."""
+    order = np.argsort(-tensions, kind="stable")[:count]
+    return order[tensions[order] > weakest * tensions.max(initial=0.0)]
+
+
+def grow_routes(ends: FibreEnds, tensions: Vector, limits: GrowthLimits) -> list[Points]:
+    """Routes through candidate fibres, each begun at the largest tension left (R40).
+
+    At either end of a route the nearest candidate is joined that is close enough, turns little and does not lead
+    back; of equally near ones the stronger. Fibres along a finished route are used up.
+    """
+    free = np.ones(len(ends), dtype=bool)
+    routes = []
+    for seed in np.argsort(-tensions, kind="stable"):
+        if not free[seed]:
+            continue
+        route = [ends[seed, 0], ends[seed, 1]]
+        free[seed] = False
+        for _ in range(limits.steps):
+            if not _extend(route, ends, tensions, free, limits):
+                break
+        free &= ~_along(ends, np.array(route), 0.6 * limits.spacing)
+        if len(route) > 2:
+            routes.append(np.array(route))
+    return routes
+
+
+def _extend(
+    route: list[Points], ends: FibreEnds, tensions: Vector, free: Bool[np.ndarray, " fibres"], limits: GrowthLimits
+) -> bool:
+    """Join the best free fibre to one of the two ends of a route; False if none fits."""
+    best: tuple[float, float] | None = None
+    found = (0, 0, False)
+    for at_start in (False, True):
+        tip, before = (route[0], route[1]) if at_start else (route[-1], route[-2])
+        for side in (0, 1):
+            near, far = ends[:, side], ends[:, 1 - side]
+            gaps = np.linalg.norm(near - tip, axis=1)
+            fits = free & (gaps <= limits.distance)
+            fits &= _cosines(tip - before, far - tip) >= np.cos(np.radians(limits.turn))
+            fits &= _cosines(far - near, tip - before) >= np.cos(np.radians(limits.turn))
+            fits &= ~_near_points(far, np.array(route), 0.5 * limits.spacing)
+            for fibre in np.flatnonzero(fits):
+                key = (round(gaps[fibre] / limits.spacing, 1), -tensions[fibre])
+                if best is None or key < best:
+                    best, found = key, (int(fibre), side, at_start)
+    if best is None:
+        return False
+    fibre, side, at_start = found
+    near, far = ends[fibre, side], ends[fibre, 1 - side]
+    tip = route[0] if at_start else route[-1]
+    added = [far] if np.linalg.norm(near - tip) < 0.1 * limits.spacing else [near, far]
+    route[:] = added[::-1] + route if at_start else route + added
+    free[fibre] = False
+    return True
+
+
+def _cosines(first: Points, second: Points) -> Vector:
+    """Cosine of the angle between vectors, row by row."""
+    first, second = np.broadcast_arrays(first, second)
+    norms = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
+    return (first * second).sum(axis=-1) / np.maximum(norms, 1e-300)
+
+
+def _near_points(spots: Points, route: Points, reach: float) -> Bool[np.ndarray, " spots"]:
+    return np.linalg.norm(spots[:, None] - route[None], axis=2).min(axis=1) < reach
+
+
+def _along(ends: FibreEnds, route: Points, reach: float) -> Bool[np.ndarray, " fibres"]:
+    """Fibres that lie wholly within `reach` of a route."""
+    starts, spans = route[:-1], np.diff(route, axis=0)
+    offsets = ends[:, :, None, :] - starts
+    along = np.einsum("feSd,Sd->feS", offsets, spans) / (spans**2).sum(axis=1)
+    feet = starts + np.clip(along, 0.0, 1.0)[..., None] * spans
+    return (np.linalg.norm(ends[:, :, None, :] - feet, axis=3).min(axis=2) <= reach).all(axis=1)
+
+
+def lay_route(route: Points, region: Region, spacing: float) -> Points | None:
+    """A route as a cable can run: a clearance inside the body, smoothed, a via point about every `spacing`.
+
+    None if it cannot keep clear of the edge.
+    """
+    smooth = resample(region.push_inside(route), spacing / 4)
+    for _ in range(6):
+        smooth[1:-1] = 0.25 * smooth[:-2] + 0.5 * smooth[1:-1] + 0.25 * smooth[2:]
+    laid = region.push_inside(resample(region.push_inside(smooth), spacing))
+    return laid if len(laid) >= 2 and region.holds(laid) else None
+
+
+def resample(route: Points, spacing: float) -> Points:
+    """Points at equal distances along a polyline, both ends kept."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(route, axis=0), axis=1))])
+    count = max(round(along[-1] / spacing), 1)
+    places = np.linspace(0.0, along[-1], count + 1)
+    return np.column_stack([np.interp(places, along, route[:, axis]) for axis in range(route.shape[1])])

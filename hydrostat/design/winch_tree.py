@@ -1,0 +1,143 @@
+"""`WinchTrees`: where winches stand, and which routes they pull (R40 to R44, E22, E23, E25)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.design.options import DesignOptions
+from hydrostat.design.region import Region
+from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """One winch and the routes it pulls.
+
+    Attributes:
+        place: node at which the winch stands.
+        routes: indices of its routes.
+        score: phi mean - (1 - phi) std, less the penalty for leads.
+    """
+
+    place: int
+    routes: tuple[int, ...]
+    score: float
+
+
+class WinchTrees:
+    """All routes of one body with the lead from every winch place to each of them."""
+
+    def __init__(
+        self, mesh: Mesh, routes: list[Points], posed: list[Points], region: Region, options: DesignOptions
+    ) -> None:
+        """Routes at rest, and the node positions of each activated pose `posed` [m]."""
+        self.mesh, self.routes, self.region, self.options = mesh, routes, region, options
+        self.places = np.flatnonzero(region.depths(mesh.nodes) >= options.winch_clearance)
+        if not len(self.places):
+            raise InputError(
+                f"no place of the body is {1e3 * options.winch_clearance:g} mm from its edge: no winch fits; "
+                "lower the winch clearance"
+            )
+        self.graph = _graph(mesh, region)
+        self.leads, self.reversed = self._leads()
+        self.shortenings = np.array([[_shortening(mesh, route, nodes) for nodes in posed] for route in routes])
+
+    def best(self, count: int, used: set[int], taken: list[int], phi: float) -> Tree | None:
+        """Best winch with `count` of the routes not yet used, over all places not too near winches `taken` (R41)."""
+        found: Tree | None = None
+        nodes = self.mesh.nodes
+        scale = max(float(self.shortenings.max(initial=0.0)), 1e-9)
+        for row, place in enumerate(self.places):
+            gaps = [np.linalg.norm(nodes[place] - nodes[other]) for other in taken]
+            if min(gaps, default=np.inf) < self.options.winch_gap:
+                continue
+            reached = [
+                route for route in range(len(self.routes)) if route not in used and np.isfinite(self.leads[row, route])
+            ]
+            reached.sort(key=lambda route: float(self.shortenings[route].mean()))
+            for first in range(max(len(reached) - count + 1, 1 if reached else 0)):
+                chosen = reached[first : first + count]
+                lead = float(self.leads[row, chosen].mean()) / self.mesh.size
+                score = tree_score(self.shortenings[chosen] / scale, phi) - self.options.lead_penalty * lead
+                if found is None or score > found.score + 1e-12:
+                    found = Tree(int(place), tuple(sorted(chosen)), score)
+        return found
+
+    def cable_points(self, place: int, route: int) -> tuple[Points, int]:
+        """Points of the cable from a winch along its lead and its route, and how many of them are the lead.
+
+        A route that begins less than a spool's diameter from the winch has no lead: it begins at the winch.
+        """
+        row = int(np.flatnonzero(self.places == place)[0])
+        points = self.routes[route][:: -1 if self.reversed[row, route] else 1]
+        winch = self.mesh.nodes[place]
+        if np.linalg.norm(points[0] - winch) < 2 * self.options.spool_radius:
+            return np.vstack([winch, points[1:]]), 0
+        lead = self._lead_path(place, points[0])
+        return np.vstack([lead, points]), len(lead)
+
+    def _leads(self) -> tuple[Float[np.ndarray, "places routes"], Bool[np.ndarray, "places routes"]]:
+        """Length of the way inside the body from every place to the nearer end of every route; is that its last?"""
+        ends = np.array([[route[0], route[-1]] for route in self.routes]).reshape(-1, self.mesh.dim)
+        doors = [self._door(end) for end in ends]
+        away = dijkstra(self.graph, indices=doors)[:, self.places].T
+        away += np.linalg.norm(self.mesh.nodes[doors] - ends, axis=1)
+        pairs = away.reshape(len(self.places), len(self.routes), 2)
+        return pairs.min(axis=2), pairs[:, :, 1] < pairs[:, :, 0]
+
+    def _door(self, point: Points) -> int:
+        """Nearest node of the graph in sight of a point, or just the nearest."""
+        order = np.argsort(np.linalg.norm(self.mesh.nodes - point, axis=1), kind="stable")[:12]
+        order = order[np.diff(self.graph.indptr)[order] > 0] if np.diff(self.graph.indptr)[order].any() else order
+        seen = self.region.sees(np.tile(point, (len(order), 1)), self.mesh.nodes[order])
+        return int(order[np.argmax(seen)])
+
+    def _lead_path(self, place: int, end: Points) -> Points:
+        """From the winch towards `end`, which is left out, through as few bends as the body allows."""
+        nodes = self.mesh.nodes
+        _, before = dijkstra(self.graph, indices=place, return_predecessors=True)
+        path = [self._door(end)]
+        while path[-1] != place and before[path[-1]] >= 0:
+            path.append(int(before[path[-1]]))
+        way = np.vstack([nodes[path[::-1]], end])
+        if path[-1] != place:
+            way = np.vstack([nodes[place], way])
+        kept = [0]
+        while kept[-1] < len(way) - 1:
+            ahead = np.arange(len(way) - 1, kept[-1], -1)
+            seen = self.region.sees(np.repeat(way[kept[-1] : kept[-1] + 1], len(ahead), axis=0), way[ahead])
+            kept.append(int(ahead[np.argmax(seen)]) if seen.any() else kept[-1] + 1)
+        return way[kept[:-1]]
+
+
+def tree_score(contractions: Float[np.ndarray, "cables poses"], phi: float) -> float:
+    """Phi mean - (1 - phi) std of the contraction that each cable of one winch needs (R42, R43).
+
+    The thesis adds a variance, and sums tensions; what cables of one winch share is contraction, so contractions are
+    scored, and their spread, in the same unit, is subtracted (E22, E23). Over poses the scores are averaged (E28).
+    """
+    return float(phi * contractions.mean() - (1.0 - phi) * contractions.std(axis=0).mean())
+
+
+def _shortening(mesh: Mesh, route: Points, nodes: Points) -> float:
+    """By how much a route is shorter in an activated pose than at rest [m]."""
+    posed = locate(mesh, route).positions(nodes)
+    return float(_length(route) - _length(posed))
+
+
+def _length(route: Points) -> float:
+    return float(np.linalg.norm(np.diff(route, axis=0), axis=1).sum())
+
+
+def _graph(mesh: Mesh, region: Region) -> csr_array:
+    """Mesh edges that keep clear of the rim, weighted by length."""
+    edges: Int[np.ndarray, "edges 2"] = mesh.edges[region.sees(*np.swapaxes(mesh.nodes[mesh.edges], 0, 1))]
+    lengths: Vector = np.linalg.norm(np.diff(mesh.nodes[edges], axis=1)[:, 0], axis=1)
+    both = np.concatenate([edges, edges[:, ::-1]])
+    return csr_array((np.tile(lengths, 2), (both[:, 0], both[:, 1])), shape=(len(mesh.nodes),) * 2)
