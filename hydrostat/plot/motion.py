@@ -1,0 +1,125 @@
+"""A picture that moves: the robot bends from rest into its poses and back, without any script."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.plot.hardware import cable_runs, spool_size, stopper_bar, winch_places
+from hydrostat.plot.html import Html, tag
+from hydrostat.plot.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
+from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.skin import Skin
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation
+
+STEPS = 6
+"""Equilibria from rest to a pose."""
+
+STILL = 4
+"""Steps that it rests in a pose, and at rest."""
+
+SCALE = 0.7
+"""Millimetres to a point in this picture: it shows true millimetres, about so large on a page."""
+
+STEP = 0.16
+"""Time of a step [s]."""
+
+
+def motion_frames(robot: Robot, poses: Iterable[Vector], *, steps: int = STEPS) -> list[Nodes]:
+    """Equilibria from rest to the contractions [m] of each pose and back, one after the other.
+
+    Each is solved, so that the robot moves as the simulation says; it starts and stops gently.
+    """
+    simulation = Simulation(robot)
+    frames: list[Nodes] = [robot.body.mesh.nodes] * STILL
+    for contractions in poses:
+        there, solved = [], None
+        for step in range(1, steps + 1):
+            share = 0.5 - 0.5 * np.cos(np.pi * step / steps)
+            solved = simulation.solve(share * contractions, start=solved, strict=False)
+            there.append(solved.nodes)
+        frames += [*there, *[there[-1]] * STILL, *there[-2::-1], *[robot.body.mesh.nodes] * STILL]
+    return frames
+
+
+def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float = STEP) -> Html:
+    """The robot moving through frames for ever, as an `<svg>` element.
+
+    Args:
+        robot: to draw.
+        frames: positions of the nodes [m], at equal times; the first is shown where nothing moves.
+        label: what it shows, for readers who cannot see it.
+        step: time between frames [s].
+
+    Raises:
+        InputError: a body in space.
+    """
+    skin = Skin.of(robot.body)
+    seconds = step * (len(frames) - 1)
+    shapes = [_path(skin.shape(nodes)) for nodes in frames]
+    seams = [_path(skin.seam(nodes)) for nodes in frames]
+    parts = [
+        _moving(shapes, seconds, fill=FELT, stroke=SEAM, stroke_width="1.3"),
+        _moving(seams, seconds, fill=FELT_LIGHT, stroke=STITCH, stroke_width="1.1", stroke_dasharray="3 2.4"),
+        *_cables(robot, frames, seconds),
+        *_winches(robot, frames, seconds),
+    ]
+    rings = [skin.shape(nodes)[0] for nodes in frames]
+    low, high = MILLIMETRES * np.min(np.concatenate(rings), axis=0), MILLIMETRES * np.max(np.concatenate(rings), axis=0)
+    border = 0.04 * float((high - low).max())
+    box = [low[0] - border, -high[1] - border, *(high - low + 2 * border)]
+    return tag(
+        "svg",
+        *parts,
+        xmlns="http://www.w3.org/2000/svg",
+        viewBox=" ".join(f"{value:.1f}" for value in box),
+        class_="figure",
+        role="img",
+        aria_label=label,
+    )
+
+
+def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
+    colours, runs = winch_colours(robot), [cable_runs(robot, nodes) for nodes in frames]
+    lines = []
+    for index, cable in enumerate(robot.cables):
+        bars = [_path([stopper_bar(run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
+        paths = [_path([run[index] / MILLIMETRES], closed=False) for run in runs]
+        for colour, width in ((LIGHT, 3.2), (colours[cable.winch], 1.7)):
+            look = {"fill": "none", "stroke": colour, "stroke_linecap": "round"}
+            lines.append(_moving(paths, seconds, stroke_width=f"{width}", **look))
+            lines.append(_moving(bars, seconds, stroke_width=f"{width + 0.5}", **look))
+    return lines
+
+
+def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
+    places = [winch_places(robot, nodes) for nodes in frames]
+    spools = []
+    for index, (winch, colour) in enumerate(zip(robot.winches, winch_colours(robot).values(), strict=True)):
+        radius = spool_size(winch, SCALE) * SCALE / 2
+        discs = [
+            tag("circle", r=f"{radius * share:.2f}", fill=fill)
+            for share, fill in ((1.12, LIGHT), (1, colour), (0.58, mix(colour, LIGHT, 0.75)), (0.2, colour))
+        ]
+        way = [f"{place[index][0]:.2f} {-place[index][1]:.2f}" for place in places]
+        move = _animation("animateTransform", "transform", way, seconds, type="translate")
+        spools.append(tag("g", *discs, move, transform=f"translate({way[0]})"))
+    return spools
+
+
+def _moving(paths: Sequence[str], seconds: float, **look: str) -> Html:
+    return tag("path", _animation("animate", "d", paths, seconds), d=paths[0], **look)
+
+
+def _animation(kind: str, attribute: str, values: Sequence[str], seconds: float, **more: str) -> Html:
+    time = {"dur": f"{seconds:.2f}s", "repeatCount": "indefinite"}
+    return tag(kind, attributeName=attribute, values=";".join(values), **time, **more)
+
+
+def _path(rings: Iterable[Points], *, closed: bool = True) -> str:
+    """Path data of lines [m], in millimetres with y down."""
+    end = "Z" if closed else ""
+    return "".join(
+        "M" + "L".join(f"{x:.1f} {-y:.1f}" for x, y in MILLIMETRES * np.asarray(ring)) + end for ring in rings
+    )

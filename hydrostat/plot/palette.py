@@ -1,0 +1,50 @@
+"""The colours of every picture: one language, safe for colour-blind eyes, at home on light and on dark pages."""
+
+from hydrostat.robot import Robot
+
+INK = "#2b2833"
+MUTED = "#85808f"
+GRID = "#ebe8ee"
+GHOST = "#b4afbc"
+GHOST_FILL = "#f3f1f5"
+PAPER = "#ffffff"
+ERROR = "#c8243f"
+
+PAGE_COLOURS = {
+    INK: "ink",
+    MUTED: "muted",
+    GRID: "grid",
+    GHOST: "ghost",
+    GHOST_FILL: "ghost-fill",
+    PAPER: "paper",
+}
+"""Colours that follow the page: there they become CSS variables of these names, which dark pages change."""
+
+FELT = "#f0c29c"
+FELT_LIGHT = "#f8d9bd"
+SEAM = "#b9774b"
+STITCH = "#fff1e2"
+MESH = "#a8683e"
+DARK = "#2a2732"
+LIGHT = "#fffdfb"
+
+WINCHES = ("#0b5fa5", "#00795f", "#a8256f", "#5a3da6", "#7a4a12", "#1787b8", "#5f6d0c", "#8b1b34")
+"""A colour for each winch, in order; all stand out on felt and carry white letters."""
+
+TENSION = ("#efa35c", "#e56a4f", "#c33c6a", "#842681", "#40156b", "#150b37")
+"""From little tension to much: as even in lightness as magma, without its ends that felt or paper would swallow."""
+
+
+def winch_colours(robot: Robot) -> dict[str, str]:
+    """The colour of each winch, by name."""
+    return {winch.name: WINCHES[index % len(WINCHES)] for index, winch in enumerate(robot.winches)}
+
+
+def mix(colour: str, other: str, share: float) -> str:
+    """A colour with a share, 0 to 1, of another."""
+    pairs = zip(_channels(colour), _channels(other), strict=True)
+    return "#" + "".join(f"{round((1 - share) * first + share * second):02x}" for first, second in pairs)
+
+
+def _channels(colour: str) -> list[int]:
+    return [int(colour[start : start + 2], 16) for start in (1, 3, 5)]

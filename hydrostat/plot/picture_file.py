@@ -1,0 +1,96 @@
+"""From a figure to bytes: PNG files, and SVG that lies within a page. The same figure gives the same bytes."""
+
+import io
+import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+from matplotlib.text import Text
+
+from hydrostat.plot.labels import HALO
+from hydrostat.plot.palette import PAGE_COLOURS, PAPER
+
+
+def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
+    """Write a figure on white paper as PNG, whole or not at all; returns its path."""
+    import os
+
+    path = Path(path)
+    buffer = io.BytesIO()
+    with _settings(), _haloed(figure):
+        figure.savefig(buffer, format="png", dpi=dpi, facecolor=PAPER, metadata={"Software": None})
+    part = path.with_name(f".{path.name}.part")
+    part.write_bytes(buffer.getvalue())
+    os.replace(part, path)
+    return path
+
+
+def inline_svg(figure: Figure, *, name: str, label: str) -> str:
+    """A figure as an `<svg>` element for a page; its quiet colours and its letters follow the page.
+
+    Args:
+        figure: to draw.
+        name: unique in the page, so that inner references do not meet those of other pictures.
+        label: what it shows, for readers who cannot see it.
+    """
+    import html
+
+    buffer = io.StringIO()
+    with _settings(salt=name):
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    text = buffer.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"\s*<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(rf' id="{HALO}"', f' class="{HALO}"', text)
+    text = re.sub(r' id="(?:figure|axes|patch|line2d|text|matplotlib\.axis|xtick|ytick|PathCollection)_\d+"', "", text)
+    text = re.sub(r"<!--.*?-->\s*", "", text, flags=re.DOTALL)
+    text = re.sub(r"font-family: [^;]*;", "", text)
+    text = re.sub(r"font: ([^;\"]*?px) [^;\"]*", r"font: \1 var(--figure-font, sans-serif)", text)
+    text = re.sub(r"<style.*?</style>", "", text, flags=re.DOTALL)
+    text = re.sub(r' (d|points|transform)="([^"]*)"', _shorter, text)
+    text = re.sub(r">\s+<", "><", text).replace("<g/>", "").replace("<defs></defs>", "")
+    for colour, variable in PAGE_COLOURS.items():
+        text = text.replace(colour, f"var(--{variable}, {colour})")
+    box = re.search(r'viewBox="[^"]*"', text)
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" {box[0] if box else ""}'
+    head += f' class="figure" role="img" aria-label="{html.escape(label)}">'
+    return re.sub(r"<svg[^>]*>", lambda _: head, text, count=1).strip()
+
+
+def _shorter(match: re.Match[str]) -> str:
+    """An attribute of numbers, to a hundredth of a point and on one line."""
+    numbers = re.sub(r"-?\d+\.\d+", lambda number: f"{float(number[0]):.2f}".rstrip("0").rstrip("."), match[2])
+    return f' {match[1]}="{" ".join(numbers.split())}"'
+
+
+@contextmanager
+def _settings(salt: str = "hydrostat") -> Iterator[None]:
+    """Settings for drawing; a letter that the font lacks is drawn as a box, without a warning."""
+    settings: Any = {
+        "svg.fonttype": "none",
+        "svg.hashsalt": salt,
+        "font.family": ["DejaVu Sans"],
+        "path.simplify": False,
+    }
+    with rc_context(settings), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        yield
+
+
+@contextmanager
+def _haloed(figure: Figure) -> Iterator[None]:
+    """Words with a border of paper around their letters, while a PNG is made; a page does this by its style."""
+    texts = [text for text in figure.findobj(Text) if text.get_gid() == HALO]
+    for text in texts:
+        text.set_path_effects([withStroke(linewidth=2.4, foreground=PAPER, alpha=0.9)])
+    try:
+        yield
+    finally:
+        for text in texts:
+            text.set_path_effects([])

@@ -1,0 +1,77 @@
+"""The top of the report: the robot at rest and in its poses, and how near it comes to them."""
+
+import numpy as np
+
+from hydrostat.design.network import Network
+from hydrostat.plot.html import Html, tag
+from hydrostat.plot.labels import counted
+from hydrostat.plot.motion import motion_frames, motion_svg
+from hydrostat.plot.picture_file import inline_svg
+from hydrostat.plot.pose_figures import draw_portrait
+from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.skin import Skin
+from hydrostat.plot.targets import rest_errors
+
+PORTRAIT = 4.6
+"""Width of a portrait [inch]."""
+
+
+def hero(network: Network, title: str) -> Html:
+    """Headline, the three errors, and portraits at rest and in the first pose."""
+    robot = network.robot
+    winches = counted(len(robot.winches), "winch", "winches")
+    cables = counted(len(robot.cables), "cable", "cables")
+    poses = counted(len(network.reached), "pose", "poses")
+    return tag(
+        "div",
+        tag("p", "hydrostat \N{MIDDLE DOT} design report", class_="eyebrow"),
+        tag("h1", title),
+        tag("p", f"A soft body, {winches} and {cables}, designed for {poses}. This page tells how they were found, "
+            "and how near the robot comes to what was asked."),
+        _path(network, f"with {winches} and {cables}"),
+        _portraits(network),
+        class_="hero",
+    )  # fmt: skip
+
+
+def _path(network: Network, words: str) -> Html:
+    """Error at rest, with all muscles, with the network."""
+    at_rest = [error for reached in network.reached for error in rest_errors(network.robot, reached.target).values()]
+    steps = [_step(_rms(np.array(at_rest)), "at rest, nothing pulls")]
+    if network.activations:
+        bound = _rms(np.array([activation.rms_error for activation in network.activations]))
+        fibres = len(network.activations[0].fibres)
+        steps.append(_step(bound, f"if each of {fibres} muscle fibres could pull by itself"))
+    share = 100 * network.rms_error / network.robot.body.mesh.size
+    steps.append(_step(network.rms_error, f"{words}: {share:.1f} % of the body's size", best=True))
+    return tag("ol", *steps, class_="path")
+
+
+def _step(error: float, words: str, *, best: bool = False) -> Html:
+    number = tag("b", f"{MILLIMETRES * error:.1f}", tag("small", "mm rms"))
+    return tag("li", number, tag("span", words), **({"class_": "best"} if best else {}))
+
+
+def _rms(errors: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(errors**2)))
+
+
+def _portraits(network: Network) -> Html:
+    robot, first = network.robot, network.reached[0]
+    skin, rest = Skin.of(robot.body), robot.body.mesh.nodes
+    frame = np.concatenate([skin.shape(reached.pose.nodes)[0] for reached in network.reached] + [skin.shape(rest)[0]])
+    still, posed = (
+        Html(inline_svg(draw_portrait(robot, nodes, frame=frame, width=PORTRAIT), name=name, label=label))
+        for nodes, name, label in ((rest, "hero-rest", "At rest"), (first.pose.nodes, "hero-pose", "In a pose"))
+    )
+    frames = motion_frames(robot, [reached.pose.contractions for reached in network.reached])
+    moving = motion_svg(robot, frames, label="The robot moves from rest into each of its poses and back")
+    names = ", ".join(reached.target.name for reached in network.reached)
+    how = ", by its own winches, in simulation"
+    return tag(
+        "div",
+        tag("figure", still, tag("figcaption", tag("b", "At rest"), ", as it is sewn")),
+        tag("figure", posed, tag("figcaption", tag("b", first.target.name), how), class_="still"),
+        tag("figure", moving, tag("figcaption", tag("b", names), how), class_="moving"),
+        class_="grid",
+    )

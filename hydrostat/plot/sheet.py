@@ -1,0 +1,151 @@
+"""`Sheet`: an empty picture with a millimetre grid."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+
+from hydrostat.arrays import Points
+from hydrostat.plot.palette import GRID, INK, MUTED
+
+MILLIMETRES = 1e3
+"""Pictures are drawn in millimetres."""
+
+WIDTH = 6.4
+"""Width of a picture [inch]."""
+
+TALLEST = 1.15
+"""Greatest height of a picture, as a multiple of its width."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A picture to draw on, in millimetres, all sides to the same scale.
+
+    Attributes:
+        figure: the whole picture.
+        axes: where the body is drawn.
+        low: lower left corner of the axes [mm].
+        high: upper right corner [mm].
+        scale: millimetres of the body that one point (1/72 inch) on the picture shows.
+    """
+
+    figure: Figure
+    axes: Axes
+    low: np.ndarray
+    high: np.ndarray
+    scale: float
+
+    def curve(self, points: Points, **style: object) -> None:
+        """A line through points [mm]; rows of NaN break it."""
+        look: dict[str, object] = {"solid_capstyle": "round", "solid_joinstyle": "round", "clip_on": False, **style}
+        self.axes.add_line(Line2D(points[:, 0], points[:, 1], **look))  # pyright: ignore[reportArgumentType]
+
+    def segments(self, ends: np.ndarray, **style: object) -> None:
+        """Many separate lines [mm], (lines, 2, 2), as one path."""
+        if len(ends):
+            gaps = np.full((len(ends), 1, 2), np.nan)
+            self.curve(np.concatenate([ends, gaps], axis=1).reshape(-1, 2), **style)
+
+    def dots(self, points: Points, size: float, **style: object) -> None:
+        """Round dots of a diameter [pt] at points [mm]."""
+        self.curve(points, linestyle="none", marker="o", markersize=size, **style)
+
+    def area(self, rings: list[Points], **style: object) -> None:
+        """A filled shape of one or more rings [mm]."""
+        closed = [Path(np.concatenate([ring, ring[:1]]), closed=True) for ring in rings]
+        self.axes.add_patch(PathPatch(Path.make_compound_path(*closed), clip_on=False, **style))  # pyright: ignore[reportArgumentType]
+
+    def text(self, place: tuple[float, float], words: str, **style: object) -> None:
+        """Words as they are: no formula is read in them."""
+        self.axes.text(*place, words, **{"parse_math": False, "clip_on": False, **style})  # pyright: ignore[reportArgumentType]
+
+
+def new_sheet(
+    points: Points,
+    *,
+    title: str = "",
+    subtitle: str = "",
+    width: float = WIDTH,
+    ruled: bool = True,
+    bar: bool = False,
+    room: float = 0.09,
+) -> Sheet:
+    """An empty sheet that shows all of the points.
+
+    Args:
+        points: what must be seen [mm].
+        title: its name, in the upper left corner.
+        subtitle: a line below it; left out with the title.
+        width: of the picture [inch].
+        ruled: with a grid and numbers in millimetres.
+        bar: leave room for a colour bar.
+        room: free border, as a share of the longest side.
+    """
+    border = room * float(np.ptp(points, axis=0).max())
+    low, high = points.min(axis=0) - border, points.max(axis=0) + border
+    left, right, bottom = (0.42, 0.12, 0.32) if ruled else (0.05, 0.05, 0.05)
+    top = 0.62 if title else 0.48 if bar else 0.1
+    inches = width - left - right
+    wide, tall = high - low
+    if tall / wide > TALLEST:
+        low, high = _widen(low, high, tall / TALLEST)
+        wide = tall / TALLEST
+    height = inches * tall / wide
+    figure = Figure(figsize=(width, height + top + bottom), facecolor="none")
+    FigureCanvasAgg(figure)
+    size = figure.get_size_inches()
+    axes = figure.add_axes((left / size[0], bottom / size[1], inches / size[0], height / size[1]))
+    sheet = Sheet(figure, axes, low, high, wide / (inches * 72))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), facecolor="none", autoscale_on=False)
+    _rule(sheet) if ruled else axes.set_axis_off()
+    if title:
+        _head(figure, title, subtitle)
+    return sheet
+
+
+def _widen(low: np.ndarray, high: np.ndarray, wide: float) -> tuple[np.ndarray, np.ndarray]:
+    more = np.array([(wide - (high - low)[0]) / 2, 0.0])
+    return low - more, high + more
+
+
+def _rule(sheet: Sheet) -> None:
+    """Thin grid lines at round millimetres, numbered along the left and lower sides."""
+    step = _step(float((sheet.high - sheet.low).max()))
+    axes = sheet.axes
+    for axis, low, high in ((axes.xaxis, *_span(sheet, 0)), (axes.yaxis, *_span(sheet, 1))):
+        ticks = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
+        axis.set_ticks(ticks, [f"{tick:.10g}".replace("-", "\N{MINUS SIGN}") for tick in ticks])
+    axes.tick_params(length=0, pad=4, labelsize=7, labelcolor=MUTED)
+    axes.grid(True, color=GRID, linewidth=0.6)
+    axes.set_axisbelow(True)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.annotate(
+        "mm", (0, 0), xycoords="axes fraction", xytext=(-4, -4), textcoords="offset points", fontsize=7, color=MUTED,
+        ha="right", va="top",
+    )  # fmt: skip
+
+
+def _span(sheet: Sheet, side: int) -> tuple[float, float]:
+    return float(sheet.low[side]), float(sheet.high[side])
+
+
+def _step(span: float) -> float:
+    """A round distance between grid lines [mm], such that there are four to ten."""
+    power = 10.0 ** np.floor(np.log10(span / 4))
+    return float(max(factor * power for factor in (1, 2, 5) if factor * power <= span / 4))
+
+
+def _head(figure: Figure, title: str, subtitle: str) -> None:
+    width, height = figure.get_size_inches()
+    for words, down, size, colour, weight in ((title, 0.1, 11, INK, "bold"), (subtitle, 0.31, 8, MUTED, "normal")):
+        figure.text(
+            0.12 / width, 1 - down / height, words, fontsize=size, color=colour, weight=weight, va="top",
+            parse_math=False,
+        )  # fmt: skip

@@ -1,0 +1,103 @@
+"""`Skin`: the smooth boundary of a flat body, stuck to its mesh so that it follows every pose."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Self
+
+import numpy as np
+import shapely
+from shapely import MultiPolygon, Polygon
+
+from hydrostat.arrays import Nodes, Points
+from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import Anchors
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot import Body
+
+RING_POINTS = 320
+"""Points on a ring as long as the body's whole boundary."""
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """Rings of points on and inside the boundary of a body.
+
+    Attributes:
+        anchors: all points of all rings.
+        rings: the rings of the boundary, as slices of the anchors; the outer ring first.
+        stitches: the rings of the seam, a little inside.
+    """
+
+    anchors: Anchors
+    rings: tuple[slice, ...]
+    stitches: tuple[slice, ...]
+
+    @classmethod
+    def of(cls, body: Body) -> Self:
+        """The skin of a flat body: its drawing where there is one, else the boundary of its mesh.
+
+        Raises:
+            InputError: a body in space.
+        """
+        if body.mesh.dim != 2:
+            raise InputError("pictures of bodies in space are not there yet; only flat bodies can be drawn")
+        shape = _shape(body)
+        inset = shape.buffer(-0.016 * body.mesh.size, join_style="round")
+        edges, seams = _rings(shape, shape.length), _rings(inset, shape.length)
+        ends = np.cumsum([0, *map(len, [*edges, *seams])])
+        slices = [slice(int(start), int(end)) for start, end in pairwise(ends)]
+        points = np.concatenate([*edges, *seams])
+        return cls(_stick(body.mesh, points), tuple(slices[: len(edges)]), tuple(slices[len(edges) :]))
+
+    def shape(self, nodes: Nodes) -> list[Points]:
+        """The rings of the boundary [m] when the nodes are at `nodes` [m]."""
+        return self._at(nodes, self.rings)
+
+    def seam(self, nodes: Nodes) -> list[Points]:
+        """The rings of the seam [m] when the nodes are at `nodes` [m]."""
+        return self._at(nodes, self.stitches)
+
+    def _at(self, nodes: Nodes, rings: tuple[slice, ...]) -> list[Points]:
+        positions = self.anchors.positions(nodes)
+        return [_soften(positions[ring]) for ring in rings]
+
+
+def _shape(body: Body) -> Polygon | MultiPolygon:
+    if body.outline is not None:
+        return body.outline.polygon
+    triangles = shapely.polygons(body.mesh.nodes[body.mesh.elements])
+    return shapely.union_all(triangles)  # pyright: ignore[reportReturnType]
+
+
+def _rings(shape: Polygon | MultiPolygon, length: float) -> list[Points]:
+    """Every ring of a shape as evenly spaced points, the first not repeated."""
+    rings = []
+    for part in getattr(shape, "geoms", [shape]):
+        for ring in (part.exterior, *part.interiors):
+            if ring.length > 0:
+                count = max(12, round(RING_POINTS * ring.length / length))
+                places = np.arange(count) / count * ring.length
+                rings.append(np.array([ring.interpolate(place).coords[0] for place in places]))
+    return rings
+
+
+def _stick(mesh: Mesh, points: Points) -> Anchors:
+    """Stick points to the element that they lie in, or nearly lie in.
+
+    Other than `locate`, a point a little outside is not moved onto the mesh but keeps its place beside the element:
+    a smooth drawing stays smooth though its mesh has corners.
+    """
+    corners = mesh.nodes[mesh.elements]
+    inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
+    local = np.einsum("eij,pej->pei", inverse, points[:, None] - corners[None, :, 0])
+    weights = np.concatenate([1.0 - local.sum(axis=2, keepdims=True), local], axis=2)
+    best = weights.min(axis=2).argmax(axis=1)
+    rows = np.arange(len(points))
+    return Anchors(mesh.elements[best], weights[rows, best], np.zeros(len(points)))
+
+
+def _soften(ring: Points) -> Points:
+    """A closed ring with the small kinks between elements evened out."""
+    before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
+    smooth = 0.25 * before + 0.5 * ring + 0.25 * after
+    return 0.5 * ring + 0.5 * smooth

@@ -1,0 +1,64 @@
+"""Markers, where they should go, and how far from there they are."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.patches import FancyArrowPatch
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.plot.palette import DARK, ERROR, LIGHT
+from hydrostat.plot.sheet import MILLIMETRES, Sheet
+from hydrostat.robot import Pose, Robot
+
+
+def rest_markers(robot: Robot) -> dict[str, Vector]:
+    """Each marker in the rest pose [m]."""
+    return {marker.name: np.array(marker.at) for marker in robot.markers}
+
+
+def draw_markers(sheet: Sheet, places: Mapping[str, Vector], *, size: float = 6.0) -> None:
+    """A white dot with a dark rim for each marker [m]."""
+    if places:
+        points = MILLIMETRES * np.array(list(places.values()))
+        sheet.dots(points, size, color=LIGHT, markeredgecolor=DARK, markeredgewidth=1.3, zorder=16)
+
+
+def draw_crosses(sheet: Sheet, pose: Pose) -> None:
+    """A cross at each target."""
+    cross = 3.2 * sheet.scale * np.array([[(-1, -1), (1, 1)], [(-1, 1), (1, -1)]])
+    for target in pose.targets.values():
+        strokes = cross + MILLIMETRES * np.array(target)
+        sheet.segments(strokes, color=LIGHT, linewidth=3.6, zorder=17)
+        sheet.segments(strokes, color=DARK, linewidth=1.5, zorder=17.1)
+
+
+def draw_arrows(sheet: Sheet, places: Mapping[str, Vector], pose: Pose) -> None:
+    """An arrow from each marker [m] to its target, a little short of both."""
+    for name, target in pose.targets.items():
+        start, end = MILLIMETRES * places[name], MILLIMETRES * np.array(target)
+        if np.linalg.norm(end - start) > 10 * sheet.scale:
+            for colour, width, order in ((LIGHT, 3.4, 14), (DARK, 1.3, 14.1)):
+                arrow = FancyArrowPatch(
+                    (start[0], start[1]), (end[0], end[1]), arrowstyle="-|>,head_length=4.2,head_width=2.1",
+                    shrinkA=4, shrinkB=6, color=colour, linewidth=width, capstyle="round", joinstyle="round",
+                    zorder=order, clip_on=False, connectionstyle="arc3,rad=0.08",
+                )  # fmt: skip
+                sheet.axes.add_patch(arrow)
+
+
+def draw_errors(sheet: Sheet, places: Mapping[str, Vector], pose: Pose) -> None:
+    """A thin red line from each marker [m] to its target."""
+    ends = np.array([[places[name], target] for name, target in pose.targets.items()])
+    sheet.segments(MILLIMETRES * ends, color=LIGHT, linewidth=2.6, zorder=15)
+    sheet.segments(MILLIMETRES * ends, color=ERROR, linewidth=1.3, zorder=15.1)
+
+
+def target_points(pose: Pose) -> Points:
+    """All targets [mm]."""
+    return MILLIMETRES * np.array(list(pose.targets.values()))
+
+
+def rest_errors(robot: Robot, pose: Pose) -> dict[str, float]:
+    """Distance of each targeted marker from its target while the robot rests [m]."""
+    markers = rest_markers(robot)
+    return {name: float(np.linalg.norm(markers[name] - np.array(target))) for name, target in pose.targets.items()}

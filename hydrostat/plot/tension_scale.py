@@ -1,0 +1,65 @@
+"""`TensionScale`: how much a fibre or cable pulls, as colour and width."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap, to_hex
+
+from hydrostat.arrays import Vector
+from hydrostat.plot.palette import INK, MUTED, TENSION
+from hydrostat.plot.sheet import Sheet
+
+LEVELS = 16
+"""Lines are drawn in so many steps of tension; the eye tells no more."""
+
+
+@dataclass(frozen=True)
+class TensionScale:
+    """Colours from no tension to the most.
+
+    Attributes:
+        most: tension at the dark end [N].
+    """
+
+    most: float
+
+    @classmethod
+    def of(cls, tensions: Vector) -> Self:
+        """The scale that just holds all tensions [N]."""
+        most = float(np.max(tensions, initial=0.0))
+        return cls(most if most > 0 else 1.0)
+
+    def colour(self, tension: float) -> str:
+        """Colour of a tension [N], as #rrggbb."""
+        return to_hex(_colours()(min(max(tension / self.most, 0.0), 1.0)))
+
+    def draw_lines(self, sheet: Sheet, ends: np.ndarray, tensions: Vector, *, widest: float = 4.2) -> None:
+        """Lines [mm], (lines, 2, 2), the stronger the wider, darker and further in front; slack ones as hair lines."""
+        levels = np.clip(np.ceil(tensions / self.most * LEVELS), 0, LEVELS).astype(int)
+        sheet.segments(ends[levels == 0], color=self.colour(0), linewidth=0.3, alpha=0.5, zorder=6)
+        for level in range(1, LEVELS + 1):
+            share = (level - 0.5) / LEVELS
+            sheet.segments(
+                ends[levels == level],
+                color=self.colour(share * self.most),
+                linewidth=0.5 + (widest - 0.5) * share,
+                zorder=6 + share,
+            )
+
+    def draw_bar(self, sheet: Sheet, *, of: str = "tension") -> None:
+        """A small bar in the upper right corner that tells what the colours mean."""
+        figure = sheet.figure
+        width, height = figure.get_size_inches()
+        bar = figure.add_axes(((width - 1.75) / width, 1 - 0.40 / height, 1.4 / width, 0.07 / height))
+        bar.imshow(np.linspace(0, 1, 128)[None], aspect="auto", cmap=_colours(), extent=(0, 1, 0, 1))
+        bar.set(yticks=[])
+        bar.set_xticks([0, 0.5, 1], ["0", f"{self.most / 2:.2g}", f"{self.most:.2g} N"])
+        bar.tick_params(length=0, pad=3, labelsize=7, labelcolor=MUTED)
+        bar.set_title(of, fontsize=7, color=INK, loc="left", pad=3)
+        for spine in bar.spines.values():
+            spine.set(color=MUTED, linewidth=0.4)
+
+
+def _colours() -> LinearSegmentedColormap:
+    return LinearSegmentedColormap.from_list("tension", TENSION)

@@ -1,0 +1,157 @@
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from builders import box_robot, strip_robot
+from matplotlib.figure import Figure
+from PIL import Image
+from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_robot
+
+from hydrostat import plot
+from hydrostat.errors import InputError
+from hydrostat.geometry import Outline, triangulate
+from hydrostat.plot.skin import Skin
+from hydrostat.robot import Mount
+
+FIGURES = (
+    "draw_rest", "draw_target", "draw_network", "draw_pose", "draw_reached", "draw_activation", "draw_candidates",
+    "draw_trees", "draw_portrait",
+)  # fmt: skip
+
+
+def figure(kind: str) -> Figure:
+    """A new picture of each kind, of the robot with hostile names."""
+    network = hostile_network()
+    robot, activation, reached = network.robot, network.activations[0], network.reached[0]
+    arguments = {
+        "draw_rest": (),
+        "draw_target": (reached.target,),
+        "draw_network": (),
+        "draw_pose": (reached.pose,),
+        "draw_reached": (reached,),
+        "draw_activation": (activation,),
+        "draw_candidates": (activation, network.candidates[0]),
+        "draw_trees": (network.trees,),
+        "draw_portrait": (reached.pose.nodes,),
+    }
+    return getattr(plot, kind)(robot, *arguments[kind])
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_png(kind: str, tmp_path: Path) -> None:
+    one = plot.save_png(figure(kind), tmp_path / "one.png", dpi=60)
+    two = plot.save_png(figure(kind), tmp_path / "two.png", dpi=60)
+    with Image.open(one) as image:
+        assert image.format == "PNG"
+        assert min(image.size) > 50
+        assert len(image.convert("RGB").getcolors(1 << 20) or []) > 20
+    assert one.read_bytes() == two.read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one.png", "two.png"]
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_svg(kind: str) -> None:
+    text = plot.inline_svg(figure(kind), name="it", label=SCRIPT)
+    assert text == plot.inline_svg(figure(kind), name="it", label=SCRIPT)
+    root = ElementTree.fromstring(text)
+    assert root.get("aria-label") == SCRIPT
+    names = [element.get("id") for element in root.iter() if element.get("id")]
+    assert len(names) == len(set(names))
+    assert "<script" not in text
+
+
+def test_inner_references_differ_between_pictures() -> None:
+    ids = [
+        {
+            element.get("id")
+            for element in ElementTree.fromstring(plot.inline_svg(figure("draw_rest"), name=name, label="")).iter()
+        }
+        - {None}
+        for name in ("one", "two")
+    ]
+    assert ids[0]
+    assert not ids[0] & ids[1]
+
+
+def test_names_are_shown_as_they_are() -> None:
+    words = "".join(ElementTree.fromstring(plot.inline_svg(figure("draw_rest"), name="it", label="")).itertext())
+    assert SCRIPT in words
+    assert FORMULA in words
+
+
+def test_quiet_colours_follow_the_page() -> None:
+    text = plot.inline_svg(figure("draw_rest"), name="it", label="")
+    assert "var(--ink, #" in text
+    assert "var(--grid, #" in text
+
+
+def test_a_robot_without_cables_or_markers() -> None:
+    from dataclasses import replace
+
+    bare = replace(strip_robot(columns=4, rows=2).with_network((), ()), markers=())
+    assert plot.inline_svg(plot.draw_rest(bare), name="it", label="").endswith("</svg>")
+
+
+def test_a_winch_in_the_world() -> None:
+    figure = plot.draw_network(strip_robot(columns=4, rows=2, mount=Mount.WORLD))
+    assert figure.axes[0].get_xlim()[0] < -50  # mm; it stands beyond the body
+
+
+def test_bodies_in_space_are_refused() -> None:
+    with pytest.raises(InputError, match="space"):
+        plot.draw_rest(box_robot())
+
+
+def test_skin_follows_the_drawing_and_an_affine_motion() -> None:
+    """Oracle: an affine map of the nodes maps the drawing itself, and evening out moves no straight line."""
+    from dataclasses import replace
+
+    angles = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+    drawing = Outline(0.1 * np.column_stack([np.cos(angles), np.sin(angles)]))
+    body = strip_robot().body
+    body = replace(body, mesh=triangulate(drawing, 0.03), outline=drawing)
+    shear = np.array([[1.2, 0.3], [0.0, 0.9]])
+    skin = Skin.of(body)
+    ring = skin.shape(body.mesh.nodes)[0]
+    np.testing.assert_allclose(np.linalg.norm(ring, axis=1), 0.1, atol=1e-4)
+    np.testing.assert_allclose(skin.shape(body.mesh.nodes @ shear)[0], ring @ shear, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("statement", "absent"),
+    [
+        ("import hydrostat, hydrostat.robot, hydrostat.simulation, hydrostat.design", "matplotlib"),
+        ("import hydrostat", "hydrostat.plot"),
+        ("import hydrostat.plot", "matplotlib.pyplot"),
+    ],
+)
+def test_imports_stay_light(statement: str, absent: str) -> None:
+    code = f"{statement}\nimport sys\nsys.exit({absent!r} in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_drawing_needs_no_pyplot_and_changes_no_settings() -> None:
+    import matplotlib
+
+    before = dict(matplotlib.rcParams)
+    plot.inline_svg(figure("draw_reached"), name="it", label="")
+    assert "matplotlib.pyplot" not in sys.modules
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_every_public_name_exists() -> None:
+    assert plot.__all__ == sorted(plot.__all__)
+    assert all(hasattr(plot, name) for name in plot.__all__)
+
+
+def test_motion_begins_and_ends_at_rest() -> None:
+    robot = hostile_robot()
+    frames = plot.motion_frames(robot, [np.array([0.005, 0.0])], steps=3)
+    assert frames[0] is robot.body.mesh.nodes
+    assert frames[-1] is robot.body.mesh.nodes
+    root = ElementTree.fromstring(plot.motion_svg(robot, frames, label=SCRIPT))
+    values = [len(element.get("values", "").split(";")) for element in root.iter() if element.get("values")]
+    assert set(values) == {len(frames)}

@@ -1,0 +1,96 @@
+import html
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from plot.designs import FORMULA, SCRIPT, hostile_network
+
+from hydrostat.errors import InputError
+from hydrostat.plot import report_text, write_report
+from hydrostat.robot import robot_hash
+
+VOID = {"meta"}
+
+
+class Page(HTMLParser):
+    """Reads a page; every element must be closed in turn."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[str] = []
+        self.links: list[str] = []
+        self.words: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.links += [value or "" for name, value in attrs if name in ("src", "href", "xlink:href")]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.handle_starttag(tag, attrs)
+        self.open.remove(tag) if tag not in VOID else None
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.words.append(data)
+
+
+def test_report_names_everything_and_runs_nothing() -> None:
+    network = hostile_network()
+    text = report_text(network, facts={"seed": 7, "<i>": "<img src=x onerror=alert(1)>"})
+    page = Page(text)
+    assert "script" not in page.tags
+    assert "img" not in page.tags
+    assert "b" in page.tags
+    assert html.escape(SCRIPT) in text
+    for words in (SCRIPT, FORMULA, "<b>", "<i>", network.robot.name, robot_hash(network.robot), "7"):
+        assert any(words in part for part in page.words), words
+
+
+def test_report_needs_no_other_file() -> None:
+    page = Page(report_text(hostile_network()))
+    assert all(link.startswith(("#", "data:")) for link in page.links)
+    assert not re.search(r"@import|url\((?!#)", report_text(hostile_network()))
+
+
+def test_same_bytes_again(tmp_path: Path) -> None:
+    one = write_report(hostile_network(), tmp_path / "report.html")
+    two = write_report(hostile_network(), tmp_path / "again.html")
+    assert one.read_bytes() == two.read_bytes()
+    assert len(one.read_bytes()) < 3e6
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["again.html", "report.html"]
+
+
+def test_numbers_of_the_report() -> None:
+    network = hostile_network()
+    text = report_text(network)
+    for error in network.reached[0].errors.values():
+        assert f">{1e3 * error:.2f}</span>" in text
+    assert f"{1e3 * network.rms_error:.1f}<small>mm rms</small>" in text
+    assert ">10.00</td>" in text  # contraction of the first winch [mm]
+    assert f">{network.reached[0].pose.tensions[0]:.2f}</td>" in text
+
+
+def test_no_muscles_no_chapters_on_muscles() -> None:
+    text = report_text(replace(hostile_network(), activations=(), candidates=(), trees=()))
+    assert "What muscles would do" not in text
+    assert "What it reaches" in text
+
+
+def test_a_design_without_poses_is_refused() -> None:
+    with pytest.raises(InputError, match="at least one pose"):
+        report_text(replace(hostile_network(), reached=()))
+
+
+def test_a_title_that_is_no_valid_text(tmp_path: Path) -> None:
+    path = write_report(hostile_network(), tmp_path / "report.html", title="caf\udce9")
+    assert "caf?" in path.read_text(encoding="utf-8")
