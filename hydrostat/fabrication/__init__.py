@@ -1,1 +1,24 @@
-"""fabrication"""
+"""What a robot is built from: drawings at true scale, in millimetres."""
+
+from hydrostat.fabrication.dxf_writer import pattern_dxf
+from hydrostat.fabrication.kit import export_kit
+from hydrostat.fabrication.options import Corner, PatternOptions
+from hydrostat.fabrication.pattern import Panel, Pattern, plush_pattern
+from hydrostat.fabrication.shape import Circle, Layer, Line, Part, Shape
+from hydrostat.fabrication.svg_writer import pattern_svg
+
+__all__ = [
+    "Circle",
+    "Corner",
+    "Layer",
+    "Line",
+    "Panel",
+    "Part",
+    "Pattern",
+    "PatternOptions",
+    "Shape",
+    "export_kit",
+    "pattern_dxf",
+    "pattern_svg",
+    "plush_pattern",
+]

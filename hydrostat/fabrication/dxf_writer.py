@@ -1,0 +1,57 @@
+"""`pattern_dxf`: a pattern as a DXF drawing at true scale."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import StringIO
+
+from ezdxf import colors, new, options  # pyright: ignore[reportPrivateImportUsage]
+from ezdxf.document import Drawing
+from ezdxf.layouts.layout import Modelspace
+from ezdxf.units import MM
+
+from hydrostat.fabrication.pattern import Pattern
+from hydrostat.fabrication.shape import Circle, Layer, Shape
+
+_COLOURS = {Layer.MARK: colors.WHITE, Layer.PINHOLE: colors.BLUE, Layer.CUT: colors.RED}
+"""Index 7 is black on paper and white on a dark screen."""
+
+
+def pattern_dxf(pattern: Pattern) -> bytes:
+    """The bytes of the drawing (R2010, millimetres): layers MARK, PINHOLE and CUT, closed polylines and circles."""
+    with _without_dates():
+        text = StringIO()
+        document = pattern_document(pattern)
+        document.write(text)
+        return text.getvalue().encode(document.output_encoding)
+
+
+def pattern_document(pattern: Pattern) -> Drawing:
+    """The drawing as a document of ezdxf."""
+    document = new("R2010", units=MM)
+    document.header["$EXTMIN"] = (0.0, 0.0, 0.0)
+    document.header["$EXTMAX"] = (pattern.width, pattern.height, 0.0)
+    for layer in Layer:
+        document.layers.add(layer.upper(), color=_COLOURS[layer])
+    space = document.modelspace()
+    for shape in (*(shape for panel in pattern.panels for shape in panel.shapes), *pattern.shapes):
+        _draw(space, shape)
+    return document
+
+
+def _draw(space: Modelspace, shape: Shape) -> None:
+    layer = {"layer": shape.layer.upper()}
+    if isinstance(shape, Circle):
+        space.add_circle(shape.centre, shape.radius, dxfattribs=layer)
+    else:
+        space.add_lwpolyline(shape.points, close=shape.closed, dxfattribs=layer)
+
+
+@contextmanager
+def _without_dates() -> Iterator[None]:
+    """No date and no random identity in a drawing, so that one pattern is one file."""
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before

@@ -1,0 +1,76 @@
+"""`FreeSpace`: the room left on a panel, so that labels stay off holes and lines."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import shapely
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from hydrostat.fabrication.shape import Place, Shape
+
+_CLEARANCE = 1.2
+"""Empty cloth kept round whatever is placed [mm]."""
+
+_ROOMY = 6.0
+"""Empty cloth beyond which more is no better [mm]."""
+
+
+class FreeSpace:
+    """What is still empty inside an outline. Whatever is placed takes its room."""
+
+    def __init__(self, inside: Polygon, shapes: Iterable[Shape]) -> None:
+        self._inside = inside
+        lines = [shapely.get_coordinates(shape.geometry) for shape in shapes]
+        pairs = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
+        self._taken: list[BaseGeometry] = [shapely.LineString(pair) for pair in pairs]
+        shapely.prepare(inside)
+
+    def beside(self, at: Place, width: float, height: float, *, gap: float) -> Place:
+        """Middle of a box as near to a place as there is room, else where it crosses the least [mm]."""
+        reach, angle = np.meshgrid(gap + np.arange(0, 14, 1.5), np.arange(0, 2 * np.pi, np.pi / 8), indexing="ij")
+        x = at[0] + np.cos(angle) * (reach + width / 2)
+        y = at[1] + np.sin(angle) * (reach + height / 2)
+        centres = np.column_stack([x.ravel(), y.ravel()])
+        boxes = _boxes(centres, width, height)
+        x, y = centres[np.argmin(self._crossings(centres, boxes))].tolist()
+        return x, y
+
+    def anywhere(self, width: float, height: float) -> Place | None:
+        """Middle of a box where there is most room, rather near the middle of the panel [mm]; None if nowhere."""
+        left, bottom, right, top = self._inside.bounds
+        x, y = np.meshgrid(np.arange(left, right, 3.0), np.arange(bottom, top, 3.0))
+        centres = np.column_stack([x.ravel(), y.ravel()])
+        boxes = _boxes(centres, width, height)
+        free = self._crossings(centres, boxes) == 0
+        if not free.any():
+            return None
+        centres, boxes, middle = centres[free], boxes[free], self._inside.centroid
+        far = np.hypot(centres[:, 0] - middle.x, centres[:, 1] - middle.y)
+        x, y = centres[np.argmax(self._room(boxes) - 0.05 * far)].tolist()
+        return x, y
+
+    def take(self, middle: Place, width: float, height: float) -> None:
+        """Keep what is placed later off a box."""
+        self._taken.extend(_boxes(np.array([middle]), width, height))
+
+    def _crossings(self, centres: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+        """How many things each box lies on; very many for a box outside."""
+        hits = shapely.STRtree(self._taken).query(boxes, predicate="intersects")[0]
+        outside = ~shapely.contains_xy(self._inside, centres)
+        return np.bincount(hits, minlength=len(boxes)) + 1000 * outside
+
+    def _room(self, boxes: np.ndarray) -> np.ndarray:
+        """Distance from each box to what is next to it, up to `_ROOMY` [mm]."""
+        room = np.full(len(boxes), _ROOMY)
+        found, distances = shapely.STRtree(self._taken).query_nearest(
+            boxes, max_distance=_ROOMY, return_distance=True, all_matches=False
+        )
+        room[found[0]] = distances
+        return room
+
+
+def _boxes(centres: np.ndarray, width: float, height: float) -> np.ndarray:
+    half = np.array([width / 2 + _CLEARANCE, height / 2 + _CLEARANCE])
+    low, high = centres - half, centres + half
+    return shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])

@@ -1,0 +1,130 @@
+"""Labels of a panel: cable numbers, names, the grain of the cloth, each where there is room."""
+
+import numpy as np
+from shapely import LineString, Point, Polygon, transform
+
+from hydrostat.fabrication.free_space import FreeSpace
+from hydrostat.fabrication.lettering import Lettering
+from hydrostat.fabrication.marks import place
+from hydrostat.fabrication.options import PatternOptions
+from hydrostat.fabrication.shape import Layer, Line, Part, Place, Shape
+from hydrostat.robot import Robot
+
+_NAMES = (4.0, 3.0)
+_TITLES = (8.0, 6.0, 5.0, 4.0)
+"""Heights of letters, the best first [mm]."""
+
+_GRAINS = (40.0, 25.0, 15.0)
+"""Lengths of the arrow, the best first [mm]."""
+
+_ALONG = 15.0
+"""How far from its winch a cable is numbered [mm]."""
+
+_NEAR = 4.0
+"""How far off a label still needs no line to its place [mm]."""
+
+
+class PanelLabels:
+    """Puts labels on one panel; those that belong to a place come first, those that fit anywhere last.
+
+    The seam is given as seen from the front; the shapes already on the panel, and the labels, are as they lie on it.
+    """
+
+    def __init__(self, seam: Polygon, shapes: tuple[Shape, ...], *, mirrored: bool) -> None:
+        mirror = transform(seam, lambda points: points * [-1, 1])
+        self._space = FreeSpace(mirror if mirrored else seam, shapes)
+        self._seam = seam
+        self._mirrored = mirrored
+        self._shapes: list[Shape] = []
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """All that was written so far."""
+        return tuple(self._shapes)
+
+    def cable_numbers(self, robot: Robot) -> None:
+        """C1, C2, ... beside the stopper of each cable and where it leaves its winch."""
+        for number, cable in enumerate(robot.cables, start=1):
+            self._beside(f"C{number}", place(cable.points[-1]), gap=4.5)
+        for number, cable in enumerate(robot.cables, start=1):
+            first = LineString([place(point) for point in cable.points[:2]]).intersection(self._seam)
+            if not first.is_empty:
+                near = first.interpolate(min(_ALONG, first.length / 2))
+                self._beside(f"C{number}", (near.x, near.y), gap=2.5)
+
+    def winch_names(self, robot: Robot) -> None:
+        """The name of each winch beside it."""
+        for winch in robot.winches:
+            if self._seam.contains(Point(place(winch.at))):
+                self._beside(winch.name, place(winch.at), gap=1e3 * winch.spool_radius + 1.5)
+
+    def marker_names(self, robot: Robot, options: PatternOptions) -> None:
+        """The name of each marker beside it, if asked for."""
+        for marker in robot.markers if options.marker_names else ():
+            self._beside(marker.name, place(marker.at), gap=3.5)
+
+    def opening(self, mark: Line) -> None:
+        """What the line of the opening is."""
+        (x, y), (end_x, end_y) = mark.points
+        self._beside("opening", (0.2 * x + 0.8 * end_x, 0.2 * y + 0.8 * end_y), gap=2.5)
+
+    def title(self, text: str) -> None:
+        """The name of the panel, as large as there is room for."""
+        for height in _TITLES:
+            lettering = Lettering(text, height)
+            middle = self._space.anywhere(lettering.width, height)
+            if middle is not None:
+                self._shapes.extend(lettering.lines(middle))
+                self._space.take(middle, lettering.width, height)
+                return
+        middle = self._seam.representative_point()
+        self._beside(text, (middle.x, middle.y), gap=0.0)
+
+    def grain(self) -> None:
+        """An arrow along the grain of the cloth, parallel to the y axis of the drawing."""
+        for length in _GRAINS:
+            middle = self._space.anywhere(4.0, length)
+            if middle is not None:
+                self._shapes.extend(_arrow(middle, length))
+                return
+
+    def _beside(self, text: str, at: Place, *, gap: float) -> None:
+        """Text as near to a place as there is room, smaller where it is crowded; led to it by a line from afar."""
+        at = (-at[0], at[1]) if self._mirrored else at
+        choices = []
+        for height in _NAMES:
+            lettering = Lettering(text, height)
+            middle = self._space.beside(at, lettering.width, height, gap=gap)
+            choices.append((lettering, middle, _way(at, middle, lettering)))
+        near = (choice for choice in choices if np.linalg.norm(choice[2]) < gap + _NEAR)
+        lettering, middle, way = next(near, choices[-1])
+        self._shapes.extend(lettering.lines(middle))
+        self._space.take(middle, lettering.width, lettering.height)
+        if np.linalg.norm(way) >= gap + _NEAR:
+            self._shapes.append(_leader(at, way, gap))
+
+
+def _way(at: Place, middle: Place, lettering: Lettering) -> np.ndarray:
+    """From a place to the nearest point of its label [mm]."""
+    half = np.array([lettering.width, lettering.height]) / 2
+    offset = np.subtract(middle, at)
+    return np.sign(offset) * np.maximum(np.abs(offset) - half, 0.0)
+
+
+def _leader(at: Place, way: np.ndarray, gap: float) -> Line:
+    """A thin line from a place, a gap off, almost to its label."""
+    length = np.linalg.norm(way)
+    ends = [np.add(at, way * (distance / length)) for distance in (gap - 1.5, length - 1.0)]
+    points = tuple((float(x), float(y)) for x, y in ends)
+    return Line(layer=Layer.MARK, part=Part.LEADER, points=points)
+
+
+def _arrow(middle: Place, length: float) -> tuple[Line, ...]:
+    """A line with a head at both ends."""
+    x, y = middle
+    low, high = y - length / 2, y + length / 2
+    strokes = (
+        ((x, low), (x, high)),
+        ((x - 2, high - 4), (x, high), (x + 2, high - 4)),
+        ((x - 2, low + 4), (x, low), (x + 2, low + 4)),
+    )
+    return tuple(Line(layer=Layer.MARK, part=Part.GRAIN, points=points) for points in strokes)

@@ -1,0 +1,122 @@
+"""`Line` and `Circle`: what a laser follows, each on a `Layer`."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Self
+
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+Place = tuple[float, float]
+"""A place on a panel or sheet [mm]: x to the right, y up."""
+
+
+class Layer(StrEnum):
+    """An operation of the laser, in the order in which a sheet is worked."""
+
+    MARK = "mark"
+    PINHOLE = "pinhole"
+    CUT = "cut"
+
+
+class Part(StrEnum):
+    """What a shape stands for on the panel."""
+
+    EDGE = "edge"
+    SLIT = "slit"
+    SEAM = "seam"
+    NOTCH = "notch"
+    PINHOLE = "pinhole"
+    CABLE = "cable"
+    SHEATH = "sheath"
+    STOPPER = "stopper"
+    WINCH = "winch"
+    OPENING = "opening"
+    MARKER = "marker"
+    GRAIN = "grain"
+    RULER = "ruler"
+    TEXT = "text"
+    LEADER = "leader"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """A polyline.
+
+    Attributes:
+        layer: what the laser does along it.
+        part: what it stands for.
+        points: [mm]; the first is not repeated at the end of a closed line.
+        closed: whether it ends where it begins.
+    """
+
+    layer: Layer
+    part: Part
+    points: tuple[Place, ...]
+    closed: bool = False
+
+    def moved(self, dx: float, dy: float) -> Self:
+        """The same line elsewhere, by a shift [mm]."""
+        return replace(self, points=tuple((x + dx, y + dy) for x, y in self.points))
+
+    def mirrored(self) -> Self:
+        """The same line with left and right exchanged about x = 0."""
+        return replace(self, points=tuple((-x, y) for x, y in self.points))
+
+    @property
+    def geometry(self) -> BaseGeometry:
+        """The same line for shapely."""
+        return shapely.LinearRing(self.points) if self.closed else shapely.LineString(self.points)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Circle:
+    """A circle.
+
+    Attributes:
+        layer: what the laser does along it.
+        part: what it stands for.
+        centre: [mm].
+        radius: [mm].
+    """
+
+    layer: Layer
+    part: Part
+    centre: Place
+    radius: float
+
+    def moved(self, dx: float, dy: float) -> Self:
+        """The same circle elsewhere, by a shift [mm]."""
+        return replace(self, centre=(self.centre[0] + dx, self.centre[1] + dy))
+
+    def mirrored(self) -> Self:
+        """The same circle with left and right exchanged about x = 0."""
+        return replace(self, centre=(-self.centre[0], self.centre[1]))
+
+    @property
+    def geometry(self) -> BaseGeometry:
+        """The circle, without its inside, for shapely."""
+        return shapely.Point(self.centre).buffer(self.radius).exterior
+
+
+Shape = Line | Circle
+"""Anything on a sheet."""
+
+
+def trace(geometry: BaseGeometry, layer: Layer, part: Part) -> tuple[Line, ...]:
+    """The lines of a geometry [mm]: rings of polygons closed, lines open, points left out."""
+    return tuple(_lines(geometry, layer, part))
+
+
+def _lines(geometry: BaseGeometry, layer: Layer, part: Part) -> Iterable[Line]:
+    if isinstance(geometry, shapely.Polygon):
+        for ring in (geometry.exterior, *geometry.interiors):
+            yield from _lines(ring, layer, part)
+    elif isinstance(geometry, shapely.LineString) and not geometry.is_empty:
+        closed = geometry.is_ring
+        points = tuple((x, y) for x, y in geometry.coords)
+        yield Line(layer=layer, part=part, points=points[:-1] if closed else points, closed=closed)
+    else:
+        for piece in getattr(geometry, "geoms", ()):
+            yield from _lines(piece, layer, part)

@@ -1,0 +1,125 @@
+"""`Skin`: the seam of a flat body and the edge along which its cloth is cut."""
+
+from dataclasses import dataclass
+
+import shapely
+from shapely import MultiLineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.options import PatternOptions
+from hydrostat.robot import Body
+
+_STEPS = 24
+"""Straight pieces of a quarter turn: 0.004 mm from the arc of an 8 mm allowance."""
+
+_TOLERANCE = 0.01
+"""How far an offset line may be straightened [mm], a tenth of a laser's kerf."""
+
+
+@dataclass(frozen=True)
+class Skin:
+    """One panel of cloth, seen from the front.
+
+    Attributes:
+        seam: the body's own outline [mm].
+        cut: its parallel, one seam allowance out into the cloth [mm].
+        slits: further cuts, in bays too narrow for two allowances [mm].
+        problems: why it cannot be cut and sewn as drawn, a line each.
+        warnings: what to mind while sewing, a line each.
+    """
+
+    seam: Polygon
+    cut: Polygon
+    slits: MultiLineString
+    problems: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def flat_skin(body: Body, options: PatternOptions) -> Skin:
+    """The skin of a flat body.
+
+    Raises:
+        InputError: the body is not flat, or is in several pieces.
+    """
+    seam = shapely.transform(_silhouette(body), lambda points: 1e3 * points)
+    outside = _offset(Polygon(seam.exterior), options.seam_allowance, options)
+    slits, problems = _slits(seam, outside, options)
+    holes = []
+    for index, ring in enumerate(seam.interiors):
+        hole = _offset(Polygon(ring), -options.seam_allowance, options)
+        if hole.is_empty:
+            problems.append(
+                f"hole {index + 1} of the outline, at {_at(Polygon(ring))}, is too narrow for a seam allowance "
+                f"of {options.seam_allowance:g} mm: choose a smaller allowance or a wider hole"
+            )
+        else:
+            holes.append(hole.exterior)
+    cut = Polygon(outside.exterior, holes)
+    return Skin(seam, cut, slits, tuple(problems), _tight_bays(seam, cut, slits, options))
+
+
+def _silhouette(body: Body) -> Polygon:
+    """The drawn outline [m], or the boundary of a mesh."""
+    if body.mesh.dim != 2:
+        raise InputError("a body in space has no flat pattern: draw one for a flat body, or cast this one in a mould")
+    if body.outline is not None:
+        return body.outline.polygon
+    edges = [shapely.LineString(ends) for ends in body.mesh.nodes[body.mesh.boundary]]
+    largest = max(
+        _polygons(shapely.polygonize(edges)), key=lambda piece: Polygon(piece.exterior).area, default=Polygon()
+    )
+    if abs(largest.area - body.mesh.volumes.sum()) > 1e-6 * body.mesh.volumes.sum():
+        raise InputError("the mesh is no single piece: a pattern needs one outline")
+    return largest
+
+
+def _offset(polygon: Polygon, distance: float, options: PatternOptions) -> Polygon:
+    """The parallel of a polygon; the largest piece where it falls apart."""
+    grown = polygon.buffer(distance, quad_segs=_STEPS, join_style=options.corner.value, mitre_limit=2.0)
+    largest = max(_polygons(grown), key=lambda piece: piece.area, default=Polygon())
+    straight = largest.simplify(_TOLERANCE)
+    return straight if isinstance(straight, Polygon) else largest
+
+
+def _slits(seam: Polygon, outside: Polygon, options: PatternOptions) -> tuple[MultiLineString, list[str]]:
+    """Cuts that open the bays whose mouth the allowance closes, and what is wrong with those that cannot be opened."""
+    slits, problems = [], []
+    for bay in outside.interiors:
+        mouth = shapely.shortest_line(bay, outside.exterior)
+        slits += [bay, mouth]
+        room = seam.distance(mouth)
+        if room < options.cloth:
+            problems.append(
+                f"the seam allowance of {options.seam_allowance:g} mm closes the bay at {_at(Polygon(bay))}, "
+                f"and a slit into it would leave {room:.2f} mm of cloth at the seam, not {options.cloth:g} mm: "
+                "choose a smaller allowance or widen the bay"
+            )
+    return MultiLineString(slits), problems
+
+
+def _tight_bays(seam: Polygon, cut: Polygon, slits: MultiLineString, options: PatternOptions) -> tuple[str, ...]:
+    """Where two stretches of seam share one allowance, because they lie too close."""
+    edges = shapely.union_all([cut.boundary, slits])
+    shapely.prepare(edges)
+    rings = (seam.exterior, *seam.interiors)
+    corners = [shapely.Point(corner) for ring in rings for corner in ring.coords]
+    far = [corner for corner in corners if edges.distance(corner) > 3 * options.seam_allowance]
+    bays = shapely.union_all([corner.buffer(options.seam_allowance) for corner in far])
+    ends = [max(far, key=lambda corner: edges.distance(corner) * bay.covers(corner)) for bay in _polygons(bays)]
+    return tuple(
+        f"the seam allowance fills the narrow bay at {_at(end)}: snip the cloth open there, down to the seam"
+        for end in ends
+    )
+
+
+def _polygons(geometry: BaseGeometry) -> list[Polygon]:
+    """Its polygons, whatever else it holds."""
+    pieces = getattr(geometry, "geoms", (geometry,))
+    return [piece for piece in pieces if isinstance(piece, Polygon) and not piece.is_empty]
+
+
+def _at(geometry: Polygon | shapely.Point) -> str:
+    """Where a geometry is, in words."""
+    place = geometry.representative_point()
+    return f"[{place.x:.4g}, {place.y:.4g}] mm"
