@@ -1,10 +1,24 @@
 """Array shapes and types of all of hydrostat are checked while the tests run; one thread of BLAS."""
 
 import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
-from jaxtyping import install_import_hook  # noqa: E402
+import pytest  # noqa: E402
+from jaxtyping import config, install_import_hook  # noqa: E402
 
 install_import_hook("hydrostat", "typechecker.checked")
+
+sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
+
+
+@pytest.fixture
+def unchecked() -> Iterator[None]:
+    """No shape checks in this test: for many solves, whose shapes other tests check."""
+    config.update("jaxtyping_disable", True)
+    yield
+    config.update("jaxtyping_disable", False)

@@ -1,0 +1,188 @@
+"""Poses of small robots. Oracles: statics (balances of force and moment), the rest pose, and the solver's promises."""
+
+import numpy as np
+import pytest
+from builders import box_robot, strip_robot
+
+from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.mechanics import NewtonOptions, Reason
+from hydrostat.robot import Mount, Robot
+from hydrostat.simulation import Simulation, SolvedPose
+
+ROBOTS = {
+    "strip": strip_robot,
+    "world": lambda: strip_robot(mount=Mount.WORLD),
+    "sheathed": lambda: strip_robot(sheathed=((1, 3),)),
+    "box": box_robot,
+}
+PULL = np.array([0.02, 0.008])
+
+
+def pin_forces(simulation: Simulation, pose: SolvedPose) -> tuple[np.ndarray, np.ndarray]:
+    """Points where the pins hold, and their forces on the body [N]."""
+    pins = simulation.assembly.energies[1]
+    forces = -pins.gradient(pose.nodes, pose.contractions).reshape(-1, pose.nodes.shape[1])
+    return pose.nodes[pins.stencils].reshape(forces.shape), forces
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_without_a_command_the_robot_rests(name: str) -> None:
+    """E2: no stress at rest, so the rest pose is the answer, at once."""
+    robot = ROBOTS[name]()
+    pose = Simulation(robot).solve({})
+    assert np.abs(pose.nodes - robot.body.mesh.nodes).max() < 1e-12 * robot.body.mesh.size
+    assert not pose.tensions.any()
+    assert pose.result.iterations == 0
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_slack_cable_leaves_the_body_untouched(name: str) -> None:
+    robot = ROBOTS[name]()
+    pose = Simulation(robot).solve(np.array([-0.01, -1e-6]))
+    assert np.abs(pose.nodes - robot.body.mesh.nodes).max() < 1e-12 * robot.body.mesh.size
+    assert not pose.tensions.any()
+
+
+@pytest.mark.parametrize("name", ["strip", "sheathed", "box"])
+def test_pins_of_a_robot_with_winches_inside_carry_nothing_in_sum(name: str) -> None:
+    """Forces inside a body have neither a resultant nor a moment."""
+    simulation = Simulation(ROBOTS[name]())
+    pose = simulation.solve(PULL)
+    places, forces = pin_forces(simulation, pose)
+    tension = float(pose.tensions.max())
+    assert tension > 1.0
+    assert np.abs(forces.sum(axis=0)).max() < 1e-8 * tension
+    moments = np.einsum("pi,pj->ij", places, forces)
+    assert np.abs(moments - moments.T).max() < 1e-8 * tension * simulation.robot.body.mesh.size
+
+
+def test_pins_balance_the_cable_that_comes_from_the_world() -> None:
+    """The world pulls with T along the first segment; the pins answer with its opposite, force and moment."""
+    simulation = Simulation(strip_robot(mount=Mount.WORLD))
+    pose = simulation.solve(PULL)
+    cable = simulation.robot.cables[0]
+    weights = simulation.robot.body.mesh.nodes
+    nearest = int(np.argmin(np.linalg.norm(weights - cable.points[1], axis=1)))
+    assert np.linalg.norm(weights[nearest] - cable.points[1]) > 0
+    places, forces = pin_forces(simulation, pose)
+    first = _anchor(simulation.robot, np.array(cable.points[1]), pose.nodes)
+    direction = np.array(cable.points[0]) - first
+    pull = pose.tensions[0] * direction / np.linalg.norm(direction)
+    assert forces.sum(axis=0) == pytest.approx(-pull, abs=1e-8 * pose.tensions[0])
+    moment = float(np.sum(places[:, 0] * forces[:, 1] - places[:, 1] * forces[:, 0]))
+    assert moment == pytest.approx(-float(first[0] * pull[1] - first[1] * pull[0]), abs=1e-9 * pose.tensions[0])
+
+
+def _anchor(robot: Robot, point: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+    """A material point in the pose, from a 3 x 3 solve in the element that holds it."""
+    for element in robot.body.mesh.elements:
+        corners = np.column_stack([robot.body.mesh.nodes[element], np.ones(3)])
+        weights = np.linalg.solve(corners.T, [*point, 1.0])
+        if weights.min() > -1e-9:
+            return weights @ nodes[element]
+    raise AssertionError("the point is outside")
+
+
+def test_a_sheathed_run_exerts_nothing_inside() -> None:
+    """E11. Statics of each via point: T times the directions of its bare segments, nothing where all is sheathed."""
+    simulation = Simulation(strip_robot(columns=20, rows=5, sheathed=((1, 4),)))
+    pose = simulation.solve(PULL)
+    cable, robot = simulation.cables[0], simulation.robot
+    route = robot.cables[0]
+    points = np.array([_anchor(robot, np.array(point), pose.nodes) for point in route.points])
+    expected = np.zeros_like(points)
+    for segment in (0, 4, 5):
+        direction = points[segment + 1] - points[segment]
+        direction /= np.linalg.norm(direction)
+        expected[segment] += pose.tensions[0] * direction
+        expected[segment + 1] -= pose.tensions[0] * direction
+    assert not expected[2:4].any()
+    forces = np.zeros_like(pose.nodes)
+    forces[cable.stencils[0]] = -cable.gradient(pose.nodes, pose.contractions)[0]
+    spread = np.zeros_like(forces)
+    for point, force in zip(route.points, expected, strict=True):
+        for node, weight in _weights(robot, np.array(point)):
+            spread[node] += weight * force
+    assert forces == pytest.approx(spread, abs=1e-9 * pose.tensions[0])
+
+
+def _weights(robot: Robot, point: np.ndarray) -> list[tuple[int, float]]:
+    nodes = np.eye(len(robot.body.mesh.nodes))
+    row = _anchor(robot, point, nodes)
+    return [(int(node), float(row[node])) for node in np.flatnonzero(np.abs(row) > 1e-12)]
+
+
+def test_a_sheathed_cable_of_rest_length_does_not_feel_its_run() -> None:
+    """Its length changes only by the bare segments."""
+    simulation = Simulation(strip_robot(sheathed=((1, 4),)))
+    cable, nodes = simulation.cables[0], simulation.robot.body.mesh.nodes
+    assert cable.length(nodes) == pytest.approx(3 * 0.03)
+    assert simulation.robot.cables[0].length == pytest.approx(6 * 0.03)
+
+
+def test_slack_is_taken_in_first() -> None:
+    """E12: a cable with slack s at contraction a is one without at a - s."""
+    slack = Simulation(strip_robot(slack=0.005)).solve(np.array([0.02, 0.0]))
+    tight = Simulation(strip_robot()).solve(np.array([0.015, 0.0]))
+    assert np.abs(slack.nodes - tight.nodes).max() < 1e-9
+    assert slack.tensions == pytest.approx(tight.tensions, rel=1e-7)
+    assert not Simulation(strip_robot(slack=0.005)).solve(np.array([0.0049, 0.0])).tensions.any()
+
+
+def test_contractions_may_be_a_dict_or_an_array() -> None:
+    simulation = Simulation(strip_robot())
+    by_name = simulation.solve({"down": 0.01})
+    by_order = simulation.solve(np.array([0.0, 0.01]))
+    assert (by_name.nodes == by_order.nodes).all()
+    assert by_name.contractions.tolist() == [0.0, 0.01]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"sideways": 0.01}, 'no winch "sideways"; its winches are: up, down'),
+        (np.array([0.01]), "1 contractions given for 2 winches"),
+        (np.array([0.01, np.nan]), "not a finite number"),
+        ({"up": float("inf")}, "not a finite number"),
+    ],
+)
+def test_contractions_that_do_not_fit_are_refused(given: dict | np.ndarray, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        Simulation(strip_robot()).solve(given)
+
+
+def test_a_solve_that_stops_early_raises_or_says_why() -> None:
+    simulation = Simulation(strip_robot(), options=NewtonOptions(iterations=1))
+    with pytest.raises(NotConvergedError, match="iteration limit reached") as caught:
+        simulation.solve(PULL)
+    assert not caught.value.result.converged  # type: ignore[attr-defined]
+    pose = simulation.solve(PULL, strict=False)
+    assert pose.result.reason is Reason.ITERATION_LIMIT
+    assert np.isfinite(pose.nodes).all()
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_predicted_start_gives_the_same_equilibrium_sooner(name: str) -> None:
+    simulation = Simulation(ROBOTS[name]())
+    from_rest = simulation.solve(PULL)
+    near = simulation.solve(0.9 * PULL)
+    predicted = simulation.solve(PULL, start=near)
+    assert np.abs(predicted.nodes - from_rest.nodes).max() < 1e-8 * simulation.robot.body.mesh.size
+    assert predicted.result.iterations < from_rest.result.iterations
+    again = simulation.solve(PULL, start=from_rest)
+    assert again.result.iterations == 0
+
+
+def test_markers_and_tensions_belong_to_the_pose() -> None:
+    simulation = Simulation(strip_robot())
+    pose = simulation.solve(PULL)
+    assert pose.markers["tip"] == pytest.approx(_anchor(simulation.robot, np.array([0.2, 0.0]), pose.nodes))
+    assert pose.tensions.shape == (2,)
+    assert pose.energy == simulation.assembly.value(pose.nodes, PULL)
+
+
+def test_the_upper_cable_bends_the_strip_up() -> None:
+    """Signs: E1. A contraction pulls, the strip bends to the side of its cable."""
+    simulation = Simulation(strip_robot())
+    assert simulation.solve({"up": 0.02}).markers["tip"][1] > 0.01
+    assert simulation.solve({"down": 0.02}).markers["tip"][1] < -0.01
