@@ -6,11 +6,11 @@ import numpy as np
 from jaxtyping import Int
 from matplotlib.figure import Figure
 
-from hydrostat.arrays import Points
 from hydrostat.design.network import Activation
 from hydrostat.plot.felt import draw_felt, draw_ghost
 from hydrostat.plot.labels import Labels, counted, shorten
 from hydrostat.plot.palette import LIGHT, WINCHES
+from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_points
@@ -81,7 +81,7 @@ def draw_candidates(
     return sheet.figure
 
 
-def draw_trees(robot: Robot, trees: Iterable[Points], *, title: str | None = None, width: float = WIDTH) -> Figure:
+def draw_trees(robot: Robot, trees: Iterable[Places], *, title: str | None = None, width: float = WIDTH) -> Figure:
     """Routes that grew from the candidates, on the rest shape, a colour each (Fig 3.9c).
 
     Args:
@@ -111,7 +111,7 @@ def _pale_sheet(robot: Robot, title: str, subtitle: str, width: float, *, bar: b
     return sheet
 
 
-def _draw_markers(sheet: Sheet, robot: Robot, activation: Activation, rings: list[Points]) -> None:
+def _draw_markers(sheet: Sheet, robot: Robot, activation: Activation, rings: list[Places]) -> None:
     from hydrostat.geometry.anchors import locate
 
     named = [marker for marker in robot.markers if marker.name in activation.target.targets]

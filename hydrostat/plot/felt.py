@@ -3,8 +3,9 @@
 import numpy as np
 import shapely
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Nodes
 from hydrostat.plot.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, MESH, SEAM, STITCH, mix
+from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.robot import Robot
@@ -35,7 +36,7 @@ def draw_mesh(sheet: Sheet, robot: Robot, nodes: Nodes) -> None:
     sheet.segments(ends, color=MESH, linewidth=0.35, alpha=0.42, zorder=4)
 
 
-def draw_pins(sheet: Sheet, robot: Robot, rings: list[Points]) -> None:
+def draw_pins(sheet: Sheet, robot: Robot, rings: list[Places]) -> None:
     """What holds the robot: a hatched field for each pin, cut along the body's rings [mm]."""
     body = shapely.Polygon(rings[0], rings[1:]).buffer(0)
     for pin in robot.pins:

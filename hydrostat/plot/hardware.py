@@ -4,20 +4,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Nodes
 from hydrostat.geometry.anchors import locate
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.palette import DARK, LIGHT, mix, winch_colours
+from hydrostat.plot.places import Place, Places
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
 from hydrostat.robot import Cable, Mount, Robot, Winch
 
 
-def cable_runs(robot: Robot, nodes: Nodes) -> list[Points]:
+def cable_runs(robot: Robot, nodes: Nodes) -> list[Places]:
     """Where the points of each cable are [mm] when the nodes are at `nodes` [m]."""
     return [MILLIMETRES * _run(robot, cable, nodes) for cable in robot.cables]
 
 
-def winch_places(robot: Robot, nodes: Nodes) -> list[Points]:
+def winch_places(robot: Robot, nodes: Nodes) -> list[Place]:
     """Where each winch is [mm] when the nodes are at `nodes` [m]."""
     return [MILLIMETRES * _place(robot, winch, nodes) for winch in robot.winches]
 
@@ -27,7 +28,7 @@ def spool_size(winch: Winch, scale: float) -> float:
     return min(max(2 * MILLIMETRES * winch.spool_radius / scale, 9.0), 22.0)
 
 
-def stopper_bar(run: Points, scale: float) -> Points:
+def stopper_bar(run: Places, scale: float) -> Places:
     """Ends of the bar across the end of a run [mm] where a point shows `scale` millimetres."""
     way = run[-1] - run[-2]
     across = np.array([-way[1], way[0]]) / max(float(np.linalg.norm(way)), 1e-12) * 3.4 * scale
@@ -35,7 +36,7 @@ def stopper_bar(run: Points, scale: float) -> Points:
 
 
 def draw_cables(
-    sheet: Sheet, robot: Robot, runs: list[Points], *, colours: Sequence[str] | None = None, width: float = 2.0
+    sheet: Sheet, robot: Robot, runs: list[Places], *, colours: Sequence[str] | None = None, width: float = 2.0
 ) -> None:
     """Cables along their runs [mm]: sheaths as pale pipes, a bead at each via point, a bar as the stopper.
 
@@ -73,7 +74,7 @@ def draw_winches(
             tags.place(index, shorten(winch.name) + note, colours[winch.name])
 
 
-def draw_numbers(sheet: Sheet, runs: list[Points], colours: Sequence[str]) -> list[Points]:
+def draw_numbers(sheet: Sheet, runs: list[Places], colours: Sequence[str]) -> list[Place]:
     """The number of each cable, from 1, as a bead on it; returns where the beads are [mm]."""
     beads = [_along(run, 0.62) for run in runs]
     for number, (at, colour) in enumerate(zip(beads, colours, strict=True), start=1):
@@ -88,7 +89,7 @@ def draw_numbers(sheet: Sheet, runs: list[Points], colours: Sequence[str]) -> li
 class _Tags:
     """Names of winches on little flags, each on the side where no other winch is near."""
 
-    def __init__(self, sheet: Sheet, centres: list[Points]) -> None:
+    def __init__(self, sheet: Sheet, centres: list[Place]) -> None:
         self._sheet = sheet
         self._centres = np.array(centres).reshape(-1, 2)
         self._taken: list[np.ndarray] = []
@@ -123,7 +124,7 @@ class _Tags:
         )  # fmt: skip
 
 
-def _run(robot: Robot, cable: Cable, nodes: Nodes) -> Points:
+def _run(robot: Robot, cable: Cable, nodes: Nodes) -> Places:
     points = np.array(cable.points)
     moving = np.ones(len(points), dtype=bool)
     moving[0] = robot.winch(cable.winch).mount is Mount.BODY
@@ -132,19 +133,19 @@ def _run(robot: Robot, cable: Cable, nodes: Nodes) -> Points:
     return run
 
 
-def _along(run: Points, share: float) -> Points:
+def _along(run: Places, share: float) -> Place:
     """The point of a run at a share of its length."""
     lengths = np.linalg.norm(np.diff(run, axis=0), axis=1)
     places = np.concatenate([[0.0], np.cumsum(lengths)])
     return np.array([np.interp(share * places[-1], places, run[:, side]) for side in range(2)])
 
 
-def _place(robot: Robot, winch: Winch, nodes: Nodes) -> Points:
+def _place(robot: Robot, winch: Winch, nodes: Nodes) -> Place:
     at = np.array(winch.at)
     return at if winch.mount is Mount.WORLD else locate(robot.body.mesh, at[None]).positions(nodes)[0]
 
 
-def _draw_spool(sheet: Sheet, winch: Winch, centre: Points, colour: str) -> None:
+def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str) -> None:
     """Flange, drum and axle; a winch outside the body sits on a square plate."""
     size = spool_size(winch, sheet.scale)
     if winch.mount is Mount.WORLD:
@@ -157,7 +158,7 @@ def _draw_spool(sheet: Sheet, winch: Winch, centre: Points, colour: str) -> None
     sheet.dots(centre[None], 0.2 * size, color=colour, markeredgecolor="none", zorder=20.2)
 
 
-def _draw_stopper(sheet: Sheet, run: Points, colour: str, width: float) -> None:
+def _draw_stopper(sheet: Sheet, run: Places, colour: str, width: float) -> None:
     bar = stopper_bar(run, sheet.scale)
     sheet.curve(bar, color=LIGHT, linewidth=width + 2.4, zorder=9.3)
     sheet.curve(bar, color=colour, linewidth=width + 0.8, zorder=9.4)

@@ -3,8 +3,8 @@
 import numpy as np
 import shapely
 
-from hydrostat.arrays import Points
 from hydrostat.plot.palette import INK
+from hydrostat.plot.places import Place, Places
 from hydrostat.plot.sheet import Sheet
 
 LONGEST = 26
@@ -17,7 +17,7 @@ HALO = "halo"
 class Labels:
     """Finds a free place for one label after another: outside the body, off other labels and off things to be seen."""
 
-    def __init__(self, sheet: Sheet, *, rings: list[Points], avoid: Points) -> None:
+    def __init__(self, sheet: Sheet, *, rings: list[Places], avoid: Places) -> None:
         """Labels on a sheet.
 
         Args:
@@ -30,7 +30,7 @@ class Labels:
         self._avoid = avoid
         self._taken: list[np.ndarray] = []
 
-    def place(self, at: Points, words: str, *, size: float = 8, weight: str = "normal", outside: float = 0.8) -> None:
+    def place(self, at: Place, words: str, *, size: float = 8, weight: str = "normal", outside: float = 0.8) -> None:
         """Write words beside a point [mm]; `outside` is how much it matters that they lie off the body."""
         extent = np.array([0.6 * len(words) + 0.3, 1.25]) * size * self._sheet.scale
         centres = at + self._offsets(extent)
@@ -45,7 +45,7 @@ class Labels:
             va="center_baseline", gid=HALO, zorder=30,
         )  # fmt: skip
 
-    def reserve(self, at: Points, size: float) -> None:
+    def reserve(self, at: Place, size: float) -> None:
         """Keep a square [pt] around a point [mm] free of labels."""
         reach = size / 2 * self._sheet.scale
         self._taken.append(np.concatenate([at - reach, at + reach]))

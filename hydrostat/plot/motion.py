@@ -4,10 +4,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.plot.hardware import cable_runs, spool_size, stopper_bar, winch_places
 from hydrostat.plot.html import Html, tag
 from hydrostat.plot.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
+from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.skin import Skin
 from hydrostat.robot import Robot
@@ -117,7 +118,7 @@ def _animation(kind: str, attribute: str, values: Sequence[str], seconds: float,
     return tag(kind, attributeName=attribute, values=";".join(values), **time, **more)
 
 
-def _path(rings: Iterable[Points], *, closed: bool = True) -> str:
+def _path(rings: Iterable[Places], *, closed: bool = True) -> str:
     """Path data of lines [m], in millimetres with y down."""
     end = "Z" if closed else ""
     return "".join(

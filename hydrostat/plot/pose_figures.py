@@ -3,11 +3,12 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Nodes
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.felt import draw_felt, draw_ghost
 from hydrostat.plot.hardware import cable_runs, draw_cables, draw_numbers, draw_winches
 from hydrostat.plot.labels import Labels, shorten
+from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_points
@@ -61,7 +62,7 @@ def draw_reached(robot: Robot, reached: ReachedPose, *, title: str | None = None
     return sheet.figure
 
 
-def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Points | None = None, width: float = WIDTH) -> Figure:
+def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Places | None = None, width: float = WIDTH) -> Figure:
     """The robot alone, without grid or words, when its nodes are at `nodes` [m].
 
     Args:
@@ -83,7 +84,7 @@ def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Points | None = None, wi
 
 
 def _in_pose(
-    robot: Robot, pose: SolvedPose, title: str, subtitle: str, width: float, *, targets: Points
+    robot: Robot, pose: SolvedPose, title: str, subtitle: str, width: float, *, targets: Places
 ) -> tuple[Sheet, Labels]:
     """A sheet with ghost, posed felt, cables by tension and winches, and room for labels off the targets [mm]."""
     skin = Skin.of(robot.body)
@@ -101,7 +102,7 @@ def _in_pose(
     return sheet, labels
 
 
-def _draw_tensions(sheet: Sheet, robot: Robot, pose: SolvedPose, runs: list[Points], labels: Labels) -> None:
+def _draw_tensions(sheet: Sheet, robot: Robot, pose: SolvedPose, runs: list[Places], labels: Labels) -> None:
     """Cables coloured by tension, each with its number and its newtons."""
     if not runs:
         return

@@ -3,11 +3,11 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.arrays import Points
 from hydrostat.plot.felt import draw_felt, draw_mesh, draw_pins
 from hydrostat.plot.hardware import cable_runs, draw_cables, draw_numbers, draw_winches
 from hydrostat.plot.labels import Labels, counted, shorten
 from hydrostat.plot.palette import winch_colours
+from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.targets import draw_arrows, draw_crosses, draw_markers, rest_markers, target_points
@@ -87,8 +87,8 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
 
 
 def _at_rest(
-    robot: Robot, title: str, subtitle: str, width: float, *, mesh: bool = False, also: Points | None = None
-) -> tuple[Sheet, list[Points], list[Points]]:
+    robot: Robot, title: str, subtitle: str, width: float, *, mesh: bool = False, also: Places | None = None
+) -> tuple[Sheet, list[Places], list[Places]]:
     """A sheet with the felt body and its pins, the body's rings and the runs of its cables [mm]."""
     skin, nodes = Skin.of(robot.body), robot.body.mesh.nodes
     rings = [MILLIMETRES * ring for ring in skin.shape(nodes)]
@@ -103,7 +103,7 @@ def _at_rest(
     return sheet, rings, runs
 
 
-def _seen(robot: Robot, runs: list[Points]) -> Points:
+def _seen(robot: Robot, runs: list[Places]) -> Places:
     """Points that labels should not cover [mm]."""
     markers = MILLIMETRES * np.array([marker.at for marker in robot.markers]).reshape(-1, 2)
     return np.concatenate([markers, *runs])

@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from hydrostat.arrays import Points
 from hydrostat.plot.palette import GRID, INK, MUTED
+from hydrostat.plot.places import Places
 
 MILLIMETRES = 1e3
 """Pictures are drawn in millimetres."""
@@ -41,7 +41,7 @@ class Sheet:
     high: np.ndarray
     scale: float
 
-    def curve(self, points: Points, **style: object) -> None:
+    def curve(self, points: Places, **style: object) -> None:
         """A line through points [mm]; rows of NaN break it."""
         look: dict[str, object] = {"solid_capstyle": "round", "solid_joinstyle": "round", "clip_on": False, **style}
         self.axes.add_line(Line2D(points[:, 0], points[:, 1], **look))  # pyright: ignore[reportArgumentType]
@@ -52,11 +52,11 @@ class Sheet:
             gaps = np.full((len(ends), 1, 2), np.nan)
             self.curve(np.concatenate([ends, gaps], axis=1).reshape(-1, 2), **style)
 
-    def dots(self, points: Points, size: float, **style: object) -> None:
+    def dots(self, points: Places, size: float, **style: object) -> None:
         """Round dots of a diameter [pt] at points [mm]."""
         self.curve(points, linestyle="none", marker="o", markersize=size, **style)
 
-    def area(self, rings: list[Points], **style: object) -> None:
+    def area(self, rings: list[Places], **style: object) -> None:
         """A filled shape of one or more rings [mm]."""
         closed = [Path(np.concatenate([ring, ring[:1]]), closed=True) for ring in rings]
         self.axes.add_patch(PathPatch(Path.make_compound_path(*closed), clip_on=False, **style))  # pyright: ignore[reportArgumentType]
@@ -67,7 +67,7 @@ class Sheet:
 
 
 def new_sheet(
-    points: Points,
+    points: Places,
     *,
     title: str = "",
     subtitle: str = "",

@@ -8,10 +8,11 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon, Polygon
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.plot.places import Places
 from hydrostat.robot import Body
 
 RING_POINTS = 320
@@ -49,15 +50,15 @@ class Skin:
         points = np.concatenate([*edges, *seams])
         return cls(_stick(body.mesh, points), tuple(slices[: len(edges)]), tuple(slices[len(edges) :]))
 
-    def shape(self, nodes: Nodes) -> list[Points]:
+    def shape(self, nodes: Nodes) -> list[Places]:
         """The rings of the boundary [m] when the nodes are at `nodes` [m]."""
         return self._at(nodes, self.rings)
 
-    def seam(self, nodes: Nodes) -> list[Points]:
+    def seam(self, nodes: Nodes) -> list[Places]:
         """The rings of the seam [m] when the nodes are at `nodes` [m]."""
         return self._at(nodes, self.stitches)
 
-    def _at(self, nodes: Nodes, rings: tuple[slice, ...]) -> list[Points]:
+    def _at(self, nodes: Nodes, rings: tuple[slice, ...]) -> list[Places]:
         positions = self.anchors.positions(nodes)
         return [_soften(positions[ring]) for ring in rings]
 
@@ -69,7 +70,7 @@ def _shape(body: Body) -> Polygon | MultiPolygon:
     return shapely.union_all(triangles)  # pyright: ignore[reportReturnType]
 
 
-def _rings(shape: Polygon | MultiPolygon, length: float) -> list[Points]:
+def _rings(shape: Polygon | MultiPolygon, length: float) -> list[Places]:
     """Every ring of a shape as evenly spaced points, the first not repeated."""
     rings = []
     for part in getattr(shape, "geoms", [shape]):
@@ -81,7 +82,7 @@ def _rings(shape: Polygon | MultiPolygon, length: float) -> list[Points]:
     return rings
 
 
-def _stick(mesh: Mesh, points: Points) -> Anchors:
+def _stick(mesh: Mesh, points: Places) -> Anchors:
     """Stick points to the element that they lie in, or nearly lie in.
 
     Other than `locate`, a point a little outside is not moved onto the mesh but keeps its place beside the element:
@@ -96,7 +97,7 @@ def _stick(mesh: Mesh, points: Points) -> Anchors:
     return Anchors(mesh.elements[best], weights[rows, best], np.zeros(len(points)))
 
 
-def _soften(ring: Points) -> Points:
+def _soften(ring: Places) -> Places:
     """A closed ring with the small kinks between elements evened out."""
     before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     smooth = 0.25 * before + 0.5 * ring + 0.25 * after

@@ -5,18 +5,18 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
-from hydrostat.arrays import Points, Vector
 from hydrostat.plot.palette import DARK, ERROR, LIGHT
+from hydrostat.plot.places import Place, Places
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
 from hydrostat.robot import Pose, Robot
 
 
-def rest_markers(robot: Robot) -> dict[str, Vector]:
+def rest_markers(robot: Robot) -> dict[str, Place]:
     """Each marker in the rest pose [m]."""
     return {marker.name: np.array(marker.at) for marker in robot.markers}
 
 
-def draw_markers(sheet: Sheet, places: Mapping[str, Vector], *, size: float = 6.0) -> None:
+def draw_markers(sheet: Sheet, places: Mapping[str, Place], *, size: float = 6.0) -> None:
     """A white dot with a dark rim for each marker [m]."""
     if places:
         points = MILLIMETRES * np.array(list(places.values()))
@@ -32,7 +32,7 @@ def draw_crosses(sheet: Sheet, pose: Pose) -> None:
         sheet.segments(strokes, color=DARK, linewidth=1.5, zorder=17.1)
 
 
-def draw_arrows(sheet: Sheet, places: Mapping[str, Vector], pose: Pose) -> None:
+def draw_arrows(sheet: Sheet, places: Mapping[str, Place], pose: Pose) -> None:
     """An arrow from each marker [m] to its target, a little short of both."""
     for name, target in pose.targets.items():
         start, end = MILLIMETRES * places[name], MILLIMETRES * np.array(target)
@@ -46,14 +46,14 @@ def draw_arrows(sheet: Sheet, places: Mapping[str, Vector], pose: Pose) -> None:
                 sheet.axes.add_patch(arrow)
 
 
-def draw_errors(sheet: Sheet, places: Mapping[str, Vector], pose: Pose) -> None:
+def draw_errors(sheet: Sheet, places: Mapping[str, Place], pose: Pose) -> None:
     """A thin red line from each marker [m] to its target."""
     ends = np.array([[places[name], target] for name, target in pose.targets.items()])
     sheet.segments(MILLIMETRES * ends, color=LIGHT, linewidth=2.6, zorder=15)
     sheet.segments(MILLIMETRES * ends, color=ERROR, linewidth=1.3, zorder=15.1)
 
 
-def target_points(pose: Pose) -> Points:
+def target_points(pose: Pose) -> Places:
     """All targets [mm]."""
     return MILLIMETRES * np.array(list(pose.targets.values()))
 

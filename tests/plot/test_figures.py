@@ -136,10 +136,10 @@ def test_imports_stay_light(statement: str, absent: str) -> None:
 def test_drawing_needs_no_pyplot_and_changes_no_settings() -> None:
     import matplotlib
 
-    before = dict(matplotlib.rcParams)
+    before = matplotlib.rcParams.copy()
     plot.inline_svg(figure("draw_reached"), name="it", label="")
     assert "matplotlib.pyplot" not in sys.modules
-    assert dict(matplotlib.rcParams) == before
+    assert matplotlib.rcParams.copy() == before
 
 
 def test_every_public_name_exists() -> None:
