@@ -43,19 +43,19 @@ def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Dra
     """
     for _ in range(rounds):
         candidates = (_minimise(draft, power, iterations, slide) for slide in (True, False))
-        moved = next((moved for moved in candidates if _sound(moved)), draft)
+        moved = next((moved for moved in candidates if sound(moved)), draft)
         if not _score(moved, power) < _score(draft, power) - 1e-3:
             return draft
         draft = moved
     return draft
 
 
-def _sound(draft: Draft) -> bool:
+def sound(draft: Draft) -> bool:
     """Whether nodes on the rings are in order and all sides are there, near to the outline."""
     parts = draft.divisions
     ordered = all(bool((part.ends > part.stations).all()) for part in parts)
     near = max(float(part.sagitta().max()) for part in parts) < STRAY
-    return ordered and near and not draft.lost.size
+    return ordered and near and draft.polygon.is_valid and not draft.lost.size
 
 
 def _score(draft: Draft, power: float) -> float:

@@ -11,6 +11,7 @@ from hydrostat.geometry.draft import Draft
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.relax import smooth, spread
+from hydrostat.geometry.repair import repair
 from hydrostat.geometry.spacing import Spacing
 
 _FEWEST, _MOST = 8, 200_000
@@ -39,9 +40,10 @@ def triangulate(outline: Outline, element_size: float) -> Mesh:
         if not len(added):
             break
         draft = _whole(Draft(draft.divisions, np.concatenate([draft.interior, added])))
-    draft = spread(draft, spacing, steps=12)
+    draft = _whole(spread(draft, spacing, steps=12))
     draft = smooth(draft, power=2.0, rounds=6)
-    return _mesh(smooth(draft, power=8.0, rounds=4), element_size)
+    draft = repair(smooth(draft, power=8.0, rounds=4))
+    return _mesh(draft, element_size)
 
 
 def _check(outline: Outline, element_size: float) -> None:

@@ -51,6 +51,16 @@ SHAPES = {
 """Name: polygon [mm], element size [mm]."""
 
 
+def crossing_bars(seed: int) -> tuple[Polygon, float]:
+    """Bars of random width through one disc [mm], which cross at awkward angles, and an element size [mm]."""
+    random = np.random.default_rng(seed)
+    shape = disc(30)
+    for _ in range(random.integers(2, 7)):
+        width, length, angle = random.uniform(6, 30), random.uniform(30, 100), random.uniform(0, 360)
+        shape = shape.union(rotate(box(0, -width / 2, length, width / 2), angle, origin=(0, 0)))
+    return shape, random.uniform(5, 15)
+
+
 def blob(seed: int) -> tuple[Polygon, float]:
     """A random smooth blob [mm] and an element size [mm] for it."""
     random = np.random.default_rng(seed)

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from geometry.shapes import SHAPES, blob, disc, outline
+from geometry.shapes import SHAPES, blob, crossing_bars, disc, outline
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import MultiLineString, box, hausdorff_distance
@@ -50,6 +50,14 @@ def test_smooth_blobs(seed: int) -> None:
     check(shape, mesh, 1e-3 * size, least_angle=30)
     sides = np.linalg.norm(mesh.nodes[mesh.edges[:, 0]] - mesh.nodes[mesh.edges[:, 1]], axis=1)
     assert sides.mean() == pytest.approx(1e-3 * size, rel=0.15)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_crossing_bars(seed: int) -> None:
+    """Oracle: as for the known shapes; two bars may meet in a corner of less than 60 degrees of air, never of body."""
+    polygon, size = crossing_bars(seed)
+    shape = outline(polygon)
+    check(shape, triangulate(shape, 1e-3 * size), 1e-3 * size, least_angle=25)
 
 
 def test_same_bytes_twice() -> None:
