@@ -2,8 +2,9 @@
 
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
-from itertools import product
+from dataclasses import dataclass, replace
+from itertools import combinations, islice, product
+from math import comb
 
 import numpy as np
 
@@ -67,6 +68,27 @@ def _silent(stage: str, done: int, total: int) -> None:
     """No progress wanted."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """Winch trees that were chosen from all that one set of candidates allows."""
+
+    candidates: tuple[np.ndarray, ...]
+    trees: WinchTrees
+    chosen: list[Tree]
+
+    @property
+    def score(self) -> float:
+        """Mean score of its winches (R43)."""
+        return float(np.mean([tree.score for tree in self.chosen]))
+
+    @property
+    def key(self) -> object:
+        """The same for two plans of the same network."""
+        return tuple(
+            (tree.place, tuple(self.trees.routes[index].tobytes() for index in tree.routes)) for tree in self.chosen
+        )
+
+
 class _Design:
     """One run."""
 
@@ -83,36 +105,38 @@ class _Design:
     def run(self) -> Network:
         began = time.process_time()
         activations = self._activations()
+        plans = _shortlist(self._plans(activations), self.options.trials)
         best: Network | None = None
-        seen: set[object] = set()
-        variants = list(product(self.options.thresholds, self.options.distances))
-        shares = list(_shares(self.cables, self.winches))
-        total = len(variants) * len(shares) * len(self.options.phis)
-        done = 0
-        for threshold, distance in variants:
-            candidates, routes = self._routes(activations, threshold, distance)
-            trees = self._trees(routes, activations)
-            if trees is None:
-                continue
-            for share, phi in product(shares, self.options.phis):
-                done += 1
-                self.progress("Judging networks", done, total)
-                chosen = self._plant(trees, share, phi)
-                key = tuple(
-                    (tree.place, tuple(map(bytes, (routes[index] for index in tree.routes)))) for tree in chosen
-                )
-                if not chosen or key in seen:
-                    continue
-                seen.add(key)
-                network = self._judge(trees, chosen, activations, candidates)
-                if network and (best is None or network.rms_error < best.rms_error):
-                    best = network
+        for done, plan in enumerate(plans):
+            self.progress("Judging networks", done, len(plans))
+            network = self._judge(plan, activations)
+            if network and (best is None or network.rms_error < best.rms_error):
+                best = network
+        self.progress("Judging networks", len(plans), len(plans))
         if best is None:
             raise HydrostatError(
                 "no network could be built: no route of strong muscles keeps clear of the edge of the body; "
                 "lower the clearance, or choose a pose that bends the body more"
             )
-        return replace(best, tried=len(seen), seconds=time.process_time() - began)
+        return replace(best, tried=len(plans), seconds=time.process_time() - began)
+
+    def _plans(self, activations: tuple[Activation, ...]) -> list[list["_Plan"]]:
+        """For each threshold, distance and phi, a plan for every share of cables among winches."""
+        groups = []
+        shares = list(islice(_shares(self.cables, self.winches), self.options.shares))
+        variants = list(product(self.options.thresholds, self.options.distances))
+        for done, (threshold, distance) in enumerate(variants):
+            self.progress("Growing winch trees", done, len(variants))
+            candidates, routes = self._routes(activations, threshold, distance)
+            if not routes:
+                continue
+            posed = [activation.nodes for activation in activations]
+            trees = WinchTrees(self.mesh, routes, posed, self.region, self.options)
+            for phi in self.options.phis:
+                plans = (_Plan(candidates, trees, self._plant(trees, share, phi)) for share in shares)
+                groups.append([plan for plan in plans if plan.chosen])
+        self.progress("Growing winch trees", len(variants), len(variants))
+        return groups
 
     def _activations(self) -> tuple[Activation, ...]:
         found = []
@@ -146,14 +170,6 @@ class _Design:
             candidates.append(kept)
         return tuple(candidates), _apart([route for route in laid if route is not None], self.spacing)
 
-    def _trees(self, routes: list[Points], activations: tuple[Activation, ...]) -> WinchTrees | None:
-        """The routes, ready to be given winches; None if there are none."""
-        if not routes:
-            return None
-        return WinchTrees(
-            self.mesh, routes, [activation.nodes for activation in activations], self.region, self.options
-        )
-
     def _plant(self, trees: WinchTrees, share: tuple[int, ...], phi: float) -> list[Tree]:
         """Winch after winch, each with the routes that are left (E25)."""
         used, taken, chosen = set(), [], []
@@ -166,25 +182,19 @@ class _Design:
             chosen.append(tree)
         return chosen
 
-    def _judge(
-        self,
-        trees: WinchTrees,
-        chosen: list[Tree],
-        activations: tuple[Activation, ...],
-        candidates: tuple[np.ndarray, ...],
-    ) -> Network | None:
+    def _judge(self, plan: "_Plan", activations: tuple[Activation, ...]) -> Network | None:
         """The network as a robot, and what its own winches reach of every pose; None if a cable leaves the body."""
-        robot = self._build(trees, chosen)
+        robot = self._build(plan.trees, plan.chosen)
         if not all(self.region.holds(np.array(cable.points)) for cable in robot.cables):
             return None
         simulation = Simulation(robot)
         return Network(
             robot=robot,
             activations=activations,
-            candidates=candidates,
-            trees=tuple(trees.routes),
+            candidates=plan.candidates,
+            trees=tuple(plan.trees.routes),
             reached=tuple(solve_ik(simulation, pose) for pose in self.poses),
-            score=float(np.mean([tree.score for tree in chosen])),
+            score=plan.score,
             tried=0,
             seconds=0.0,
         )
@@ -215,13 +225,25 @@ def _point(coordinates: Points) -> tuple[float, ...]:
 
 
 def _shares(cables: int, winches: int) -> Iterator[tuple[int, ...]]:
-    """All ways to share cables among winches, at least one each."""
-    if winches == 1:
-        yield (cables,)
-        return
-    for first in range(1, cables - winches + 2):
-        for rest in _shares(cables - first, winches - 1):
-            yield (first, *rest)
+    """Ways to share cables among winches, at least one each; the evenest first."""
+    ways = combinations(range(1, cables), winches - 1) if comb(cables - 1, winches - 1) <= 5000 else ()
+    shares = [tuple(np.diff([0, *cuts, cables]).tolist()) for cuts in ways]
+    even = tuple(cables // winches + (index < cables % winches) for index in range(winches))
+    yield from sorted({*shares, even}, key=lambda share: (max(share) - min(share), [-count for count in share]))
+
+
+def _shortlist(groups: list[list["_Plan"]], count: int) -> list["_Plan"]:
+    """The best plan of every group, then every second best, and so on; each network once.
+
+    Scores of one group compare, those of different phi do not.
+    """
+    ranked = [sorted(group, key=lambda plan: -plan.score) for group in groups]
+    plans: dict[object, _Plan] = {}
+    for rank in range(max(map(len, ranked), default=0)):
+        for group in ranked:
+            if rank < len(group):
+                plans.setdefault(group[rank].key, group[rank])
+    return list(plans.values())[:count]
 
 
 def _apart(routes: list[Points], spacing: float) -> list[Points]:

@@ -24,6 +24,8 @@ class DesignOptions:
         growth_steps: most fibres joined to one route (R40).
         turn: sharpest turn of a route [degrees].
         phis: weights of the mean against the spread in the score to try (R43, E23).
+        shares: most ways to share the cables among the winches to try, the evenest first.
+        trials: most networks whose poses are solved (E24).
         lead_penalty: how much the score loses for a lead as long as the body.
         sheathed_leads: whether leads from a winch to where its cables begin to pull run in sheaths (R14).
         clearance: least distance of a cable from the edge of the body [m].
@@ -42,6 +44,8 @@ class DesignOptions:
     growth_steps: int = 12
     turn: float = 60.0
     phis: tuple[float, ...] = (0.4, 0.6, 0.8)
+    shares: int = 12
+    trials: int = 32
     lead_penalty: float = 0.1
     sheathed_leads: bool = True
     clearance: float = 0.005
