@@ -6,11 +6,14 @@ import numpy as np
 
 from hydrostat.arrays import Nodes
 from hydrostat.geometry.anchors import locate
-from hydrostat.plot.labels import shorten
+from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.palette import DARK, LIGHT, mix, winch_colours
 from hydrostat.plot.places import Place, Places
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
 from hydrostat.robot import Cable, Mount, Robot, Winch
+
+SHARES = np.linspace(0.3, 0.9, 13)
+"""Shares of a cable's length where its number may stand."""
 
 
 def cable_runs(robot: Robot, nodes: Nodes) -> list[Places]:
@@ -60,24 +63,28 @@ def draw_cables(
         _draw_stopper(sheet, run, colour, width)
 
 
-def draw_winches(
-    sheet: Sheet, robot: Robot, nodes: Nodes, *, notes: Sequence[str] | None = None, named: bool = True
-) -> None:
-    """A spool for each winch with its name, and a note after the name, when the nodes are at `nodes` [m]."""
+def draw_winches(sheet: Sheet, robot: Robot, nodes: Nodes) -> None:
+    """A spool for each winch when the nodes are at `nodes` [m]."""
     colours = winch_colours(robot)
-    centres = winch_places(robot, nodes)
-    tags = _Tags(sheet, centres)
-    for index, (winch, centre) in enumerate(zip(robot.winches, centres, strict=True)):
+    for winch, centre in zip(robot.winches, winch_places(robot, nodes), strict=True):
         _draw_spool(sheet, winch, centre, colours[winch.name])
-        if named:
-            note = f"\N{EN SPACE}{notes[index]}" if notes else ""
-            tags.place(index, shorten(winch.name) + note, colours[winch.name])
 
 
-def draw_numbers(sheet: Sheet, runs: list[Places], colours: Sequence[str]) -> list[Place]:
-    """The number of each cable, from 1, as a bead on it; returns where the beads are [mm]."""
-    beads = [_along(run, 0.62) for run in runs]
+def name_winches(labels: Labels, robot: Robot, nodes: Nodes, notes: Sequence[str] = ()) -> None:
+    """The name of each winch, and a note behind it, on a flag at its spool when the nodes are at `nodes` [m]."""
+    colours, centres = winch_colours(robot), winch_places(robot, nodes)
+    for centre in centres:
+        labels.reserve(centre, 18)
+    for index, (winch, centre) in enumerate(zip(robot.winches, centres, strict=True)):
+        note = f"\N{EN SPACE}{notes[index]}" if notes else ""
+        labels.flag(centre, shorten(winch.name) + note, colours[winch.name])
+
+
+def draw_numbers(sheet: Sheet, runs: list[Places], colours: Sequence[str], labels: Labels) -> list[Place]:
+    """The number of each cable, from 1, as a bead on it; returns where the beads are."""
+    beads = _beads(runs, 13 * sheet.scale)
     for number, (at, colour) in enumerate(zip(beads, colours, strict=True), start=1):
+        labels.reserve(at, 11)
         sheet.dots(at[None], 11, color=colour, markeredgecolor=LIGHT, markeredgewidth=1.0, zorder=12)
         sheet.text(
             (at[0], at[1]), str(number), fontsize=6.5, color=LIGHT, weight="bold", ha="center", va="center_baseline",
@@ -86,42 +93,25 @@ def draw_numbers(sheet: Sheet, runs: list[Places], colours: Sequence[str]) -> li
     return beads
 
 
-class _Tags:
-    """Names of winches on little flags, each on the side where no other winch is near."""
+def cable_dots(sheet: Sheet, runs: list[Places]) -> Places:
+    """Points all along the cables, so close that no label between them can cover a cable."""
+    dots = [
+        _along(run, share) for run in runs for share in np.linspace(0, 1, 2 + int(_length(run) / (6 * sheet.scale)))
+    ]
+    return np.array(dots).reshape(-1, 2)
 
-    def __init__(self, sheet: Sheet, centres: list[Place]) -> None:
-        self._sheet = sheet
-        self._centres = np.array(centres).reshape(-1, 2)
-        self._taken: list[np.ndarray] = []
 
-    def place(self, index: int, words: str, colour: str) -> None:
-        scale = self._sheet.scale
-        extent = np.array([0.64 * len(words) + 1.2, 1.9]) * 7 * scale
-        middle = self._centres.mean(axis=0)
-        best, least = np.zeros(2), np.inf
-        for ray in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)):
-            for gap in (13, 20, 30):
-                centre = self._centres[index] + np.array(ray) * (extent / 2 + gap * scale * np.abs(ray))
-                away = (centre - self._centres[index]) @ (self._centres[index] - middle)
-                cost = gap / 40 + 3 * self._hits(centre, extent) - 0.3 * np.sign(round(float(away), 6))
-                if cost < least:
-                    best, least = centre, cost
-        self._taken.append(np.array([*best, *extent]))
-        self._write(self._centres[index], best, words, colour)
-
-    def _hits(self, centre: np.ndarray, extent: np.ndarray) -> float:
-        spools = (np.abs(self._centres - centre) < extent / 2 + 8 * self._sheet.scale).all(axis=1).sum()
-        tags = sum(bool((np.abs(tag[:2] - centre) < (tag[2:] + extent) / 2).all()) for tag in self._taken)
-        low, high = centre - extent / 2, centre + extent / 2
-        return float(spools + tags + 3 * bool((low < self._sheet.low).any() or (high > self._sheet.high).any()))
-
-    def _write(self, spool: np.ndarray, centre: np.ndarray, words: str, colour: str) -> None:
-        self._sheet.curve(np.array([spool, centre]), color=colour, linewidth=0.9, zorder=10)
-        self._sheet.text(
-            (centre[0], centre[1]), words, fontsize=7, color=LIGHT, weight="bold", ha="center", va="center_baseline",
-            zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6", "facecolor": colour, "edgecolor": LIGHT,
-            "linewidth": 0.7},
-        )  # fmt: skip
+def _beads(runs: list[Places], gap: float) -> list[Place]:
+    """A point on each run beyond its middle, if possible further than `gap` from other beads, runs and winches."""
+    beads: list[Place] = []
+    for index, run in enumerate(runs):
+        others = [_along(other, share) for place, other in enumerate(runs) if place != index for share in SHARES]
+        seen = np.array([*beads, *beads, run[0], *others])
+        spots = [_along(run, share) for share in SHARES]
+        crowds = [float(np.maximum(1 - np.linalg.norm(seen - spot, axis=1) / gap, 0).sum()) for spot in spots]
+        costs = np.array(crowds) + np.abs(SHARES - 0.62)
+        beads.append(spots[int(np.argmin(costs))])
+    return beads
 
 
 def _run(robot: Robot, cable: Cable, nodes: Nodes) -> Places:
@@ -131,6 +121,10 @@ def _run(robot: Robot, cable: Cable, nodes: Nodes) -> Places:
     run = points.copy()
     run[moving] = locate(robot.body.mesh, points[moving]).positions(nodes)
     return run
+
+
+def _length(run: Places) -> float:
+    return float(np.linalg.norm(np.diff(run, axis=0), axis=1).sum())
 
 
 def _along(run: Places, share: float) -> Place:

@@ -9,7 +9,7 @@ from hydrostat.plot.hardware import cable_runs, spool_size, stopper_bar, winch_p
 from hydrostat.plot.html import Html, tag
 from hydrostat.plot.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
 from hydrostat.plot.places import Places
-from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.sheet import MILLIMETRES, framed
 from hydrostat.plot.skin import Skin
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -66,10 +66,8 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float
         *_cables(robot, frames, seconds),
         *_winches(robot, frames, seconds),
     ]
-    rings = [skin.shape(nodes)[0] for nodes in frames]
-    low, high = MILLIMETRES * np.min(np.concatenate(rings), axis=0), MILLIMETRES * np.max(np.concatenate(rings), axis=0)
-    border = 0.04 * float((high - low).max())
-    box = [low[0] - border, -high[1] - border, *(high - low + 2 * border)]
+    low, high = framed(MILLIMETRES * np.concatenate([skin.shape(nodes)[0] for nodes in frames]), 0.04)
+    box = [low[0], -high[1], *(high - low)]
     return tag(
         "svg",
         *parts,

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from hydrostat.arrays import Nodes
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.felt import draw_felt, draw_ghost
-from hydrostat.plot.hardware import cable_runs, draw_cables, draw_numbers, draw_winches
+from hydrostat.plot.hardware import cable_dots, cable_runs, draw_cables, draw_numbers, draw_winches, name_winches
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
@@ -79,7 +79,7 @@ def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Places | None = None, wi
     sheet = new_sheet(points, width=width, ruled=False, room=0.04)
     draw_felt(sheet, skin, nodes)
     draw_cables(sheet, robot, cable_runs(robot, nodes))
-    draw_winches(sheet, robot, nodes, named=False)
+    draw_winches(sheet, robot, nodes)
     return sheet.figure
 
 
@@ -95,23 +95,25 @@ def _in_pose(
     sheet = new_sheet(seen, title=title, subtitle=subtitle, width=width, bar=bool(runs))
     draw_ghost(sheet, skin, robot.body.mesh.nodes)
     draw_felt(sheet, skin, pose.nodes, pale=0.35)
-    draw_winches(sheet, robot, pose.nodes, notes=[_note(contraction) for contraction in pose.contractions])
     markers = MILLIMETRES * np.array(list(pose.markers.values())).reshape(-1, 2)
-    labels = Labels(sheet, rings=rings, avoid=np.concatenate([*runs, markers, targets]))
-    _draw_tensions(sheet, robot, pose, runs, labels)
+    labels = Labels(sheet, rings=rings, avoid=np.concatenate([cable_dots(sheet, runs), markers, targets]))
+    for place in (*markers, *targets):
+        labels.reserve(place, 6)
+    draw_winches(sheet, robot, pose.nodes)
+    if runs:
+        _draw_tensions(sheet, robot, pose, runs, labels)
     return sheet, labels
 
 
 def _draw_tensions(sheet: Sheet, robot: Robot, pose: SolvedPose, runs: list[Places], labels: Labels) -> None:
     """Cables coloured by tension, each with its number and its newtons."""
-    if not runs:
-        return
     scale = TensionScale.of(pose.tensions)
     colours = [scale.colour(float(tension)) for tension in pose.tensions]
     draw_cables(sheet, robot, runs, colours=colours, width=2.6)
     scale.draw_bar(sheet, of="cable tension")
-    for bead, tension in zip(draw_numbers(sheet, runs, colours), pose.tensions, strict=True):
-        labels.reserve(bead, 11)
+    beads = draw_numbers(sheet, runs, colours, labels)
+    name_winches(labels, robot, pose.nodes, [_note(contraction) for contraction in pose.contractions])
+    for bead, tension in zip(beads, pose.tensions, strict=True):
         labels.place(bead, f"{tension:.1f} N" if tension > 0 else "slack", size=6.5, weight="bold", outside=0.1)
 
 

@@ -48,7 +48,7 @@ def _path(network: Network, words: str) -> Html:
 
 
 def _step(error: float, words: str, *, best: bool = False) -> Html:
-    number = tag("b", f"{MILLIMETRES * error:.1f}", tag("small", "mm rms"))
+    number = tag("b", f"{MILLIMETRES * error:.{1 if error >= 1e-3 else 2}f}", tag("small", "mm rms"))
     return tag("li", number, tag("span", words), **({"class_": "best"} if best else {}))
 
 

@@ -47,9 +47,11 @@ section > header { display: grid; grid-template-columns: auto minmax(0, 1fr); ga
 .table { overflow-x: auto; margin: 0 0 12px; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; font-variant-numeric: tabular-nums; }
 th { text-align: left; font-weight: 550; color: var(--muted); font-size: .8rem; vertical-align: bottom; }
-th, td { padding: 8px 14px 8px 0; white-space: nowrap; border-bottom: 1px solid var(--line); }
+td { white-space: nowrap; }
+th, td { padding: 8px 12px 8px 0; border-bottom: 1px solid var(--line); }
 td:last-child, th:last-child { padding-right: 0; }
-.number { text-align: right; white-space: nowrap; }
+.number { text-align: right; }
+th { white-space: normal; line-height: 1.3; }
 .bar { display: inline-block; width: 100%; min-width: 84px; height: 8px; border-radius: 4px; background: var(--grid);
   overflow: hidden; vertical-align: middle; }
 .bar i { display: block; height: 100%; border-radius: 4px; }

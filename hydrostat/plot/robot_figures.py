@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.plot.felt import draw_felt, draw_mesh, draw_pins
-from hydrostat.plot.hardware import cable_runs, draw_cables, draw_numbers, draw_winches
+from hydrostat.plot.hardware import cable_dots, cable_runs, draw_cables, draw_numbers, draw_winches, name_winches
 from hydrostat.plot.labels import Labels, counted, shorten
 from hydrostat.plot.palette import winch_colours
 from hydrostat.plot.places import Places
@@ -31,7 +31,8 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
     draw_cables(sheet, robot, runs)
     draw_winches(sheet, robot, body.mesh.nodes)
     draw_markers(sheet, rest_markers(robot))
-    labels = Labels(sheet, rings=rings, avoid=_seen(robot, runs))
+    labels = _labels(sheet, robot, rings, runs)
+    name_winches(labels, robot, body.mesh.nodes)
     for marker in robot.markers:
         labels.place(MILLIMETRES * np.array(marker.at), shorten(marker.name))
     return sheet.figure
@@ -77,11 +78,13 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     """
     count = f"{counted(len(robot.winches), 'winch', 'winches')}, {counted(len(robot.cables), 'cable', 'cables')}"
     head = shorten(robot.name) if title is None else title
-    sheet, _, runs = _at_rest(robot, head, count, width)
+    sheet, rings, runs = _at_rest(robot, head, count, width)
     colours = winch_colours(robot)
     draw_cables(sheet, robot, runs, width=2.4)
     draw_winches(sheet, robot, robot.body.mesh.nodes)
-    draw_numbers(sheet, runs, [colours[cable.winch] for cable in robot.cables])
+    labels = _labels(sheet, robot, rings, runs)
+    draw_numbers(sheet, runs, [colours[cable.winch] for cable in robot.cables], labels)
+    name_winches(labels, robot, robot.body.mesh.nodes)
     draw_markers(sheet, rest_markers(robot), size=4.0)
     return sheet.figure
 
@@ -103,7 +106,10 @@ def _at_rest(
     return sheet, rings, runs
 
 
-def _seen(robot: Robot, runs: list[Places]) -> Places:
-    """Points that labels should not cover [mm]."""
+def _labels(sheet: Sheet, robot: Robot, rings: list[Places], runs: list[Places]) -> Labels:
+    """Labels that keep off cables and markers."""
     markers = MILLIMETRES * np.array([marker.at for marker in robot.markers]).reshape(-1, 2)
-    return np.concatenate([markers, *runs])
+    labels = Labels(sheet, rings=rings, avoid=np.concatenate([markers, cable_dots(sheet, runs)]))
+    for marker in markers:
+        labels.reserve(marker, 6)
+    return labels

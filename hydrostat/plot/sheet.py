@@ -11,7 +11,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from hydrostat.plot.palette import GRID, INK, MUTED
-from hydrostat.plot.places import Places
+from hydrostat.plot.places import Place, Places
 
 MILLIMETRES = 1e3
 """Pictures are drawn in millimetres."""
@@ -87,15 +87,11 @@ def new_sheet(
         bar: leave room for a colour bar.
         room: free border, as a share of the longest side.
     """
-    border = room * float(np.ptp(points, axis=0).max())
-    low, high = points.min(axis=0) - border, points.max(axis=0) + border
+    low, high = framed(points, room)
     left, right, bottom = (0.42, 0.12, 0.32) if ruled else (0.05, 0.05, 0.05)
     top = 0.62 if title else 0.48 if bar else 0.1
     inches = width - left - right
     wide, tall = high - low
-    if tall / wide > TALLEST:
-        low, high = _widen(low, high, tall / TALLEST)
-        wide = tall / TALLEST
     height = inches * tall / wide
     figure = Figure(figsize=(width, height + top + bottom), facecolor="none")
     FigureCanvasAgg(figure)
@@ -109,8 +105,12 @@ def new_sheet(
     return sheet
 
 
-def _widen(low: np.ndarray, high: np.ndarray, wide: float) -> tuple[np.ndarray, np.ndarray]:
-    more = np.array([(wide - (high - low)[0]) / 2, 0.0])
+def framed(points: Places, room: float) -> tuple[Place, Place]:
+    """Lower left and upper right corner of a frame about points, with a border `room` times its longest side."""
+    border = room * float(np.ptp(points, axis=0).max())
+    low, high = points.min(axis=0) - border, points.max(axis=0) + border
+    wide, tall = high - low
+    more = np.array([max(tall / TALLEST - wide, 0.0) / 2, 0.0])
     return low - more, high + more
 
 
