@@ -74,5 +74,6 @@ class Curve:
         between = np.concatenate([self.stations[:-1] + turn * self.length for turn in (-1, 0, 1)])
         inner = self.at(between[(between > start) & (between < end)]) - ends[0]
         chord = ends[1] - ends[0]
-        fraction = np.clip(inner @ chord / max(chord @ chord, 1e-300), 0.0, 1.0)
+        along = (inner * chord).sum(axis=1)
+        fraction = np.clip(along / max(float((chord**2).sum()), 1e-300), 0.0, 1.0)
         return float(np.linalg.norm(inner - fraction[:, None] * chord, axis=1).max(initial=0.0))
