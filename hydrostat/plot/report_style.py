@@ -55,6 +55,7 @@ th { white-space: normal; line-height: 1.3; }
 .bar { display: inline-block; width: 100%; min-width: 84px; height: 8px; border-radius: 4px; background: var(--grid);
   overflow: hidden; vertical-align: middle; }
 .bar i { display: block; height: 100%; border-radius: 4px; }
+@media (prefers-color-scheme: dark) { .bar i { box-shadow: inset 0 0 0 1px rgb(255 255 255 / .4); } }
 .swatch { display: inline-block; width: 10px; height: 10px; border-radius: 50%; margin-right: 8px; }
 .error { color: var(--error); font-weight: 600; }
 .pose { display: grid; gap: 8px 32px; grid-template-columns: repeat(auto-fit, minmax(min(100%, 430px), 1fr));
@@ -72,6 +73,12 @@ svg.figure .halo text { paint-order: stroke; stroke: var(--paper); stroke-width:
   stroke-opacity: .85; }
 .still { display: none; }
 @media print, (prefers-reduced-motion: reduce) { .moving { display: none; } .still { display: flex; } }
-@media print { :root { --page: #fff; } body { font-size: 12px; } figure, .path li, tr { break-inside: avoid; }
-  section { padding-top: 22px; } h2, h3 { break-after: avoid; } .hero { padding-top: 0; } }
+@page { margin: 14mm; }
+@media print { :root { --page: #fff; } body { font-size: 11px; } main { padding: 0; } section { padding-top: 22px; }
+  figure, .path li, tr { break-inside: avoid; } h2, h3, section > header { break-after: avoid; }
+  figure { padding: 8px; border-radius: 10px; } .pose figure { position: static; } .hero { padding-top: 0; }
+  .path { flex-wrap: nowrap; } .path li { flex: 1 1 0; padding: 8px 12px; } .path b { font-size: 1.6rem; }
+  .grid, .pose { grid-template-columns: 1fr 1fr; gap: 10px 14px; margin: 10px 0 16px; }
+  .small { grid-template-columns: 1fr 1fr 1fr; } th, td { padding: 3px 8px 3px 0; font-size: 9.5px; }
+  .bar { min-width: 40px; } h1 { font-size: 2rem; } h3 { margin: 1em 0 .3em; } }
 """
