@@ -2,15 +2,18 @@
 
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.material import MATERIALS, Material, find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.point import Point
 from hydrostat.robot.pose import Pose
 from hydrostat.robot.read import load_robot
+from hydrostat.robot.risks import find_risks
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.sketch import sketch_robot
 from hydrostat.robot.winch import Mount, Winch
-from hydrostat.robot.write import robot_hash, robot_text, save_robot
+from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot
 
 __all__ = [
     "MATERIALS",
@@ -26,10 +29,15 @@ __all__ = [
     "Source",
     "Winch",
     "find_material",
+    "find_risks",
+    "gallery_folder",
+    "gallery_names",
     "load_robot",
     "mesh_body",
     "outline_body",
+    "replace_file",
     "robot_hash",
     "robot_text",
     "save_robot",
+    "sketch_robot",
 ]

@@ -1,0 +1,29 @@
+"""The gallery: ready robots that come with hydrostat."""
+
+from importlib.resources import files
+from pathlib import Path
+
+from hydrostat.errors import InputError
+
+
+def gallery_names() -> list[str]:
+    """Names of the robots in the gallery, sorted."""
+    return sorted(folder.name for folder in _shelf().iterdir() if (folder / "robot.toml").is_file())
+
+
+def gallery_folder(name: str) -> Path:
+    """Folder of a gallery robot.
+
+    Raises:
+        InputError: the gallery has no robot of this name.
+    """
+    if name not in gallery_names():
+        raise InputError(f'the gallery has no robot "{name}"; it has: {", ".join(gallery_names())}')
+    return _shelf() / name
+
+
+def _shelf() -> Path:
+    """Inside an installed package, or beside it in a checkout."""
+    package = Path(str(files("hydrostat")))
+    inside = package / "examples"
+    return inside if inside.is_dir() else package.parent / "examples"

@@ -1,0 +1,74 @@
+"""`sketch_robot`: a first robot from nothing but a drawing, to be edited from there."""
+
+import numpy as np
+
+from hydrostat.geometry.svg import read_svg
+from hydrostat.robot.body import outline_body
+from hydrostat.robot.marker import Marker
+from hydrostat.robot.material import find_material
+from hydrostat.robot.pin import Pin
+from hydrostat.robot.pose import Pose
+from hydrostat.robot.robot import Robot
+
+
+def sketch_robot(
+    content: bytes,
+    *,
+    file: str,
+    name: str,
+    size: float | None = None,
+    element_size: float | None = None,
+    thickness: float | None = None,
+    material: str = "polyester fibre",
+) -> Robot:
+    """Robot from the bytes of an SVG drawing, with sensible numbers where none are given.
+
+    It is held round its deepest point; one marker sits near the point of the body farthest from there, with a pose
+    that bends it sideways. Everything is meant to be changed.
+
+    Args:
+        content: the drawing.
+        file: name of the drawing in the robot's folder.
+        name: of the robot.
+        size: longest side of the bounding box [m]; None: as the drawing says.
+        element_size: [m]; None: about 250 nodes.
+        thickness: [m]; None: a seventh of the size.
+        material: a name from the table.
+
+    Raises:
+        InputError: the drawing is no body.
+    """
+    from shapely import Point as ShapelyPoint
+    from shapely import maximum_inscribed_circle
+
+    outline = read_svg(content, name=file, size=size)
+    body = outline_body(
+        content,
+        file=file,
+        material=find_material(material),
+        size=size,
+        element_size=element_size or _round(float(np.sqrt(outline.area / 215))),
+        thickness=thickness or _round(outline.size / 7),
+    )
+    centre = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
+    depth = outline.polygon.boundary.distance(ShapelyPoint(centre))
+    inner = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]
+    tip = inner[int(np.argmax(np.linalg.norm(inner - centre, axis=1)))]
+    arm = tip - centre
+    turned = centre + 0.9 * (np.cos(0.5) * arm + np.sin(0.5) * np.array([-arm[1], arm[0]]))
+    return Robot(
+        name=name,
+        body=body,
+        pins=(Pin(at=_point(centre), radius=_round(max(0.4 * depth, 1.3 * (body.element_size or 0.0)))),),
+        markers=(Marker(name="tip", at=_point(tip)),),
+        poses={"bend": Pose(name="bend", targets={"tip": _point(turned)})},
+    )
+
+
+def _round(length: float) -> float:
+    """To half a millimetre, at least that."""
+    return max(round(length * 2000), 1) / 2000
+
+
+def _point(place: np.ndarray) -> tuple[float, ...]:
+    return tuple(round(float(value), 4) for value in place)
