@@ -16,20 +16,28 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "Cable": "robot",
+    "DesignOptions": "design",
     "HydrostatError": "errors",
     "InputError": "errors",
+    "InverseOptions": "ik",
     "Marker": "robot",
     "Material": "robot",
+    "Network": "design",
     "NewtonOptions": "mechanics",
     "NotConvergedError": "errors",
+    "PatternOptions": "fabrication",
     "Pin": "robot",
     "Pose": "robot",
+    "ReachedPose": "ik",
     "Robot": "robot",
     "Simulation": "simulation",
     "SolvedPose": "simulation",
     "Winch": "robot",
+    "design_cables": "design",
+    "export_kit": "fabrication",
     "load_robot": "robot",
     "save_robot": "robot",
+    "solve_ik": "ik",
 }
 
 __all__ = sorted([*_HOMES, "__version__"])

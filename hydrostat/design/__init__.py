@@ -5,6 +5,7 @@ from hydrostat.design.design_cables import design_cables
 from hydrostat.design.fibres import Fibres, edge_fibres, element_fibres
 from hydrostat.design.network import Activation, Network
 from hydrostat.design.options import DesignOptions, FibreKind
+from hydrostat.design.score_card import rest_error, score_card
 
 __all__ = [
     "Activation",
@@ -16,4 +17,6 @@ __all__ = [
     "design_cables",
     "edge_fibres",
     "element_fibres",
+    "rest_error",
+    "score_card",
 ]

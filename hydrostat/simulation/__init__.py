@@ -1,7 +1,17 @@
 """The one bridge between robots and mechanics: `Simulation`."""
 
 from hydrostat.simulation.build import body_energies, cable_energies, round_off
+from hydrostat.simulation.pose_file import pose_facts, write_pose
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
-__all__ = ["Contractions", "Simulation", "SolvedPose", "body_energies", "cable_energies", "round_off"]
+__all__ = [
+    "Contractions",
+    "Simulation",
+    "SolvedPose",
+    "body_energies",
+    "cable_energies",
+    "pose_facts",
+    "round_off",
+    "write_pose",
+]

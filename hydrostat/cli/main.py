@@ -1,0 +1,56 @@
+"""The `hydrostat` command."""
+
+import sys
+
+import typer
+
+from hydrostat.cli.check import check
+from hydrostat.cli.design import design
+from hydrostat.cli.fabricate import fabricate
+from hydrostat.cli.new import new
+from hydrostat.cli.pose import pose
+from hydrostat.cli.simulate import simulate
+from hydrostat.errors import HydrostatError, InputError
+
+app = typer.Typer(
+    name="hydrostat",
+    help="From a shape to a working cable-driven soft robot: design it, simulate it, build it.",
+    epilog="Begin with: hydrostat new my_starfish --from gallery:starfish",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for command in (new, check, simulate, pose, design, fabricate):
+    app.command()(command)
+
+
+@app.callback(invoke_without_command=True)
+def version(show: bool = typer.Option(False, "--version", help="Print the version and end.")) -> None:
+    """From a shape to a working cable-driven soft robot: design it, simulate it, build it."""
+    if show:
+        from hydrostat import __version__
+
+        print(f"hydrostat {__version__}")
+        raise typer.Exit
+
+
+def main() -> None:
+    """Run a command. Exit codes: 0 done, 1 ran and did not succeed, 2 the input is wrong."""
+    try:
+        app()
+    except InputError as error:
+        _stop(str(error), 2)
+    except HydrostatError as error:
+        _stop(str(error), 1)
+    except OSError as error:
+        _stop(f"{error.filename or 'a file'}: {error.strerror or error}", 2)
+    except KeyboardInterrupt:
+        _stop("stopped; what had been written is whole", 130)
+
+
+def _stop(message: str, code: int) -> None:
+    line = " ".join(message.split())
+    print(f"hydrostat: {line}", file=sys.stderr)
+    raise SystemExit(code)

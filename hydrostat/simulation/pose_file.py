@@ -1,0 +1,62 @@
+"""`write_pose`: an equilibrium as pose.json and pose.vtu."""
+
+import json
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hydrostat.geometry.mesh_file import write_mesh
+from hydrostat.robot import Robot, replace_file
+from hydrostat.simulation.simulation import Simulation
+from hydrostat.simulation.solved_pose import SolvedPose
+
+
+def pose_facts(robot: Robot, pose: SolvedPose) -> dict[str, Any]:
+    """What pose.json holds: SI units, contractions by winch, tensions in the order of the cables."""
+    return {
+        "contractions": {
+            winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)
+        },
+        "tensions": [float(tension) for tension in pose.tensions],
+        "energy": pose.energy,
+        "residual": pose.result.residual,
+        "reason": str(pose.result.reason),
+        "stable": pose.result.stable,
+        "iterations": pose.result.iterations,
+        "markers": {name: [float(value) for value in place] for name, place in pose.markers.items()},
+    }
+
+
+def write_pose(
+    simulation: Simulation,
+    pose: SolvedPose,
+    folder: Path,
+    *,
+    extra: Mapping[str, Any] | None = None,
+    jacobian: bool = False,
+) -> list[Path]:
+    """Write pose.json, pose.vtu and, if wanted, jacobian.npz into a folder; returns their paths.
+
+    Args:
+        simulation: the robot's physics.
+        pose: the equilibrium.
+        folder: made if need be.
+        extra: more entries for pose.json, such as seconds.
+        jacobian: also write d nodes / d contractions, (nodes, dim, winches), under the key `jacobian`.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    robot = simulation.robot
+    facts = {**pose_facts(robot, pose), **(extra or {})}
+    vtu = folder / "pose.vtu"
+    part = folder / ".pose.part.vtu"
+    write_mesh(part, robot.body.mesh, pose.nodes, {"rest": robot.body.mesh.nodes})
+    part.replace(vtu)
+    written = [replace_file(folder / "pose.json", (json.dumps(facts, indent=2) + "\n").encode()), vtu]
+    if jacobian:
+        buffer = BytesIO()
+        np.savez_compressed(buffer, jacobian=simulation.jacobian(pose))
+        written.append(replace_file(folder / "jacobian.npz", buffer.getvalue()))
+    return written
