@@ -1,5 +1,6 @@
 """The `hydrostat` command."""
 
+import os
 import sys
 
 import typer
@@ -38,6 +39,7 @@ def version(show: bool = typer.Option(False, "--version", help="Print the versio
 
 def main() -> None:
     """Run a command. Exit codes: 0 done, 1 ran and did not succeed, 2 the input is wrong."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
     try:
         app()
     except InputError as error:

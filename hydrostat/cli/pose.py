@@ -14,14 +14,12 @@ from hydrostat.errors import InputError
 def pose(
     robot: RobotFolder,
     out: OutFolder,
-    name: Annotated[
-        str | None, typer.Option("--pose", metavar="NAME", help="One pose; all of them if left out.")
-    ] = None,
+    name: Annotated[str | None, typer.Option("--pose", metavar="NAME", help="One pose; all if left out.")] = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
 ) -> None:
     """Find the contractions that come nearest to a pose.
 
-    Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png. Several poses are written to a folder each.
+    Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png; several poses get a folder each.
 
     Example: hydrostat pose examples/starfish --pose wave --out build/wave
     """

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.design.fibres import Fibres
 from hydrostat.design.network import Activation
 from hydrostat.design.options import DesignOptions
@@ -76,7 +76,7 @@ class _Activation:
         adjoint = Factorisation(self.assembly.hessian(nodes, tensions)).solve(rows)
         return -(self.assembly.control_derivative(nodes, tensions).T @ adjoint).T
 
-    def _step(self, nodes: Nodes, tensions: Vector, goals: Nodes, rho: float) -> tuple[Nodes, Vector, bool]:
+    def _step(self, nodes: Nodes, tensions: Vector, goals: Points, rho: float) -> tuple[Nodes, Vector, bool]:
         """One Gauss-Newton step, shortened until the objective falls; whether it moved."""
         jacobian = self._jacobian(nodes, tensions)
         miss = (goals - self.anchors.positions(nodes)).ravel()
@@ -99,7 +99,7 @@ class _Activation:
             options=NewtonOptions(tolerance=1e-7, iterations=60),
         )
 
-    def _objective(self, nodes: Nodes, tensions: Vector, goals: Nodes, rho: float) -> float:
+    def _objective(self, nodes: Nodes, tensions: Vector, goals: Points, rho: float) -> float:
         miss = self.anchors.positions(nodes) - goals
         return float(0.5 * (miss**2).sum() + 0.5 * rho * tensions @ tensions)
 

@@ -27,7 +27,9 @@ def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Me
         data = meshio.read(path)
     except (meshio.ReadError, SystemExit, ValueError, KeyError, IndexError, OSError, UnicodeDecodeError) as error:
         reason = str(error).strip().splitlines()
-        raise InputError(f"{path.name}: no mesh can be read from it ({reason[0] if reason else 'damaged file'})") from None
+        raise InputError(
+            f"{path.name}: no mesh can be read from it ({reason[0] if reason else 'damaged file'})"
+        ) from None
     for kind, dim in (("tetra", 3), ("triangle", 2)):
         if kind in data.cells_dict:
             return _simplices(path.name, data.points, data.cells_dict[kind], dim, unit, size)
@@ -54,7 +56,9 @@ def write_mesh(path: Path, mesh: Mesh, nodes: np.ndarray, point_data: Mapping[st
     import meshio
 
     kind = "triangle" if mesh.dim == 2 else "tetra"
-    data = meshio.Mesh(_in_space(nodes), [(kind, mesh.elements)], {key: _in_space(array) for key, array in point_data.items()})
+    data = meshio.Mesh(
+        _in_space(nodes), [(kind, mesh.elements)], {key: _in_space(array) for key, array in point_data.items()}
+    )
     meshio.write(path, data, file_format="vtu", binary=sys.byteorder == "little")
 
 

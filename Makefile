@@ -1,0 +1,58 @@
+# The two commands of the README: make demo, make test. Each works alone on a fresh clone.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# Small dense matrices: more threads of the linear algebra library only wait for each other.
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: help demo test check lint fix bench pictures clean
+
+help:
+	@echo "make demo      design the cables of the starfish; results in build/starfish"
+	@echo "make test      run all tests"
+	@echo "make check     lint, types, import layers, tests"
+	@echo "make fix       format and repair what ruff can repair"
+	@echo "make bench     timings and studies; prints tables"
+	@echo "make pictures  draw the pictures of the README again"
+
+demo: $(VENV)/demo.installed
+	$(BIN)/hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --kit --out build/starfish
+
+test: $(VENV)/test.installed
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q
+
+check: lint test
+
+lint: $(VENV)/check.installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports --no-logo
+	$(BIN)/pyright --pythonpath $(BIN)/python
+
+fix: $(VENV)/check.installed
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(VENV)/test.installed
+	for file in benchmarks/*.py; do $(BIN)/python $$file || exit 1; done
+
+pictures: $(VENV)/demo.installed
+	$(BIN)/python docs/pictures.py
+
+clean:
+	rm -rf build dist $(VENV)
+
+$(VENV)/demo.installed: pyproject.toml constraints.txt
+	@echo "Installing hydrostat into $(VENV), this takes about a minute ..."
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(INSTALL) --editable .
+	touch $@
+
+$(VENV)/test.installed: $(VENV)/demo.installed
+	$(INSTALL) --editable ".[test]"
+	touch $@
+
+$(VENV)/check.installed: $(VENV)/test.installed
+	$(INSTALL) --editable ".[check]"
+	touch $@

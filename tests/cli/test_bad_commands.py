@@ -1,0 +1,57 @@
+"""Bad input ends with code 2 and one clear line; oracle: exit code, one line, no traceback, nothing written."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm"><path d="M0 0H60V40"/></svg>'
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fragments"),
+    [
+        (("check", "nowhere"), ("nowhere", "no such file")),
+        (("simulate", "STARFISH", "--contract", "left=12", "--out", "OUT"), ("left=12", "no unit")),
+        (("simulate", "STARFISH", "--contract", "left", "--out", "OUT"), ("WINCH=LENGTH",)),
+        (("simulate", "STARFISH", "--contract", "up=12mm", "--out", "OUT"), ('"up"', "right, left, feet")),
+        (("pose", "STARFISH", "--pose", "dance", "--out", "OUT"), ('"dance"', "wave")),
+        (("design", "STARFISH", "--winches", "3", "--cables", "2", "--out", "OUT"), ("3 winches", "2 cables")),
+        (("design", "STARFISH", "--fibres", "hairs", "--out", "OUT"), ("hairs", "edges", "elements")),
+        (("new", "OUT", "--from", "gallery:whale"), ("whale", "starfish")),
+        (("new", "OUT", "--from", "drawing.bmp"), ("drawing.bmp", "SVG")),
+        (("new", "OUT", "--from", "missing.svg"), ("missing.svg", "no such file")),
+        (("new", "OUT", "--from", "OPEN", "--size", "90"), ("--size", "no unit")),
+        (("new", "OUT", "--from", "OPEN"), ("open.svg", "open")),
+        (("new", "STARFISH", "--from", "gallery:pig"), ("exists already",)),
+    ],
+)
+def test_one_clear_line(
+    run: Run, starfish: Path, tmp_path: Path, arguments: tuple[str, ...], fragments: tuple[str, ...]
+) -> None:
+    drawing = tmp_path / "open.svg"
+    drawing.write_bytes(OPEN)
+    places = {"STARFISH": starfish, "OUT": tmp_path / "out", "OPEN": drawing}
+    code, out, err = run(*(places.get(argument, argument) for argument in arguments))
+    assert code == 2
+    assert out == ""
+    assert err.count("\n") == 1
+    assert err.startswith("hydrostat: ")
+    for fragment in fragments:
+        assert fragment in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_robot_that_cannot_be_cut_is_refused_with_the_reason(run: Run, starfish: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "bad"
+    assert run("new", folder, "--from", "gallery:starfish")[0] == 0
+    text = (folder / "robot.toml").read_text()
+    (folder / "robot.toml").write_text(text.replace('element_size = "12 mm"', 'element_size = "12 bananas"'))
+    code, _, err = run("check", folder)
+    assert code == 2
+    assert "line" in err
+    assert "element_size" in err
+    assert "bananas" in err

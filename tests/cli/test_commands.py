@@ -1,0 +1,110 @@
+"""Every command does what its help says; oracle: the library called directly, and the files read back."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import hydrostat as hs
+from hydrostat.robot import gallery_names, robot_hash
+
+Run = Callable[..., tuple[int, str, str]]
+SQUARE = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path d="M0 0H60V40H0Z"/></svg>'
+
+
+def test_help_lists_every_command(run: Run) -> None:
+    code, out, _ = run("--help")
+    assert code == 0
+    for command in ("new", "check", "simulate", "pose", "design", "fabricate"):
+        assert f"  {command} " in out
+        assert "Example: hydrostat" in run(command, "--help")[1]
+
+
+def test_version(run: Run) -> None:
+    assert run("--version")[1] == f"hydrostat {hs.__version__}\n"
+
+
+def test_new_from_the_gallery_is_the_gallery_robot(run: Run, tmp_path: Path, starfish: Path) -> None:
+    code, out, _ = run("new", tmp_path / "mine", "--from", "gallery:starfish")
+    assert code == 0
+    assert "Made" in out
+    assert robot_hash(hs.load_robot(tmp_path / "mine")) == robot_hash(hs.load_robot(starfish))
+    assert (tmp_path / "mine" / "rest.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_new_from_a_drawing_can_be_checked_and_simulated(run: Run, tmp_path: Path) -> None:
+    drawing = tmp_path / "my drawing.svg"
+    drawing.write_bytes(SQUARE)
+    assert run("new", tmp_path / "box", "--from", drawing, "--size", "90 mm")[0] == 0
+    robot = hs.load_robot(tmp_path / "box")
+    assert np.ptp(robot.body.mesh.nodes, axis=0) == pytest.approx([0.09, 0.06])
+    assert run("check", tmp_path / "box")[0] == 0
+    assert run("simulate", tmp_path / "box", "--out", tmp_path / "out")[0] == 0
+
+
+def test_check_says_that_all_is_well(run: Run) -> None:
+    for name in gallery_names():
+        code, out, _ = run("check", Path("examples") / name)
+        assert code == 0
+        assert "Nothing is wrong" in out
+
+
+def test_simulate_writes_what_the_library_solves(run: Run, tmp_path: Path, starfish: Path) -> None:
+    code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--jacobian", "--out", tmp_path)
+    assert code == 0
+    assert "converged" in out
+    simulation = hs.Simulation(hs.load_robot(starfish))
+    pose = simulation.solve({"left": 0.012})
+    facts = json.loads((tmp_path / "pose.json").read_text())
+    assert facts["contractions"] == {"right": 0.0, "left": 0.012, "feet": 0.0}
+    assert facts["tensions"] == pytest.approx(pose.tensions.tolist(), abs=1e-9)
+    assert facts["markers"]["left"] == pytest.approx(pose.markers["left"].tolist(), abs=1e-9)
+    assert facts["reason"] == "converged"
+    assert facts["seconds"] > 0
+    mesh = meshio.read(tmp_path / "pose.vtu")
+    assert np.allclose(mesh.points[:, :2], pose.nodes, atol=1e-9)
+    assert np.allclose(mesh.point_data["rest"][:, :2], simulation.robot.body.mesh.nodes)
+    jacobian = np.load(tmp_path / "jacobian.npz")["jacobian"]
+    assert jacobian == pytest.approx(simulation.jacobian(pose), abs=1e-6)
+    assert (tmp_path / "pose.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_simulate_warns_beyond_travel(run: Run, tmp_path: Path, starfish: Path) -> None:
+    assert "beyond it" in run("simulate", starfish, "--contract", "left=-30mm", "--out", tmp_path)[1]
+
+
+def test_pose_writes_one_pose_or_a_folder_for_each(run: Run, tmp_path: Path, starfish: Path) -> None:
+    robot = hs.load_robot(starfish)
+    assert run("pose", starfish, "--pose", "wave", "--out", tmp_path / "one")[0] == 0
+    reached = hs.solve_ik(hs.Simulation(robot), robot.poses["wave"])
+    taken = json.loads((tmp_path / "one" / "contractions.json").read_text())
+    assert list(taken.values()) == pytest.approx(reached.pose.contractions.tolist(), abs=1e-6)
+    assert run("pose", starfish, "--out", tmp_path / "all")[0] == 0
+    assert {folder.name for folder in (tmp_path / "all").iterdir()} == set(robot.poses)
+
+
+def test_design_writes_robot_report_score_and_pattern(run: Run, tmp_path: Path, starfish: Path) -> None:
+    arguments = ("--pose", "wave", "--winches", 1, "--cables", 2, "--kit", "--out", tmp_path / "out")
+    code, out, err = run("design", starfish, *arguments)
+    assert code == 0
+    assert "report.html" in out
+    assert "Judging networks" in err
+    robot = hs.load_robot(tmp_path / "out" / "robot")
+    card = json.loads((tmp_path / "out" / "score.json").read_text())
+    assert card["robot"] == robot_hash(robot)
+    assert card["source_robot"] == robot_hash(hs.load_robot(starfish))
+    again = hs.solve_ik(hs.Simulation(robot), robot.poses["wave"])
+    assert card["poses"]["wave"]["rms_error"] == pytest.approx(again.rms_error, rel=1e-6)
+    assert card["rms_error"] < card["rms_error_at_rest"]
+    for file in ("report.html", "pattern/pattern.svg", "pattern/pattern.dxf"):
+        assert (tmp_path / "out" / file).stat().st_size > 1000
+
+
+def test_fabricate_writes_the_pattern(run: Run, tmp_path: Path, starfish: Path) -> None:
+    code, out, _ = run("fabricate", starfish, "--out", tmp_path)
+    assert code == 0
+    assert "front and back panel" in out
+    assert {file.name for file in tmp_path.iterdir()} == {"pattern.svg", "pattern.dxf"}
