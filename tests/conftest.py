@@ -8,12 +8,13 @@ from pathlib import Path
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
+_HERE = Path(__file__).parent
+sys.path[:0] = [str(_HERE), str(_HERE.parent / "benchmarks")]
+
 import pytest  # noqa: E402
 from jaxtyping import config, install_import_hook  # noqa: E402
 
 install_import_hook("hydrostat", "typechecker.checked")
-
-sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
 
 
 @pytest.fixture

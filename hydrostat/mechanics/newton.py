@@ -88,8 +88,8 @@ def minimise(
 ) -> NewtonResult:
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
-    The full Hessian is used wherever it is positive definite, the projected one elsewhere (E6). The step is halved
-    until no element is inverted and the energy falls.
+    The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). The step is
+    halved until no element is inverted and the energy falls.
 
     Args:
         assembly: the energy.
@@ -144,25 +144,33 @@ def minimise(
 def _descent(
     assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation
 ) -> Vector | None:
-    """Newton's direction; with the projected Hessian, slightly shifted if need be, where the full one is indefinite.
+    """Newton's direction, with a definite matrix in place of a Hessian that is not.
 
-    None where no shift makes it definite: it is not finite, or 0.
+    Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
+    drops the whole effect of compression, and Newton creeps for hundreds of steps. So as little of it as needed is
+    mixed in. None where nothing makes it definite: it is not finite, or 0.
     """
     if factor.definite:
         return -factor.solve(gradient)
-    hessian = assembly.hessian(nodes, controls, project=True)
-    diagonal = hessian.diagonal()
+    full, projected = (assembly.hessian(nodes, controls, project=project) for project in (False, True))
+    for share in _SHARES:
+        factor = Factorisation(full + share * (projected - full))
+        if factor.definite:
+            return -factor.solve(gradient)
+    diagonal = projected.diagonal()
     for shift in _SHIFTS:
-        shifted = hessian.copy()
-        shifted.setdiag(diagonal + shift * diagonal.max())
-        factor = Factorisation(shifted.tocsc())
+        projected.setdiag(diagonal + shift * diagonal.max())
+        factor = Factorisation(projected)
         if factor.definite:
             return -factor.solve(gradient)
     return None
 
 
-_SHIFTS = (0.0, *np.logspace(-10, 1, 12))
-"""What is added to the diagonal of the projected Hessian, as fractions of its largest entry, until it is definite."""
+_SHARES = (1 / 16, 1 / 4, 1.0)
+"""Parts of the projected Hessian to try."""
+
+_SHIFTS = tuple(np.logspace(-10, 1, 12))
+"""What is added to the diagonal of the projected Hessian, if even that is singular: fractions of its largest entry."""
 
 
 def _line_search(

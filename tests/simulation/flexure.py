@@ -5,7 +5,7 @@ turns by theta = kappa X, and a point goes to the radius r(Y) from the centre of
 
     lambda_1 = kappa r(Y)   along the beam,        lambda_2 = r'(Y)   across it.
 
-The cable runs along Y = c through very many via points, hence follows the material line; one unit of its rest length has
+The cable runs along Y = c through very many via points, hence follows the material line: a unit of its rest length has
 become kappa r(c) long. It is frictionless, so its tension T is the same everywhere, and for a given T it adds
 T kappa r(c) to the potential per unit of rest length:
 

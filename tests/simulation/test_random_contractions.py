@@ -11,3 +11,4 @@ from robustness import example_folders, sweep  # pyright: ignore[reportMissingIm
 def test_every_random_contraction_of_every_example_converges(folder: Path) -> None:
     found = sweep(folder, 100, seed=1)
     assert found.failures == []
+    assert max(found.iterations) < 80
