@@ -30,6 +30,8 @@ class ReachedPose:
         reason: why the search ended.
         iterations: Gauss-Newton steps taken.
         solves: equilibria computed.
+        optimality: how much the length of the residual (marker errors and effort) would still fall for each metre
+            that one winch moves, as far as it may [m/m]; near 0 at an optimum, but not where a pose is reached.
     """
 
     target: Pose
@@ -38,6 +40,7 @@ class ReachedPose:
     reason: InverseReason
     iterations: int
     solves: int
+    optimality: float = 0.0
 
     @property
     def rms_error(self) -> float:
