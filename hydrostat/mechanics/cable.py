@@ -51,8 +51,9 @@ class CableEnergy(Energy):
     """U(s) of one frictionless cable, s = l(x) - l(X) + a - slack [m] (R23 to R27, E1, E11, E12).
 
     Its points are y = W x + c: anchors in the body (rows of W sum to one, c = 0) or fixed in the world (W = 0).
-    Sheathed segments keep their rest length, so they are left out of l. U rises with s and l is convex in x,
-    hence the energy is convex.
+    Sheathed segments keep their rest length, so they are left out of l; the length of a segment is rounded off where
+    its two ends meet, so that it has a derivative there. U rises with s and l is convex in x, hence the energy is
+    convex.
     """
 
     def __init__(
@@ -87,6 +88,8 @@ class CableEnergy(Energy):
         self._differences = weights[index + 1] - weights[index]
         self._offsets = offsets[index + 1] - offsets[index]
         self._pairs = np.einsum("sa,sb->sab", self._differences, self._differences).reshape(len(index), -1)
+        self._roundings = np.zeros(len(index))
+        self._roundings = np.maximum(_ROUNDING * self._segments(nodes)[1], np.finfo(float).tiny ** 0.5)
         self.rest_length = self.length(nodes)
 
     def length(self, nodes: Nodes) -> float:
@@ -118,23 +121,27 @@ class CableEnergy(Energy):
 
     def _segments(self, nodes: Nodes) -> tuple[Points, Float[np.ndarray, " segments"]]:
         spans = self._differences @ nodes[self.stencils[0]] + self._offsets
-        return spans, np.sqrt(np.einsum("sd,sd->s", spans, spans))
+        return spans, np.sqrt(np.einsum("sd,sd->s", spans, spans) + self._roundings**2)
 
     def length_gradient(self, nodes: Nodes) -> Float[np.ndarray, "corners dim"]:
         """Dl/dx at the stencil's nodes."""
         spans, lengths = self._segments(nodes)
-        return self._differences.T @ (spans / np.maximum(lengths, _SHORTEST)[:, None])
+        return self._differences.T @ (spans / lengths[:, None])
 
     def _length_hessian(self, nodes: Nodes) -> Float[np.ndarray, "size size"]:
         """Sum over segments of (I - u u^T) / length, spread to the nodes by the weights."""
         spans, lengths = self._segments(nodes)
         dim, corners = spans.shape[1], self._differences.shape[1]
-        lengths = np.maximum(lengths, _SHORTEST)[:, None, None]
+        lengths = lengths[:, None, None]
         directions = spans / lengths[:, 0]
         across = (np.eye(dim) - directions[:, :, None] * directions[:, None, :]) / lengths
         blocks = self._pairs.T @ across.reshape(len(spans), -1)
         return blocks.reshape(corners, corners, dim, dim).swapaxes(1, 2).reshape(corners * dim, corners * dim)
 
 
-_SHORTEST = 1e-9
-"""A segment [m] shorter than this has no direction worth following."""
+_ROUNDING = 1e-3
+"""A segment d has the length sqrt(d^2 + r^2), with r this fraction of its rest length: 5e-7 of it too long.
+
+A plain norm has a kink at d = 0, where a winch that pulls hard brings two via points together: the least energy lies in
+the kink, no gradient vanishes there, and Newton stops without a descent.
+"""

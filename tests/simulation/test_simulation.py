@@ -1,5 +1,7 @@
 """Poses of small robots. Oracles: statics (balances of force and moment), the rest pose, and the solver's promises."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import box_robot, strip_robot
@@ -68,9 +70,9 @@ def test_pins_balance_the_cable_that_comes_from_the_world() -> None:
     first = _anchor(simulation.robot, np.array(cable.points[1]), pose.nodes)
     direction = np.array(cable.points[0]) - first
     pull = pose.tensions[0] * direction / np.linalg.norm(direction)
-    assert forces.sum(axis=0) == pytest.approx(-pull, abs=1e-8 * pose.tensions[0])
+    assert forces.sum(axis=0) == pytest.approx(-pull, abs=1e-6 * pose.tensions[0])
     moment = float(np.sum(places[:, 0] * forces[:, 1] - places[:, 1] * forces[:, 0]))
-    assert moment == pytest.approx(-float(first[0] * pull[1] - first[1] * pull[0]), abs=1e-9 * pose.tensions[0])
+    assert moment == pytest.approx(-float(first[0] * pull[1] - first[1] * pull[0]), abs=1e-7 * pose.tensions[0])
 
 
 def _anchor(robot: Robot, point: np.ndarray, nodes: np.ndarray) -> np.ndarray:
@@ -103,7 +105,7 @@ def test_a_sheathed_run_exerts_nothing_inside() -> None:
     for point, force in zip(route.points, expected, strict=True):
         for node, weight in _weights(robot, np.array(point)):
             spread[node] += weight * force
-    assert forces == pytest.approx(spread, abs=1e-9 * pose.tensions[0])
+    assert forces == pytest.approx(spread, abs=1e-6 * pose.tensions[0])
 
 
 def _weights(robot: Robot, point: np.ndarray) -> list[tuple[int, float]]:
@@ -186,3 +188,18 @@ def test_the_upper_cable_bends_the_strip_up() -> None:
     simulation = Simulation(strip_robot())
     assert simulation.solve({"up": 0.02}).markers["tip"][1] > 0.01
     assert simulation.solve({"down": 0.02}).markers["tip"][1] < -0.01
+
+
+def test_a_point_pulled_up_to_its_winch_has_an_equilibrium() -> None:
+    """A plain norm has a kink there, at which no gradient vanishes: Newton stopped without a descent."""
+    strip = strip_robot(mount=Mount.WORLD)
+    winch = replace(strip.winches[0], at=(0.19, 0.045))
+    robot = replace(strip, winches=(winch,), cables=(replace(strip.cables[0], points=((0.19, 0.045), (0.19, 0.015))),))
+    simulation = Simulation(robot)
+    pose = simulation.solve(np.array([0.05]))
+    gap = np.linalg.norm(_anchor(robot, np.array([0.19, 0.015]), pose.nodes) - winch.at)
+    assert gap < 0.01 * 0.03
+    assert pose.tensions[0] > 10
+    assert pose.result.stable
+    _, forces = pin_forces(simulation, pose)
+    assert np.linalg.norm(forces.sum(axis=0)) < pose.tensions[0]
