@@ -1,8 +1,9 @@
 """Units at the door: text such as "12 mm" becomes SI, and SI becomes text again without loss."""
 
+import math
 import re
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
+from decimal import Context, Decimal
 from functools import cache
 from typing import Any
 
@@ -31,7 +32,11 @@ PRESSURE = Dimension("a pressure", "Pa", "kPa", "30 kPa")
 DENSITY = Dimension("a density", "kg/m^3", "kg/m^3", "40 kg/m^3")
 STIFFNESS = Dimension("a stiffness", "N/m", "N/mm", "4 N/mm")
 
-_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([A-Za-zµμ][A-Za-zµμ0-9*/^. ]{0,30})?\s*")
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([^\W\d_].*?)?\s*", re.DOTALL)
+_SYMBOL = r"[^\W\d_]+(?:\s*(?:\^|\*\*)\s*-?\d|[²³])?"
+_UNIT = re.compile(rf"{_SYMBOL}(?:\s*[*/ ]\s*{_SYMBOL}){{0,3}}")
+_LONGEST = 60
+"""Characters of a quantity, and of a value shown in an error."""
 
 
 def parse_quantity(text: object, dimension: Dimension) -> float:
@@ -41,14 +46,17 @@ def parse_quantity(text: object, dimension: Dimension) -> float:
         InputError: no text, no number, no unit, an unknown unit, or a unit of another dimension.
     """
     if not isinstance(text, str):
-        raise InputError(f'{text!r} has no unit; write {dimension.name} as text, for example "{dimension.example}"')
-    match = _QUANTITY.fullmatch(text)
+        raise InputError(f'{quote(text)} has no unit; write {dimension.name} as text: "{dimension.example}"')
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
     if not match:
-        raise InputError(f'"{text}" is not {dimension.name}; write for example "{dimension.example}"')
+        raise InputError(f'{quote(text)} is not {dimension.name}; write for example "{dimension.example}"')
     number, unit = match.groups()
     if unit is None:
-        raise InputError(f'"{text}" has no unit; write for example "{dimension.example}"')
-    return float(_decimal(number) * unit_factor(unit.strip(), dimension))
+        raise InputError(f'{quote(text)} has no unit; write for example "{dimension.example}"')
+    value = _si(Decimal(number), unit_factor(unit, dimension))
+    if not math.isfinite(value):
+        raise InputError(f"{quote(text)} is too large")
+    return value
 
 
 def format_quantity(value: float, dimension: Dimension) -> str:
@@ -56,20 +64,51 @@ def format_quantity(value: float, dimension: Dimension) -> str:
     return f"{plain(scale_down(value, dimension.unit, dimension))} {dimension.unit}"
 
 
-def scale_up(number: object, unit: str, dimension: Dimension) -> float:
+def scale_up(number: Decimal, unit: str, dimension: Dimension) -> float:
     """SI value of a bare number that stands in `unit`."""
-    return float(_decimal(str(number)) * unit_factor(unit, dimension))
+    return _si(number, unit_factor(unit, dimension))
 
 
 def scale_down(value: float, unit: str, dimension: Dimension) -> Decimal:
-    """The decimal number which, in `unit`, is exactly the SI value."""
-    return Decimal(repr(float(value))) / unit_factor(unit, dimension)
+    """The shortest decimal number that `scale_up` reads back from `unit` to the very same value."""
+    factor = unit_factor(unit, dimension)
+    exact = Decimal(float(value)) / factor
+    for digits in range(15, 19):
+        number = Context(prec=digits).plus(exact)
+        if _si(number, factor) == value:
+            return number
+    return exact
 
 
 def plain(number: Decimal) -> str:
-    """A decimal number without exponent and without trailing zeros."""
+    """A decimal number without trailing zeros, zero without a sign, with an exponent only if it would be very long."""
+    if not number:
+        return "0"
+    if not -12 <= number.adjusted() <= 24:
+        return format(number.normalize(), "e")
     text = format(number, "f")
     return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def quote(value: object) -> str:
+    """A user's value as an error shows it: on one line, and cut when long."""
+    if isinstance(value, list):
+        return "a list"
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int) and value.bit_length() > 200:
+        return "a huge number"
+    text = str(value)
+    if len(text) > _LONGEST:
+        text = text[: _LONGEST - 3] + "..."
+    return f'"{printable(text)}"' if isinstance(value, str) else printable(text)
+
+
+def printable(text: str) -> str:
+    """Text on one line: control characters as their escapes."""
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)
 
 
 @cache
@@ -81,17 +120,16 @@ def unit_factor(unit: str, dimension: Dimension) -> Decimal:
     """
     import pint
 
-    registry = _registry()
+    if not _UNIT.fullmatch(unit):
+        raise _unknown(unit, dimension)
     try:
-        factor = registry.Quantity(Decimal(1), unit).to(dimension.si).magnitude
+        factor = _registry().Quantity(Decimal(1), unit).to(dimension.si).magnitude
     except pint.DimensionalityError:
         raise InputError(
-            f'"{unit}" does not measure {dimension.name}; write for example "{dimension.example}"'
+            f'{quote(unit)} does not measure {dimension.name}; write for example "{dimension.example}"'
         ) from None
     except (pint.errors.PintError, AttributeError, ValueError, TypeError, ArithmeticError, AssertionError):
-        raise InputError(
-            f'unknown unit "{unit}"; write {dimension.name} for example as "{dimension.example}"'
-        ) from None
+        raise _unknown(unit, dimension) from None
     return Decimal(f"{factor:.20g}").normalize()
 
 
@@ -99,14 +137,12 @@ def unit_factor(unit: str, dimension: Dimension) -> Decimal:
 def _registry() -> Any:
     import pint
 
-    return pint.UnitRegistry(non_int_type=Decimal)
+    return pint.UnitRegistry(non_int_type=Decimal)  # pyright: ignore[reportArgumentType]
 
 
-def _decimal(text: str) -> Decimal:
-    try:
-        number = Decimal(text)
-    except InvalidOperation:
-        raise InputError(f'"{text}" is not a number') from None
-    if not number.is_finite():
-        raise InputError(f"{text} is not a finite number")
-    return number
+def _unknown(unit: str, dimension: Dimension) -> InputError:
+    return InputError(f'unknown unit {quote(unit)}; write {dimension.name} for example as "{dimension.example}"')
+
+
+def _si(number: Decimal, factor: Decimal) -> float:
+    return float(number * factor) + 0.0  # no -0.0

@@ -8,10 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
+from hydrostat.robot.checks import check_positive
 from hydrostat.robot.material import Material
 
 
@@ -49,10 +50,11 @@ class Body:
     outline: Outline | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if (self.mesh.dim == 2) != (self.thickness is not None):
-            raise InputError("a flat body needs a thickness, a body in space has none")
-        if self.thickness is not None and not self.thickness > 0:
-            raise InputError(f"thickness must be above 0, not {self.thickness:g} m")
+        if self.mesh.dim == 2 and self.thickness is None:
+            raise InputError('thickness is missing; a flat body needs one, for example thickness = "40 mm"')
+        if self.mesh.dim == 3 and self.thickness is not None:
+            raise InputError("thickness is only for flat bodies; remove it")
+        _check_lengths(size=self.size, element_size=self.element_size, thickness=self.thickness)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
         """How far points lie outside the body [m], 0 inside its drawing or its mesh."""
@@ -63,6 +65,12 @@ class Body:
         from shapely import points as shapely_points
 
         return np.where(distances > 0, distance(self.outline.polygon, shapely_points(points)), 0.0)
+
+
+def _check_lengths(**lengths: float | None) -> None:
+    for name, length in lengths.items():
+        if length is not None:
+            check_positive(name, length, "m")
 
 
 def outline_body(
@@ -82,7 +90,14 @@ def outline_body(
     from hydrostat.geometry.svg import read_svg
     from hydrostat.geometry.triangulate import triangulate
 
+    _check_lengths(size=size, element_size=element_size)
     outline = read_svg(content, name=file, size=size)
+    try:
+        mesh = triangulate(outline, element_size)
+    except OutlineError:
+        raise
+    except InputError as error:
+        raise InputError(f"element_size: {error}") from None
     return Body(
         source=Source.OUTLINE,
         file=file,
@@ -91,7 +106,7 @@ def outline_body(
         size=size,
         element_size=element_size,
         thickness=thickness,
-        mesh=triangulate(outline, element_size),
+        mesh=mesh,
         outline=outline,
     )
 
@@ -106,6 +121,7 @@ def mesh_body(
     """
     from hydrostat.geometry.mesh_file import read_mesh
 
+    _check_lengths(size=size, thickness=thickness)
     return Body(
         source=Source.MESH,
         file=path.name,

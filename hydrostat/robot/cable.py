@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.robot.checks import check_not_negative, check_point, check_positive
 from hydrostat.robot.point import Point
 
 
@@ -35,12 +36,15 @@ class Cable:
         count = len(self.points)
         if count < 2:
             raise InputError(f"points must hold at least 2 points, not {count}")
-        if not self.stiffness > 0:
-            raise InputError(f"stiffness must be above 0, not {self.stiffness:g} N/m")
-        if not self.smoothing > 0:
-            raise InputError(f"smoothing must be above 0, not {self.smoothing:g} m")
-        if not self.slack >= 0:
-            raise InputError(f"slack must not be negative, not {self.slack:g} m")
+        for place, point in enumerate(self.points):
+            check_point(f"points[{place}]", point)
+            if len(point) != len(self.points[0]):
+                raise InputError(
+                    f"points[{place}] has {len(point)} coordinates, but points[0] has {len(self.points[0])}"
+                )
+        check_positive("stiffness", self.stiffness, "N/m")
+        check_positive("smoothing", self.smoothing, "m")
+        check_not_negative("slack", self.slack, "m")
         for start, end in self.sheathed:
             if not 0 <= start < end < count:
                 raise InputError(
@@ -48,9 +52,9 @@ class Cable:
                 )
         same = np.flatnonzero(self.segments < 1e-9)
         if same.size:
-            raise InputError(f"points {same[0]} and {same[0] + 1} are the same; remove one of them")
+            raise InputError(f"points[{same[0]}] and points[{same[0] + 1}] are the same; remove one of them")
         if not self.bare.any():
-            raise InputError("the whole cable is sheathed: it cannot move anything")
+            raise InputError("sheathed: the whole cable is sheathed and cannot move anything; leave a part of it bare")
 
     @property
     def segments(self) -> np.ndarray:

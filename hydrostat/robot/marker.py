@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.robot.checks import check_point
 from hydrostat.robot.point import Point
 
 
@@ -21,3 +22,4 @@ class Marker:
     def __post_init__(self) -> None:
         if not self.name:
             raise InputError("name must not be empty")
+        check_point("at", self.at)

@@ -1,10 +1,11 @@
 """`Material`, and the table of materials known by name."""
 
-import math
 from dataclasses import dataclass
 from types import MappingProxyType
 
 from hydrostat.errors import InputError
+from hydrostat.robot.checks import check_positive
+from hydrostat.units import quote
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,14 +30,12 @@ class Material:
     source: str = ""
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.young) and self.young > 0):
-            raise InputError(f"young must be above 0, not {self.young:g} Pa")
+        check_positive("young", self.young, "Pa")
         if not -1 < self.poisson < 0.5:
             raise InputError(
                 f"poisson must be above -1 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
             )
-        if not (math.isfinite(self.density) and self.density > 0):
-            raise InputError(f"density must be above 0, not {self.density:g} kg/m^3")
+        check_positive("density", self.density, "kg/m^3")
 
     @property
     def lame(self) -> tuple[float, float]:
@@ -74,5 +73,7 @@ def find_material(name: str) -> Material:
     """
     material = MATERIALS.get(name.lower())
     if material is None:
-        raise InputError(f'unknown material "{name}"; known are: {", ".join(MATERIALS)}')
+        raise InputError(
+            f"unknown material {quote(name)}; known are: {', '.join(MATERIALS)}; or give its young, poisson and density"
+        )
     return material

@@ -7,6 +7,7 @@ import numpy as np
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot.checks import check_not_negative, check_point, check_positive
 from hydrostat.robot.point import Point
 
 DEFAULT_STIFFNESS = 100e3
@@ -31,11 +32,15 @@ class Pin:
 
     def __post_init__(self) -> None:
         if (self.at is None) == (self.box is None):
-            raise InputError("a pin has either at (with a radius) or box")
-        if not self.radius >= 0:
-            raise InputError(f"radius must not be negative, not {self.radius:g} m")
-        if not self.stiffness > 0:
-            raise InputError(f"stiffness must be above 0, not {self.stiffness:g} N/m")
+            raise InputError("give either at (with a radius) or box")
+        if self.at is not None:
+            check_point("at", self.at)
+        for corner, point in enumerate(self.box or ()):
+            check_point(f"box[{corner}]", point)
+        if self.box is not None and self.radius:
+            raise InputError("radius goes with at, not with box; remove it")
+        check_not_negative("radius", self.radius, "m")
+        check_positive("stiffness", self.stiffness, "N/m")
 
     def anchors(self, mesh: Mesh) -> Anchors:
         """What the pin holds.

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.robot.checks import check_point
 from hydrostat.robot.point import Point
 
 
@@ -24,3 +25,5 @@ class Pose:
             raise InputError("name must not be empty")
         if not self.targets:
             raise InputError("targets must name at least one marker")
+        for name, target in self.targets.items():
+            check_point(f"targets.{name}", target)

@@ -1,16 +1,19 @@
 """`load_robot`: from a folder with robot.toml to a checked `Robot`."""
 
+import os
 import re
 import tomllib
 from collections.abc import Callable
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.robot.body import Body, mesh_body, outline_body
+from hydrostat.robot.body import Body, Source, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.lines import find_line
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.material import Material, find_material
 from hydrostat.robot.pin import Pin
@@ -20,8 +23,14 @@ from hydrostat.robot.winch import Winch
 
 FILE = "robot.toml"
 LARGEST_FILE = 200_000_000
-"""A file of a robot may have this many bytes."""
+"""The file of a body may have this many bytes."""
 
+LARGEST_TEXT = 1_000_000
+"""robot.toml may have this many bytes."""
+
+_LONGEST = 400
+_PLACE = re.compile(r"([a-z_]+)(?:\[\d+\])*(?:\.[a-z_]+(?:\[\d+\])*)*(?=[ :.])")
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]*["']?[ \t]*\.[ \t]*){30}""")
 _Record = TypeVar("_Record")
 
 
@@ -32,18 +41,27 @@ def load_robot(path: str | Path) -> Robot:
         InputError: one line that names the file, the line or key, what is wrong and what is allowed.
     """
     path = Path(path)
-    file = path / FILE if path.is_dir() or path.suffix != ".toml" else path
-    text = _read_bytes(file, str(file)).decode("utf-8", errors="replace")
+    file = path if path.suffix == ".toml" and not os.path.isdir(path) else path / FILE
+    if os.path.isfile(path) and file != path:
+        raise InputError(f"{path}: is neither the folder of a robot nor a robot.toml; begin a robot with hydrostat new")
+    content = _read_bytes(file, units.printable(str(file)), LARGEST_TEXT)
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{file}, line {line}: not UTF-8 text; save the file again as UTF-8") from None
     return _Reader(file, text).robot()
 
 
-def _read_bytes(file: Path, name: str) -> bytes:
+def _read_bytes(file: Path, name: str, most: int) -> bytes:
     try:
-        if file.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{name}: larger than {LARGEST_FILE // 1_000_000} MB")
+        if not file.exists():
+            raise InputError(f"{name}: there is no such file")
+        if not file.is_file():
+            raise InputError(f"{name}: is not a file")
+        if file.stat().st_size > most:
+            raise InputError(f"{name}: has {file.stat().st_size / 1e6:.3g} MB, at most {most / 1e6:g} MB are read")
         return file.read_bytes()
-    except FileNotFoundError:
-        raise InputError(f"{name}: there is no such file") from None
     except OSError as error:
         raise InputError(f"{name}: cannot be read ({error.strerror})") from None
 
@@ -68,51 +86,40 @@ class _Reader:
             "markers": self._records("marker", self._marker),
         }
         poses: dict[str, Pose] = {}
-        for index, entry in enumerate(table.pose):
-            if entry.name in poses:
-                self._fail(f"pose[{index}].name", f'there are two of the name "{entry.name}"; names must be unique')
-            poses[entry.name] = self._at(f"pose[{index}]", lambda entry=entry: self._pose(entry))
+        for index, pose in enumerate(self._records("pose", self._pose)):
+            if pose.name in poses:
+                self._fail(f"pose[{index}].name", f'there are two of the name "{pose.name}"; names must be unique')
+            poses[pose.name] = pose
         body = self._body()
-        try:
-            return Robot(name=table.name, body=body, poses=poses, length_unit=self.unit, **parts)
-        except InputError as error:
-            key, colon, rest = str(error).partition(":")
-            if colon and re.match(r"^\w+(\[|\.|$)", key):
-                self._fail(key, rest.strip())
-            raise InputError(f"{self.file}: {error}") from None
+        return self._at("", lambda: Robot(name=table.name, body=body, poses=poses, length_unit=self.unit, **parts))
 
     def _parse(self) -> Any:
         from pydantic import ValidationError
 
         from hydrostat.robot.schema import RobotTable
+        from hydrostat.robot.schema_error import first_complaint
 
         if not self.text.strip():
-            raise InputError(f'{self.file}: the file is empty; begin with format = 1, or run "hydrostat new"')
+            self._fail("", "the file is empty; begin with format = 1, or run hydrostat new")
         try:
-            data = tomllib.loads(self.text, parse_float=Decimal)
-        except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-            raise InputError(f"{self.file}: not TOML: {error}") from None
-        try:
-            return RobotTable.model_validate(data)
+            return RobotTable.model_validate(self._data())
         except ValidationError as error:
-            raise self._schema_error(error.errors()[0]) from None
+            self._fail(*first_complaint(error))
 
-    def _schema_error(self, error: Any) -> InputError:
-        from hydrostat.robot.schema import allowed_keys
-
-        location = tuple(
-            step for step in error["loc"] if not str(step).startswith(("MaterialTable", "function-", "constrained-"))
-        )
-        key = location[-1] if location else ""
-        if error["type"] == "extra_forbidden":
-            message = f'unknown key "{key}"; allowed here are: {", ".join(allowed_keys(location[:-1]))}'
-        elif error["type"] == "missing":
-            message = f'the key "{key}" is missing'
-        elif error["type"] == "literal_error" and key == "format":
-            message = f"format = {error['input']!r} is not known; this version reads format = 1"
-        else:
-            message = error["msg"].removeprefix("Value error, ")
-        return InputError(f"{self._where(_dotted(location))}: {message}")
+    def _data(self) -> dict[str, Any]:
+        """The file as tomllib reads it, which takes time in the square of a key's parts."""
+        if _LONG_KEY.search(self.text):
+            self._fail("", "not TOML of a robot: a key has more than 30 parts")
+        try:
+            return tomllib.loads(self.text, parse_float=Decimal)
+        except tomllib.TOMLDecodeError as error:
+            what, _, place = str(error).partition(" (at line ")
+            line = re.match(r"\d+", place)
+            self._fail("", f"not TOML: {what}", int(line[0]) if line else None)
+        except RecursionError:
+            self._fail("", "not TOML of a robot: brackets are nested too deep")
+        except (ValueError, ArithmeticError):
+            self._fail("", "not TOML of a robot: a number is too large or has too many digits")
 
     def _records(self, key: str, make: Callable[[Any], _Record]) -> tuple[_Record, ...]:
         entries = getattr(self.table, key)
@@ -140,7 +147,7 @@ class _Reader:
 
     def _cable(self, entry: Any) -> Cable:
         points = tuple(self._point(point) for point in entry.points)
-        sheathed = {} if entry.sheathed is None else {"sheathed": tuple(entry.sheathed)}
+        sheathed = {} if entry.sheathed is None else {"sheathed": tuple((start, end) for start, end in entry.sheathed)}
         return Cable(winch=entry.winch, points=points, **sheathed, **_given(entry, "stiffness", "smoothing", "slack"))
 
     def _marker(self, entry: Any) -> Marker:
@@ -151,59 +158,57 @@ class _Reader:
 
     def _body(self) -> Body:
         entry = self.table.body
-        sources = [key for key in ("outline", "mesh") if getattr(entry, key) is not None]
+        sources = [source for source in Source if getattr(entry, source) is not None]
         if len(sources) != 1:
             self._fail("body", "give either outline (a drawing) or mesh (a ready mesh)")
+        source = sources[0]
+        file = self._file(f"body.{source}", getattr(entry, source))
         material = self._at("body.material", lambda: _material(entry.material))
-        file = self._file(sources[0], getattr(entry, sources[0]))
-        if sources[0] == "mesh":
+        if source is Source.MESH:
             if entry.element_size is not None:
                 self._fail("body.element_size", "a ready mesh has its own element size; remove the key")
-            unit = float(units.unit_factor(self.unit, units.LENGTH))
-            return self._at(
-                "body",
-                lambda: mesh_body(file, unit=unit, material=material, size=entry.size, thickness=entry.thickness),
-            )
-        for key, example in (("element_size", "12 mm"), ("thickness", "40 mm")):
-            if getattr(entry, key) is None:
-                self._fail(
-                    "body",
-                    f'the key "{key}" is missing; a flat body needs it, for example {key} = "{example}"',
-                )
-        content = self._at("body.outline", lambda: _read_bytes(file, file.name))
+            make = partial(mesh_body, file, unit=units.scale_up(Decimal(1), self.unit, units.LENGTH))
+        else:
+            for key, example in (("element_size", "12 mm"), ("thickness", "40 mm")):
+                if getattr(entry, key) is None:
+                    self._fail("body", f'the key "{key}" is missing; a flat body needs it: {key} = "{example}"')
+            content = self._at(f"body.{source}", lambda: _read_bytes(file, file.name, LARGEST_FILE))
+            make = partial(outline_body, content, file=file.name, element_size=entry.element_size)
         return self._at(
             "body",
-            lambda: outline_body(
-                content,
-                file=file.name,
-                material=material,
-                element_size=entry.element_size,
-                thickness=entry.thickness,
-                size=entry.size,
-            ),
+            lambda: make(material=material, size=entry.size, thickness=entry.thickness),
+            otherwise=f"body.{source}",
         )
 
     def _file(self, key: str, name: str) -> Path:
-        if Path(name).name != name or name in {FILE, ".", ".."}:
-            self._fail(f"body.{key}", f'"{name}" must be the plain name of a file beside robot.toml')
         file = self.file.parent / name
-        if not file.is_file():
-            self._fail(f"body.{key}", f'there is no file "{name}" beside robot.toml')
+        if Path(name).name != name or "\\" in name or not name.isprintable() or name in {FILE, "..", self.file.name}:
+            self._fail(key, f"{units.quote(name)} must be the plain name of a file beside robot.toml, without a folder")
+        if not os.path.isfile(file):  # unlike Path.is_file, False for a name too long for the system
+            self._fail(key, f"there is no file {units.quote(name)} beside robot.toml; put it there")
+        if file.stat().st_size > LARGEST_FILE:
+            self._fail(key, f"{units.quote(name)} is larger than {LARGEST_FILE // 10**6} MB")
         return file
 
-    def _at(self, key: str, make: Callable[[], _Record]) -> _Record:
+    def _at(self, key: str, make: Callable[[], _Record], *, otherwise: str | None = None) -> _Record:
+        """What `make` makes; its complaint is located at the field it begins with, else at `otherwise`."""
+        from hydrostat.robot.schema_error import allowed_keys
+
         try:
             return make()
         except InputError as error:
-            self._fail(key, str(error))
-            raise
+            message = str(error)
+            place = _PLACE.match(message)
+            if place and place[1] in allowed_keys(key):
+                self._fail(f"{key}.{place[0]}".removeprefix("."), message[place.end() :])
+            self._fail(key if otherwise is None else otherwise, message)
 
-    def _fail(self, key: str, message: str) -> None:
-        raise InputError(f"{self._where(key)}: {message}") from None
-
-    def _where(self, key: str) -> str:
-        line = _line(self.text, key)
-        return f"{self.file}{f', line {line}' if line else ''}{f': {key}' if key else ''}"
+    def _fail(self, key: str, message: str, line: int | None = None) -> NoReturn:
+        line = line or find_line(self.text, key)
+        where = f"{self.file}{f', line {line}' if line else ''}"
+        told = key + message if message.startswith((" ", ":")) else f"{key}: {message}" if key else message
+        told = told if len(told) <= _LONGEST else told[: _LONGEST - 3] + "..."
+        raise InputError(units.printable(f"{where}: {told}")) from None
 
 
 def _material(entry: Any) -> Material:
@@ -215,26 +220,3 @@ def _material(entry: Any) -> Material:
 def _given(entry: Any, *keys: str) -> dict[str, Any]:
     """The keys that stand in the file; the others keep the record's own defaults."""
     return {key: getattr(entry, key) for key in keys if getattr(entry, key) is not None}
-
-
-def _dotted(location: tuple[Any, ...]) -> str:
-    text = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in location)
-    return text.removeprefix(".")
-
-
-def _line(text: str, key: str) -> int | None:
-    """Line of a key such as cable[1].points[0], as near as headers and key names tell."""
-    match = re.match(r"(\w+)(?:\[(\d+)\])?(?:\.(\w+))?", key)
-    if not match:
-        return None
-    table, index, entry = match.group(1), int(match.group(2) or 0), match.group(3)
-    lines = text.splitlines()
-    heads = [number for number, line in enumerate(lines) if re.match(rf"\s*\[\[?\s*{table}\s*\]", line)]
-    if len(heads) <= index:
-        return next((number + 1 for number, line in enumerate(lines) if re.match(rf"\s*{table}\s*=", line)), None)
-    for number in range(heads[index] + 1, len(lines)):
-        if re.match(r"\s*\[\[?\s*[A-Za-z_]+\s*\]", lines[number]):
-            break
-        if entry and re.match(rf"\s*{entry}\s*=", lines[number]):
-            return number + 1
-    return heads[index] + 1

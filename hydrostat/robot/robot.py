@@ -48,6 +48,9 @@ class Robot:
             raise InputError("name must not be empty")
         _unique("winch", [winch.name for winch in self.winches])
         _unique("marker", [marker.name for marker in self.markers])
+        for index, (name, pose) in enumerate(self.poses.items()):
+            if name != pose.name:
+                raise InputError(f'pose[{index}].name: a pose called "{pose.name}" is filed under "{name}"')
         self._check_dimensions()
         self._check_pins()
         self._check_markers_and_poses()
@@ -82,7 +85,7 @@ class Robot:
         dim = self.body.mesh.dim
         for key, point in self._points():
             if len(point) != dim:
-                raise InputError(f"{key} has {len(point)} coordinates, but the body has {dim} dimensions")
+                raise InputError(f"{key} has {len(point)} coordinates, but the body has {dim}")
 
     def _points(self) -> Iterable[tuple[str, Point]]:
         for index, pin in enumerate(self.pins):
@@ -148,7 +151,7 @@ class Robot:
                 raise InputError(f"{where} = {self._text(points[place])} {out}; move it inside")
 
     def _text(self, value: Point | float) -> str:
-        """A point or length in the unit of the file, to a tenth of a thousandth."""
+        """A point or length in the unit of the file, to four digits."""
         from hydrostat.units import LENGTH, unit_factor
 
         scale = float(unit_factor(self.length_unit, LENGTH))

@@ -2,21 +2,28 @@
 
 from collections.abc import Callable
 from decimal import Decimal
-from typing import Annotated, Any, Literal
+from typing import Annotated
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Strict, Tag
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.robot.name import check_name
 from hydrostat.robot.winch import Mount
+
+LARGEST = 10**12
+"""No number of robot.toml is larger, whether bare or in SI."""
 
 
 def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
     def parse(text: object) -> float:
         try:
-            return units.parse_quantity(text, dimension)
+            value = units.parse_quantity(text, dimension)
         except InputError as error:
             raise ValueError(str(error)) from None
+        if abs(value) > LARGEST:
+            raise ValueError(f"{units.quote(text)} is too large")
+        return value
 
     return parse
 
@@ -24,11 +31,25 @@ def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
 def _number(value: object) -> Decimal:
     """A bare number; tomllib hands over int or Decimal."""
     if isinstance(value, bool) or not isinstance(value, int | Decimal):
-        raise ValueError(f"{value!r} is not a number")
-    number = Decimal(value)
-    if not number.is_finite() or abs(number) > 10**12:
-        raise ValueError(f"{value} is out of range")
-    return number
+        raise ValueError(f"{units.quote(value)} is not a number")
+    if isinstance(value, Decimal) and not value.is_finite():
+        raise ValueError(f"{units.quote(value)} is not a finite number")
+    if abs(value) > LARGEST:
+        raise ValueError(f"{units.quote(value)} is too large; write a number between -1e12 and 1e12")
+    return Decimal(value)
+
+
+def _name(value: object) -> object:
+    try:
+        return check_name(value) if isinstance(value, str) else value
+    except InputError as error:
+        raise ValueError(str(error)) from None
+
+
+def _format(value: object) -> object:
+    if type(value) is not int or value != 1:
+        raise ValueError(f"{units.quote(value)} is not known; this version reads format = 1")
+    return value
 
 
 Length = Annotated[float, BeforeValidator(_quantity(units.LENGTH))]
@@ -38,6 +59,8 @@ Stiffness = Annotated[float, BeforeValidator(_quantity(units.STIFFNESS))]
 Number = Annotated[Decimal, BeforeValidator(_number)]
 Coordinates = Annotated[list[Number], Field(min_length=2, max_length=3)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
+Name = Annotated[str, BeforeValidator(_name)]
+Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=2)]
 
 
 class Table(BaseModel):
@@ -54,6 +77,10 @@ class MaterialTable(Table):
     density: Density
 
 
+def _material_tag(value: object) -> str:
+    return "<table>" if isinstance(value, dict) else "<name>"
+
+
 class BodyTable(Table):
     """[body]."""
 
@@ -62,7 +89,9 @@ class BodyTable(Table):
     size: Length | None = None
     element_size: Length | None = None
     thickness: Length | None = None
-    material: Text | MaterialTable
+    material: Annotated[
+        Annotated[Text, Tag("<name>")] | Annotated[MaterialTable, Tag("<table>")], Discriminator(_material_tag)
+    ]
 
 
 class PinTable(Table):
@@ -77,7 +106,7 @@ class PinTable(Table):
 class WinchTable(Table):
     """[[winch]]."""
 
-    name: Text
+    name: Name
     at: Coordinates
     spool_radius: Length | None = None
     travel: Length | None = None
@@ -93,28 +122,28 @@ class CableTable(Table):
     stiffness: Stiffness | None = None
     smoothing: Length | None = None
     slack: Length | None = None
-    sheathed: list[tuple[int, int]] | None = None
+    sheathed: list[Pair] | None = None
 
 
 class MarkerTable(Table):
     """[[marker]]."""
 
-    name: Text
+    name: Name
     at: Coordinates
 
 
 class PoseTable(Table):
     """[[pose]]."""
 
-    name: Text
+    name: Name
     targets: dict[str, Coordinates]
 
 
 class RobotTable(Table):
     """The whole file."""
 
-    format: Literal[1]
-    name: Text
+    format: Annotated[int, BeforeValidator(_format)]
+    name: Name
     length_unit: Text = "mm"
     body: BodyTable
     pin: list[PinTable] = []
@@ -122,20 +151,3 @@ class RobotTable(Table):
     cable: list[CableTable] = []
     marker: list[MarkerTable] = []
     pose: list[PoseTable] = []
-
-
-def allowed_keys(location: tuple[Any, ...]) -> list[str]:
-    """Keys that the table at a place of the file may have."""
-    table: Any = RobotTable
-    for step in location:
-        if not isinstance(step, str) or step not in getattr(table, "model_fields", {}):
-            continue
-        candidates = _models(table.model_fields[step].annotation)
-        table = candidates[0] if candidates else table
-    return list(table.model_fields)
-
-
-def _models(annotation: Any) -> list[type[Table]]:
-    if isinstance(annotation, type) and issubclass(annotation, Table):
-        return [annotation]
-    return [model for part in getattr(annotation, "__args__", ()) for model in _models(part)]

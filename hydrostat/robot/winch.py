@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from hydrostat.errors import InputError
+from hydrostat.robot.checks import check_not_negative, check_point, check_positive
 from hydrostat.robot.point import Point
 
 
@@ -40,9 +41,7 @@ class Winch:
     def __post_init__(self) -> None:
         if not self.name:
             raise InputError("name must not be empty")
-        if not self.spool_radius > 0:
-            raise InputError(f"spool_radius must be above 0, not {self.spool_radius:g} m")
-        if not self.travel > 0:
-            raise InputError(f"travel must be above 0, not {self.travel:g} m")
-        if not self.release >= 0:
-            raise InputError(f"release must not be negative, not {self.release:g} m")
+        check_point("at", self.at)
+        check_positive("spool_radius", self.spool_radius, "m")
+        check_positive("travel", self.travel, "m")
+        check_not_negative("release", self.release, "m")

@@ -3,12 +3,16 @@
 import hashlib
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from hydrostat import units
+from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.material import MATERIALS
+from hydrostat.robot.name import check_name
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.point import Point
 from hydrostat.robot.robot import Robot
@@ -18,19 +22,38 @@ from hydrostat.robot.winch import Mount
 def save_robot(robot: Robot, folder: str | Path) -> Path:
     """Write robot.toml and the body's file into a folder, made if need be; returns the path of robot.toml.
 
-    Each file is written under a temporary name and renamed, so that a reader never sees half of it.
+    Each file is written under a temporary name and renamed, so that a reader never sees half of it. Comments of a
+    robot.toml that was there are lost.
+
+    Raises:
+        InputError: a name that robot.toml does not allow, or a folder that cannot be written.
     """
+    for name in (robot.name, *robot.poses, *(part.name for part in (*robot.winches, *robot.markers))):
+        check_name(name)
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be made a folder ({error.strerror})") from None
     replace_file(folder / robot.body.file, robot.body.content)
     return replace_file(folder / "robot.toml", robot_text(robot).encode())
 
 
 def replace_file(path: Path, content: bytes) -> Path:
-    """Write a file whole or not at all."""
+    """Write a file whole or not at all.
+
+    Raises:
+        InputError: it cannot be written.
+    """
     part = path.with_name(f".{path.name}.part")
-    part.write_bytes(content)
-    os.replace(part, path)
+    try:
+        part.write_bytes(content)
+        os.replace(part, path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
     return path
 
 
@@ -97,7 +120,7 @@ class _Writer:
 
     def body(self, body: Body) -> dict[str, Any]:
         material: Any = body.material.name
-        if not material:
+        if MATERIALS.get(material) != body.material:
             import tomlkit
 
             material = tomlkit.inline_table()

@@ -1,0 +1,26 @@
+"""What the records check of their numbers; each complaint begins with the name of its field, which the reader seeks."""
+
+import math
+
+from hydrostat.errors import InputError
+from hydrostat.robot.point import Point
+
+
+def check_positive(field: str, value: float, unit: str) -> None:
+    """Refuse what is not finite and above 0."""
+    if not 0 < value < math.inf:
+        raise InputError(f"{field} must be finite and above 0, not {value:g} {unit}")
+
+
+def check_not_negative(field: str, value: float, unit: str) -> None:
+    """Refuse what is not finite or is below 0."""
+    if not 0 <= value < math.inf:
+        raise InputError(f"{field} must be finite and not negative, not {value:g} {unit}")
+
+
+def check_point(field: str, point: Point) -> None:
+    """Refuse what is no place in the plane or in space."""
+    if len(point) not in (2, 3):
+        raise InputError(f"{field} has {len(point)} coordinates; a point has two, or three in space")
+    if not all(map(math.isfinite, point)):
+        raise InputError(f"{field} must have finite coordinates, not {[float(value) for value in point]}")

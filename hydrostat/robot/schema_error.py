@@ -1,0 +1,103 @@
+"""What is wrong with the tables and keys of a robot.toml, in hydrostat's words instead of pydantic's."""
+
+from difflib import get_close_matches
+from typing import Any
+
+from pydantic import ValidationError
+
+from hydrostat.robot.schema import RobotTable, Table
+from hydrostat.units import quote
+
+NOT_YET = {
+    "body.surface": "surfaces are not meshed yet; give an outline (a drawing) or a mesh (a ready mesh)",
+    "cable.friction": "friction is not simulated yet; remove the key",
+}
+"""Keys of the format whose features do not exist yet."""
+
+_EXAMPLES = {
+    "format": "format = 1",
+    "body": "[body]",
+    "name": 'name = "left"',
+    "material": 'material = "polyester fibre"',
+    "young": 'young = "30 kPa"',
+    "poisson": "poisson = 0.3",
+    "density": 'density = "40 kg/m^3"',
+    "at": "at = [0, 0]",
+    "box": "box = [[0, 0], [10, 20]]",
+    "winch": 'winch = "left"',
+    "points": "points = [[0, 0], [10, 20]]",
+    "sheathed": "sheathed = [[0, 1]]",
+    "targets": "targets = { tip = [40, 90] }",
+}
+
+
+def first_complaint(error: ValidationError) -> tuple[str, str]:
+    """Key such as cable[1].points[0], and what is wrong with it; unknown keys first, for they explain missing ones."""
+    errors = error.errors()
+    worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
+    location = tuple(step for step in worst["loc"] if not str(step).startswith("<"))
+    return _dotted(location), _message(worst, location)
+
+
+def allowed_keys(key: str) -> list[str]:
+    """Keys that the table at a key such as cable[1] may have; none if it is no table."""
+    table: Any = RobotTable
+    for step in filter(None, key.split(".")):
+        field = table.model_fields.get(step.partition("[")[0])
+        tables = _tables(field.annotation) if field else []
+        if not tables:
+            return []
+        table = tables[0]
+    return list(table.model_fields)
+
+
+def _message(error: Any, location: tuple[Any, ...]) -> str:
+    names = [step for step in location if isinstance(step, str)]
+    key = names[-1] if names else ""
+    value, limits = quote(error["input"]), error.get("ctx", {})
+    match error["type"]:
+        case "extra_forbidden":
+            return NOT_YET.get(".".join(names)) or _unknown(key, _dotted(location[:-1]))
+        case "missing":
+            return f"the key {quote(key)} is missing; write {_EXAMPLES[key]}"
+        case "enum":
+            return f"{value} is not known; allowed are: {str(limits['expected']).replace(chr(39), '')}"
+        case "string_type":
+            return f'{value} is not text; write it in quotes: "..."'
+        case "string_too_short":
+            return "must not be empty"
+        case "string_too_long":
+            return f"{value} is too long; at most {limits['max_length']} characters are allowed"
+        case "int_type":
+            return f"{value} is not a whole number; write for example {_EXAMPLES[key]}"
+        case "list_type" if len(location) == 1:
+            return f"begin each with [[{key}]], in two pairs of brackets"
+        case "list_type":
+            return f"{value} is not a list; write for example {_EXAMPLES.get(key, '[0, 0]')}"
+        case "too_short":
+            return f"has {limits['actual_length']} entries, at least {limits['min_length']} are needed"
+        case "too_long":
+            return f"has more than {limits['max_length']} entries"
+        case "model_type" | "dict_type" if len(location) == 1:
+            return f"must be one table, begun with [{key}] in one pair of brackets"
+        case "model_type" | "dict_type":
+            return f"{value} is not a table" + (f"; write for example {_EXAMPLES[key]}" if key == "targets" else "")
+    return error["msg"].removeprefix("Value error, ")
+
+
+def _unknown(key: str, table: str) -> str:
+    allowed = allowed_keys(table)
+    similar = get_close_matches(key[:60], allowed, n=1)
+    hint = f", did you mean {similar[0]}?" if similar else ";"
+    return f"unknown key {quote(key)}{hint} allowed here are: {', '.join(allowed)}"
+
+
+def _dotted(location: tuple[Any, ...]) -> str:
+    text = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in location)
+    return text.removeprefix(".")
+
+
+def _tables(annotation: Any) -> list[type[Table]]:
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return [annotation]
+    return [table for part in getattr(annotation, "__args__", ()) for table in _tables(part)]

@@ -1,0 +1,59 @@
+import pytest
+
+from hydrostat.robot.lines import find_line
+
+TEXT = """\
+name = "a"          # 1
+body.size = "1 m"
+[ body ]
+"outline" = "x"
+  mesh="y"
+[[pin]]             # 6
+at = [0, 0]
+[[pin]]
+radius = 1
+[[pose]]            # 10
+name = "p"
+targets.b = [0, 0]
+[[pose]]
+name = "q"
+  [pose.targets]    # 15
+  tip = [
+    [0, 1],
+  ]
+[[cable]]           # 19
+winch = [{name = 1}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("key", "line"),
+    [
+        ("name", 1),
+        ("format", None),
+        ("radius", None),
+        ("body", 3),
+        ("body.outline", 4),
+        ("body.mesh", 5),
+        ("body.thickness", 3),
+        ("pin[0].at", 7),
+        ("pin[0].radius", 6),
+        ("pin[1].radius", 9),
+        ("pin[1].at[0]", 8),
+        ("pin[2]", None),
+        ("pose[0].targets.b", 12),
+        ("pose[0].targets", 12),
+        ("pose[1].name", 14),
+        ("pose[1].targets", 15),
+        ("pose[1].targets.tip", 16),
+        ("pose[1].targets.top", 15),
+        ("cable[0].points[3]", 19),
+        ("cable[0].winch[0].name", 20),
+        ("", None),
+        ("(", None),
+    ],
+)
+def test_line(key: str, line: int | None) -> None:
+    """Oracle: the lines counted by hand."""
+    assert find_line(TEXT, key) == line
+    assert find_line(TEXT.replace("\n", "\r\n"), key) == line

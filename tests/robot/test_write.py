@@ -1,0 +1,257 @@
+"""A robot is written and read without loss."""
+
+import tomllib
+from decimal import Decimal
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from builders import box_mesh, strip_mesh
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from robot_files import GOOD, MAXIMAL_IN, edit, load, mesh_once, robot_folder
+
+from hydrostat.errors import InputError
+from hydrostat.robot import (
+    Cable,
+    Marker,
+    Material,
+    Mount,
+    Pin,
+    Pose,
+    Robot,
+    Winch,
+    gallery_folder,
+    gallery_names,
+    load_robot,
+    robot_hash,
+    robot_text,
+    save_robot,
+)
+
+MESHED = """\
+format = 1
+name = "meshed"
+length_unit = "{unit}"
+
+[body]
+mesh = "body.{ending}"
+material = "FlexFoam-iT X"
+{extra}
+
+[[pin]]
+box = [{box}]
+
+[[winch]]
+name = "only"
+at = [{at}]
+
+[[cable]]
+winch = "only"
+points = [[{at}], [{end}]]
+"""
+
+
+def check_round_trip(robot: Robot, folder: Path) -> str:
+    """The text of a robot that came back equal, in text, hash and every bit of its records."""
+    again = load_robot(save_robot(robot, folder))
+    assert again == robot
+    assert robot_text(again) == robot_text(robot) == (folder / "robot.toml").read_text(encoding="utf-8")
+    assert robot_hash(again) == robot_hash(robot)
+    assert again.body.content == robot.body.content
+    assert again.body.mesh.nodes.tobytes() == robot.body.mesh.nodes.tobytes()
+    assert again.body.mesh.elements.tobytes() == robot.body.mesh.elements.tobytes()
+    return robot_text(robot)
+
+
+@pytest.mark.parametrize("name", gallery_names())
+def test_gallery(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the robot itself, read again; and the gallery's own file, number by number."""
+    mesh_once(monkeypatch)
+    text = check_round_trip(load_robot(gallery_folder(name)), tmp_path)
+    old = tomllib.loads((gallery_folder(name) / "robot.toml").read_text(encoding="utf-8"))
+    new = tomllib.loads(text)
+    for kind in ("marker", "pose"):
+        assert new[kind] == old[kind]
+    assert [cable["points"] for cable in new["cable"]] == [cable["points"] for cable in old["cable"]]
+
+
+@pytest.mark.parametrize("unit", MAXIMAL_IN)
+def test_every_key(unit: str, tmp_path: Path) -> None:
+    """Oracle: the file's numbers, converted by hand, and the robot itself, read again."""
+    robot = load(tmp_path / "here", MAXIMAL_IN[unit])
+    factor = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254}[unit]
+    assert robot.length_unit == unit
+    assert robot.body.size == 0.06
+    assert robot.body.thickness == 0.0205
+    assert robot.body.material == Material(young=31.7e3, poisson=0.35, density=41.1)
+    assert [pin.stiffness for pin in robot.pins] == [100e3, 12.3e3, 3e4]
+    assert robot.pins[0].radius == pytest.approx({"mm": 10.1, "cm": 1.01, "in": 0.35}[unit] * factor, rel=1e-15)
+    assert robot.winch("世界").mount is Mount.WORLD
+    assert robot.winch("世界").at == pytest.approx((-9 * factor, 0.7 * factor), rel=1e-15)
+    inner = robot.winch("in the body")
+    assert (inner.spool_radius, inner.travel, inner.release, inner.mount) == (0.003, 0.02, 0.0013, Mount.BODY)
+    cable = robot.cables[0]
+    assert (cable.stiffness, cable.smoothing, cable.slack, cable.sheathed) == (4400, 0.0007, 0.002, ((0, 1), (2, 3)))
+    assert robot.pose("wave").targets["हाथ"] == pytest.approx((-1e-3 * factor, 1e3 * factor))
+    assert list(robot.poses) == ["wave", "rest"]
+    check_round_trip(robot, tmp_path / "there")
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("mm", 1e-3), ("in", 0.0254)])
+@pytest.mark.parametrize("ending", ["vtk", "vtu", "msh"])
+def test_triangles(unit: str, metres: float, ending: str, tmp_path: Path) -> None:
+    """Oracle: the mesh that meshio wrote, in metres, and the robot itself, read again."""
+    mesh = strip_mesh(4, 2, size=(8.0, 4.0))
+    nodes = np.pad(mesh.nodes, ((0, 0), (0, 1)))
+    robot_folder(tmp_path / "here")
+    path, form = tmp_path / "here" / f"body.{ending}", {"msh": "gmsh"}.get(ending)
+    meshio.write(path, meshio.Mesh(nodes, [("triangle", mesh.elements)]), file_format=form)
+    flat = {"extra": 'thickness = "3 mm"', "box": "[-1, -9], [0.1, 9]", "at": "1, 0", "end": "7, 1"}
+    robot = load(tmp_path / "here", MESHED.format(unit=unit, ending=ending, **flat))
+    assert robot.body.mesh.nodes == pytest.approx(mesh.nodes * metres)
+    assert robot.body.material.name == "flexfoam-it x"
+    check_round_trip(robot, tmp_path / "there")
+
+
+@pytest.mark.parametrize("size", [None, "0.13 m"])
+def test_tetrahedra(size: str | None, tmp_path: Path) -> None:
+    """Oracle: the mesh that meshio wrote, in metres or scaled to the size asked, and the robot itself, read again."""
+    mesh = box_mesh((2, 1, 1), size=(8.0, 4.0, 4.0))
+    robot_folder(tmp_path / "here")
+    meshio.write(tmp_path / "here" / "body.vtk", meshio.Mesh(mesh.nodes, [("tetra", mesh.elements)]))
+    extra = f'size = "{size}"' if size else ""
+    space = {"extra": extra, "box": "[-1, -1, -1], [0.1, 999, 999]", "at": "1, 1, 1", "end": "7, 2, 3"}
+    robot = load(tmp_path / "here", MESHED.format(unit="mm" if size else "cm", ending="vtk", **space))
+    assert robot.body.mesh.nodes == pytest.approx(mesh.nodes * (0.13 / 8 if size else 0.01))
+    assert robot.body.thickness is None
+    check_round_trip(robot, tmp_path / "there")
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Robot:
+    return load(tmp_path_factory.mktemp("small"))
+
+
+LENGTH = st.floats(1e-30, 1e6)
+PLACE = st.floats(-1e6, 1e6)
+WORDS = st.text("aZ9_-. éß世हाথ", min_size=1, max_size=60).map(lambda text: "n" + text[1:])
+
+
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@given(data=st.data(), unit=st.sampled_from(["mm", "cm", "m", "in", "ft", "um", "yard"]))
+def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
+    """Oracle: bits: whatever floats the records hold, the file gives the very same (the body is not meshed again)."""
+    from hydrostat.robot.read import _Reader
+
+    draw = data.draw
+    low, high = small.body.mesh.nodes.min(axis=0) * 0.99, small.body.mesh.nodes.max(axis=0) * 0.99
+    inside = st.tuples(*(st.floats(*ends) for ends in zip(low, high, strict=True)))
+    start, end, at = draw(inside), (float(high[0]), draw(inside)[1]), draw(inside)
+    winch = Winch(
+        name=draw(WORDS),
+        at=start,
+        spool_radius=draw(LENGTH),
+        travel=draw(LENGTH),
+        release=draw(LENGTH | st.just(0.0)),
+        mount=draw(st.sampled_from(Mount)),
+    )
+    cable = Cable(
+        winch=winch.name,
+        points=(start, (start[0] * 0.5 - 1e-3, 0.0), end),
+        stiffness=draw(LENGTH),
+        smoothing=draw(LENGTH),
+        slack=draw(LENGTH | st.just(0.0)),
+    )
+    target = (draw(PLACE), draw(PLACE))
+    robot = Robot(
+        name=draw(WORDS),
+        body=small.body,
+        pins=(Pin(at=at, radius=0.05, stiffness=draw(LENGTH)), Pin(box=((-1.0, -1.0), at))),
+        winches=(winch,),
+        cables=(cable,),
+        markers=(Marker(name="tip", at=at),),
+        poses={"pose": Pose(name="pose", targets={"tip": target})},
+        length_unit=unit,
+    )
+    text = robot_text(robot)
+    reader = _Reader(Path("robot.toml"), text)
+    assert reader._records("winch", reader._winch) == robot.winches
+    assert reader._records("cable", reader._cable) == robot.cables
+    assert reader._records("pin", reader._pin) == robot.pins
+    assert reader._records("marker", reader._marker) == robot.markers
+    assert reader._records("pose", reader._pose) == tuple(robot.poses.values())
+
+
+def test_pleasant(tmp_path: Path) -> None:
+    """Oracle: the text that a person would write: numbers as typed, a point or a cable on one line, no default kept."""
+    lines = robot_text(load(tmp_path, GOOD)).splitlines()
+    for line in (
+        "at = [-20, 5]",
+        "points = [[-20, 5], [0, 10], [20, 10]]",
+        'element_size = "12 mm"',
+        'material = "polyester fibre"',
+        'stiffness = "4 N/mm"',
+        'travel = "20 mm"',
+    ):
+        assert line in lines
+    assert not any(line.startswith(("mount", "release", "slack", "sheathed", "length_unit", "size")) for line in lines)
+    assert all(lines[number - 1] == "" for number, line in enumerate(lines) if line.startswith("["))
+    assert "\n\n\n" not in "\n".join(lines)
+
+
+@pytest.mark.parametrize("unit", MAXIMAL_IN)
+def test_numbers_as_typed(unit: str, tmp_path: Path) -> None:
+    """Oracle: the numbers of the file that was read, to the digit, in inches too."""
+    before = tomllib.loads(MAXIMAL_IN[unit], parse_float=Decimal)
+    after = tomllib.loads(robot_text(load(tmp_path, MAXIMAL_IN[unit])), parse_float=Decimal)
+    assert [cable["points"] for cable in after["cable"]] == [cable["points"] for cable in before["cable"]]
+    assert [pin.get("box") for pin in after["pin"]] == [pin.get("box") for pin in before["pin"]]
+    assert after["pose"] == before["pose"]
+
+
+def test_minus_zero(tmp_path: Path) -> None:
+    """Oracle: -0.0 equals 0.0, so robots with either have one text and one hash."""
+    first, second = (load(tmp_path, edit(GOOD, "at = [25, 0]", f"at = [25, {zero}]")) for zero in ("0", "-0.0"))
+    assert first == second
+    assert robot_hash(first) == robot_hash(second)
+    assert check_round_trip(second, tmp_path / "again") == robot_text(first)
+
+
+def test_material_of_another_table(tmp_path: Path, small: Robot) -> None:
+    """Oracle: the numbers come back, although the name is not, or no longer, the table's."""
+    from dataclasses import replace
+
+    stiffer = replace(small.body.material, young=31e3)
+    saved = save_robot(replace(small, body=replace(small.body, material=stiffer)), tmp_path)
+    assert load_robot(saved).body.material == Material(young=31e3, poisson=0.3, density=40)
+
+
+def test_hash_tells_apart(tmp_path: Path) -> None:
+    """Oracle: a robot changed in one number, or in one byte of its drawing, has another hash."""
+    first = load(tmp_path)
+    assert robot_hash(load(tmp_path, edit(GOOD, "[20, 10]]", "[20, 10.0001]]"))) != robot_hash(first)
+    drawing = first.body.content.decode() + " "
+    assert robot_hash(load(tmp_path, svg=drawing)) != robot_hash(first)
+
+
+def test_whole_or_not_at_all(tmp_path: Path, small: Robot) -> None:
+    """Oracle: the folder: no temporary file stays, neither after success nor after failure, which is one line."""
+    save_robot(small, tmp_path / "deep" / "down")
+    assert sorted(path.name for path in (tmp_path / "deep" / "down").iterdir()) == ["body.svg", "robot.toml"]
+    (tmp_path / "bad" / "robot.toml").mkdir(parents=True)
+    with pytest.raises(InputError, match=r"robot.toml: cannot be written \("):
+        save_robot(small, tmp_path / "bad")
+    assert sorted(path.name for path in (tmp_path / "bad").iterdir()) == ["body.svg", "robot.toml"]
+    with pytest.raises(InputError, match=r"body.svg: cannot be made a folder \("):
+        save_robot(small, tmp_path / "bad" / "body.svg")
+
+
+def test_unreadable_names_are_not_written(tmp_path: Path, small: Robot) -> None:
+    """Oracle: what could not be read again is refused before anything is written."""
+    from dataclasses import replace
+
+    with pytest.raises(InputError, match='"a/b" has "/" in it'):
+        save_robot(replace(small, name="a/b"), tmp_path / "new")
+    assert not (tmp_path / "new").exists()
