@@ -9,6 +9,6 @@ from robustness import example_folders, sweep  # pyright: ignore[reportMissingIm
 @pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize("folder", example_folders(), ids=lambda folder: folder.name)
 def test_every_random_contraction_of_every_example_converges(folder: Path) -> None:
-    found = sweep(folder, 100, seed=1)
+    found = sweep(folder, 50, seed=1)
     assert found.failures == []
     assert max(found.iterations) < 80
