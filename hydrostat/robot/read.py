@@ -29,6 +29,8 @@ LARGEST_TEXT = 1_000_000
 """robot.toml may have this many bytes."""
 
 _LONGEST = 400
+"""Characters of a complaint, its file and line not counted."""
+
 _PLACE = re.compile(r"([a-z_]+)(?:\[\d+\])*(?:\.[a-z_]+(?:\[\d+\])*)*(?=[ :.])")
 _LONG_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]*["']?[ \t]*\.[ \t]*){30}""")
 _Record = TypeVar("_Record")
