@@ -1,0 +1,225 @@
+"""Inverse kinematics. Oracles: hidden contractions, central differences, scipy's optimisers on the same objective."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import box_robot, strip_robot
+from robustness import example_folders
+from scipy.optimize import least_squares, minimize
+
+from hydrostat.errors import InputError
+from hydrostat.ik import InverseOptions, InverseReason, ReachedPose, solve_ik
+from hydrostat.ik.solve_ik import _Search, _State
+from hydrostat.mechanics import NewtonOptions
+from hydrostat.robot import Marker, Pose, Robot, load_robot
+from hydrostat.simulation import Simulation
+
+TIGHT = NewtonOptions(tolerance=1e-13)
+
+
+def two_markers(robot: Robot) -> Robot:
+    """A strip with markers at its tip and at the middle of its upper side."""
+    return replace(robot, markers=(*robot.markers, Marker(name="top", at=(0.1, 0.025))))
+
+
+def with_release(robot: Robot, release: float) -> Robot:
+    return replace(robot, winches=tuple(replace(winch, release=release) for winch in robot.winches))
+
+
+def targets(simulation: Simulation, contractions: list[float]) -> dict[str, tuple[float, ...]]:
+    pose = simulation.solve(np.array(contractions))
+    return {name: tuple(place.tolist()) for name, place in pose.markers.items()}
+
+
+def size(simulation: Simulation) -> float:
+    return simulation.robot.body.mesh.size
+
+
+HIDDEN = {
+    "one pulls": (two_markers(strip_robot()), [0.02, 0.0]),
+    "the other pulls": (two_markers(strip_robot()), [0.0, 0.015]),
+    "both pull": (two_markers(strip_robot()), [0.02, 0.008]),
+    "far": (two_markers(strip_robot()), [0.045, 0.0]),
+    "sheathed": (two_markers(strip_robot(sheathed=((1, 3),))), [0.015, 0.006]),
+    "space": (box_robot(), [0.01, 0.006]),
+}
+
+
+@pytest.mark.parametrize("name", HIDDEN)
+def test_hidden_contractions_are_found(name: str) -> None:
+    robot, hidden = HIDDEN[name]
+    simulation = Simulation(robot)
+    reached = solve_ik(simulation, targets(simulation, hidden))
+    assert max(reached.errors.values()) < 1e-5 * size(simulation)
+    assert np.abs(reached.pose.contractions - hidden).max() < 5e-3 * max(hidden)
+    assert reached.reason in (InverseReason.REACHED, InverseReason.OPTIMAL)
+
+
+def test_without_effort_hidden_contractions_are_reached_to_the_tolerance() -> None:
+    simulation = Simulation(two_markers(strip_robot()))
+    options = InverseOptions(effort=0.0, tolerance=1e-8)
+    reached = solve_ik(simulation, targets(simulation, [0.02, 0.008]), options=options)
+    assert reached.reason is InverseReason.REACHED
+    assert max(reached.errors.values()) < 1e-8 * size(simulation)
+    assert reached.pose.contractions == pytest.approx([0.02, 0.008], rel=1e-5)
+
+
+@pytest.mark.parametrize("contractions", [[0.02, 0.008], [0.03, 0.002], [0.005, 0.015]])
+def test_the_gradient_of_the_objective(contractions: list[float]) -> None:
+    """J^T r against central differences of fully converged solves."""
+    simulation = Simulation(two_markers(strip_robot()), options=TIGHT)
+    search = _Search(simulation, Pose(name="any", targets={"tip": (0.15, 0.1), "top": (0.1, 0.05)}), InverseOptions())
+    given, step = np.array(contractions), 1e-5
+
+    def state(contractions: np.ndarray) -> _State:
+        return _State(search, simulation.solve(contractions, start=start))
+
+    start = simulation.solve(given)
+    here = state(given)
+    gradient = search._matrix(here.moves).T @ here.residual
+    found = [(state(given + d).objective - state(given - d).objective) / (2 * step) for d in step * np.eye(2)]
+    assert gradient == pytest.approx(found, rel=1e-5, abs=1e-7 * np.abs(gradient).max())
+
+
+OPTIMA = {
+    "out of reach": (two_markers(strip_robot()), {"tip": (0.17, 0.09), "top": (0.1, 0.03)}),
+    "one marker": (strip_robot(), {"tip": (0.18, 0.06)}),
+    "against the bound": (strip_robot(), {"tip": (0.0, 0.15)}),
+    "released": (with_release(two_markers(strip_robot()), 0.02), {"tip": (0.16, 0.1), "top": (0.1, 0.06)}),
+    "stretched": (with_release(two_markers(strip_robot()), 0.02), {"tip": (0.25, 0.0), "top": (0.12, 0.02)}),
+    "space": (box_robot(), {"tip": (0.11, 0.05, 0.03)}),
+}
+
+
+@pytest.mark.parametrize("name", OPTIMA)
+def test_scipy_finds_nothing_better(name: str, unchecked: None) -> None:
+    """Our objective is at most that of two bounded optimisers of another kind, begun at our answer and elsewhere."""
+    robot, goals = OPTIMA[name]
+    simulation = Simulation(robot)
+    target = Pose(name="any", targets=goals)
+    reached = solve_ik(simulation, target)
+    search = _Search(simulation, target, InverseOptions())
+    ours = _State(search, reached.pose).objective
+    bounds = np.column_stack([search.low, search.high])
+
+    def residual(contractions: np.ndarray) -> np.ndarray:
+        return _State(search, simulation.solve(contractions, start=reached.pose)).residual
+
+    def objective(contractions: np.ndarray) -> float:
+        return float(residual(contractions) @ residual(contractions)) / 2
+
+    inner = np.clip(reached.pose.contractions, search.low + 1e-4, search.high - 1e-4)
+    squares = least_squares(residual, inner, bounds=bounds.T, x_scale=0.01, diff_step=1e-4)
+    free = minimize(objective, inner, method="Nelder-Mead", bounds=bounds, options={"maxfev": 60})
+    elsewhere = least_squares(residual, np.full(len(inner), 0.01), bounds=bounds.T, x_scale=0.01, diff_step=1e-4)
+    assert ours <= min(squares.cost, free.fun, elsewhere.cost) * (1 + 1e-4)
+    assert reached.reason is InverseReason.OPTIMAL
+    assert reached.optimality < 1e-3
+
+
+def test_optimality_tells_an_optimum_from_a_pose_on_the_way() -> None:
+    """The check can fail."""
+    simulation = Simulation(strip_robot())
+    goals = {"tip": (0.18, 0.06)}
+    early = solve_ik(simulation, goals, options=InverseOptions(iterations=1))
+    assert early.reason is InverseReason.ITERATION_LIMIT
+    assert early.optimality > 0.1
+    assert early.optimality > 100 * solve_ik(simulation, goals).optimality
+
+
+def kept(simulation: Simulation, reached: ReachedPose) -> bool:
+    winches = simulation.robot.winches
+    pairs = zip(reached.pose.contractions, winches, strict=True)
+    return all(-winch.release <= value <= winch.travel for value, winch in pairs)
+
+
+@pytest.mark.parametrize("release", [0.0, 0.01])
+def test_contractions_stay_within_travel_and_release(release: float) -> None:
+    """Active where the target is out of reach."""
+    robot = with_release(strip_robot(), release)
+    robot = replace(robot, winches=tuple(replace(winch, travel=0.02) for winch in robot.winches))
+    simulation = Simulation(robot)
+    reached = solve_ik(simulation, {"tip": (0.05, 0.2)})
+    assert kept(simulation, reached)
+    assert reached.pose.contractions[0] == 0.02
+    assert reached.reason is InverseReason.OPTIMAL
+    # The lower cable is in the way: it lets out until it is slack or at its end.
+    assert reached.pose.tensions[1] < 1e-3 * reached.pose.tensions[0] or reached.pose.contractions[1] == -release
+
+
+def test_cables_that_all_hang_loose_are_recruited() -> None:
+    """E15: there is no sensitivity at rest at all."""
+    robot = strip_robot(slack=0.01)
+    robot = replace(robot, cables=tuple(replace(cable, slack=0.01) for cable in robot.cables))
+    simulation = Simulation(robot)
+    assert not simulation.jacobian(simulation.solve(np.zeros(2))).any()
+    for hidden in ([0.03, 0.0], [0.0, 0.025]):
+        reached = solve_ik(simulation, targets(simulation, hidden))
+        assert max(reached.errors.values()) < 1e-5 * size(simulation)
+
+
+def test_the_antagonist_stays_at_rest() -> None:
+    simulation = Simulation(strip_robot())
+    reached = solve_ik(simulation, {"tip": tuple(simulation.solve(np.array([0.02, 0.0])).markers["tip"].tolist())})
+    assert reached.pose.contractions[1] == 0.0
+
+
+def test_a_pose_that_cables_cannot_push_to_ends_at_rest() -> None:
+    simulation = Simulation(strip_robot())
+    reached = solve_ik(simulation, {"tip": (0.25, 0.0)})
+    assert reached.reason is InverseReason.OPTIMAL
+    assert reached.pose.contractions == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert reached.rms_error == pytest.approx(0.05, rel=1e-3)
+
+
+def test_at_rest_already() -> None:
+    reached = solve_ik(Simulation(strip_robot()), {"tip": (0.2, 0.0)})
+    assert (reached.reason, reached.iterations, reached.solves) == (InverseReason.REACHED, 0, 1)
+
+
+@pytest.mark.parametrize("begin", [[0.05, 0.0], [0.0, 0.02], [0.08, -0.01]])
+def test_a_start_is_taken_up_within_the_bounds_or_left_for_rest(begin: list[float]) -> None:
+    simulation = Simulation(strip_robot())
+    start = simulation.solve(np.array(begin))
+    goals = targets(simulation, [0.02, 0.0])
+    reached = solve_ik(simulation, goals, start=start)
+    assert kept(simulation, reached)
+    assert reached.rms_error < 1e-5 * size(simulation)
+    one_step = solve_ik(simulation, goals, start=start, options=InverseOptions(iterations=0))
+    assert one_step.rms_error <= np.linalg.norm(np.subtract(goals["tip"], (0.2, 0.0)))
+
+
+def test_a_good_start_saves_solves() -> None:
+    simulation = Simulation(strip_robot())
+    goals = {"tip": (0.17, 0.08)}
+    cold = solve_ik(simulation, goals)
+    warm = solve_ik(simulation, goals, start=cold.pose)
+    assert warm.rms_error == pytest.approx(cold.rms_error, rel=1e-6)
+    assert warm.solves < cold.solves
+
+
+@pytest.mark.parametrize("folder", example_folders(), ids=lambda folder: folder.name)
+def test_all_poses_of_all_examples(folder, unchecked: None) -> None:
+    """They end at an optimum no worse than rest, at an equilibrium that can be solved for again."""
+    robot = load_robot(folder)
+    simulation = Simulation(robot)
+    places = {marker.name: np.array(marker.at) for marker in robot.markers}
+    for pose in robot.poses.values():
+        reached = solve_ik(simulation, pose)
+        rest = np.sqrt(np.mean([np.sum((places[name] - at) ** 2) for name, at in pose.targets.items()]))
+        assert reached.reason in (InverseReason.REACHED, InverseReason.OPTIMAL)
+        assert reached.optimality < 1e-3
+        assert reached.rms_error <= rest * (1 + 1e-12)
+        assert kept(simulation, reached)
+        again = simulation.solve(reached.pose.contractions, start=reached.pose)
+        assert np.abs(again.nodes - reached.pose.nodes).max() < 1e-8 * size(simulation)
+        assert np.abs(again.tensions - reached.pose.tensions).max() < 1e-6 * again.tensions.max(initial=1.0)
+
+
+def test_an_unknown_marker_and_a_robot_without_cables() -> None:
+    robot = strip_robot()
+    with pytest.raises(InputError, match='no marker "nose"; its markers are: tip'):
+        solve_ik(Simulation(robot), {"nose": (0.2, 0.0)})
+    with pytest.raises(InputError, match="no cables to pull"):
+        solve_ik(Simulation(replace(robot, winches=(), cables=())), {"tip": (0.2, 0.0)})
