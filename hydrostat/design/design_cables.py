@@ -1,29 +1,26 @@
 """`design_cables`: from poses to winches and cables, as the thesis has it, judged by the pose error (R35 to R46)."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import combinations, islice, product
 from math import comb
 
 import numpy as np
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Vector
 from hydrostat.design.activation import activate
 from hydrostat.design.fibres import Fibres, edge_fibres, element_fibres
+from hydrostat.design.judge import Progress, judge
 from hydrostat.design.network import Activation, Network
 from hydrostat.design.options import DesignOptions, FibreKind
 from hydrostat.design.orientation import wanted_directions
-from hydrostat.design.region import body_region
-from hydrostat.design.routes import GrowthLimits, grow_routes, lay_route, strongest
+from hydrostat.design.region import Route, body_region
+from hydrostat.design.routes import GrowthLimits, grow_routes, lay_route, length, strongest
+from hydrostat.design.via_points import keep_apart
 from hydrostat.design.winch_tree import Tree, WinchTrees
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.ik import solve_ik
 from hydrostat.robot import Cable, Pose, Robot, Winch
-from hydrostat.simulation import Simulation
-
-Progress = Callable[[str, int, int], None]
-"""Told the stage, how much of it is done, and how much there is."""
 
 
 def design_cables(
@@ -35,7 +32,7 @@ def design_cables(
     options: DesignOptions | None = None,
     progress: Progress | None = None,
 ) -> Network:
-    """A network of `winches` winches and at most `cables` cables for some poses.
+    """A network of exactly `winches` winches and at most `cables` cables for some poses.
 
     The thesis's way: muscle fibres reach each pose; the strongest are joined to routes; a winch is put where the
     routes it pulls score best; what it uses is removed and the next winch is placed (E25). This is done for every
@@ -51,7 +48,8 @@ def design_cables(
         progress: called as the work goes on.
 
     Raises:
-        InputError: no pose, or counts that do not fit.
+        InputError: no pose, a pose of a marker that does not exist, counts that do not fit, or a body that is not flat
+            or too thin.
         HydrostatError: no network can be built from the muscles that were found.
     """
     poses = list(poses)
@@ -61,6 +59,12 @@ def design_cables(
         raise InputError(
             f"{winches} winches and {cables} cables: there must be at least one winch, and a cable for each"
         )
+    markers = [marker.name for marker in robot.markers]
+    for pose in poses:
+        for name in pose.targets:
+            if name not in markers:
+                known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
+                raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')
     return _Design(robot, poses, winches, cables, options or DesignOptions(), progress or _silent).run()
 
 
@@ -105,20 +109,30 @@ class _Design:
     def run(self) -> Network:
         began = time.process_time()
         activations = self._activations()
-        plans = _shortlist(self._plans(activations), self.options.trials)
-        best: Network | None = None
-        for done, plan in enumerate(plans):
-            self.progress("Judging networks", done, len(plans))
-            network = self._judge(plan, activations)
-            if network and (best is None or network.rms_error < best.rms_error):
-                best = network
-        self.progress("Judging networks", len(plans), len(plans))
-        if best is None:
+        built = self._build_all(_shortlist(self._plans(activations)))
+        if not built:
             raise HydrostatError(
-                "no network could be built: no route of strong muscles keeps clear of the edge of the body; "
-                "lower the clearance, or choose a pose that bends the body more"
+                f"no network of {self.winches} winches and up to {self.cables} cables could be built: too few "
+                "routes of strong muscles keep clear of one another and of the edge of the body; ask for fewer "
+                "winches, lower the clearance, or choose a pose that bends the body more"
             )
-        return replace(best, tried=len(plans), seconds=time.process_time() - began)
+        best, reached = judge([robot for _, robot in built], self.poses, progress=self.progress)
+        plan, designed = built[best]
+        return Network(
+            robot=designed,
+            activations=activations,
+            candidates=plan.candidates,
+            trees=tuple(plan.trees.routes),
+            reached=reached,
+            score=plan.score,
+            tried=len(built),
+            seconds=time.process_time() - began,
+        )
+
+    def _build_all(self, plans: Iterable["_Plan"]) -> list[tuple["_Plan", Robot]]:
+        """The first of the plans that can be built, with their robots."""
+        robots = ((plan, self._build(plan.trees, plan.chosen)) for plan in plans)
+        return list(islice(((plan, robot) for plan, robot in robots if robot), self.options.trials))
 
     def _plans(self, activations: tuple[Activation, ...]) -> list[list["_Plan"]]:
         """For each threshold, distance and phi, a plan for every share of cables among winches."""
@@ -134,7 +148,7 @@ class _Design:
             trees = WinchTrees(self.mesh, routes, posed, self.region, self.options)
             for phi in self.options.phis:
                 plans = (_Plan(candidates, trees, self._plant(trees, share, phi)) for share in shares)
-                groups.append([plan for plan in plans if plan.chosen])
+                groups.append([plan for plan in plans if len(plan.chosen) == self.winches])
         self.progress("Growing winch trees", len(variants), len(variants))
         return groups
 
@@ -153,7 +167,7 @@ class _Design:
 
     def _routes(
         self, activations: tuple[Activation, ...], threshold: int, distance: float
-    ) -> tuple[tuple[np.ndarray, ...], list[Points]]:
+    ) -> tuple[tuple[np.ndarray, ...], list[Route]]:
         """Candidate fibres of each pose, and the routes laid through them."""
         limits = GrowthLimits(
             distance=distance * self.spacing,
@@ -168,7 +182,9 @@ class _Design:
             grown = grow_routes(ends, activation.tensions[kept], limits)
             laid += [lay_route(route, self.region, 2 * self.spacing) for route in grown]
             candidates.append(kept)
-        return tuple(candidates), _apart([route for route in laid if route is not None], self.spacing)
+        shortest = self.options.shortest * self.spacing
+        routes = [route for route in laid if route is not None and length(route) >= shortest]
+        return tuple(candidates), _apart(routes, self.spacing)
 
     def _plant(self, trees: WinchTrees, share: tuple[int, ...], phi: float) -> list[Tree]:
         """Winch after winch, each with the routes that are left (E25)."""
@@ -182,44 +198,36 @@ class _Design:
             chosen.append(tree)
         return chosen
 
-    def _judge(self, plan: "_Plan", activations: tuple[Activation, ...]) -> Network | None:
-        """The network as a robot, and what its own winches reach of every pose; None if a cable leaves the body."""
-        robot = self._build(plan.trees, plan.chosen)
-        if not all(self.region.holds(np.array(cable.points)) for cable in robot.cables):
-            return None
-        simulation = Simulation(robot)
-        return Network(
-            robot=robot,
-            activations=activations,
-            candidates=plan.candidates,
-            trees=tuple(plan.trees.routes),
-            reached=tuple(solve_ik(simulation, pose) for pose in self.poses),
-            score=plan.score,
-            tried=0,
-            seconds=0.0,
+    def _build(self, trees: WinchTrees, chosen: list[Tree]) -> Robot | None:
+        """The network as a robot; None if a cable leaves the body, or two of them cannot be kept apart."""
+        pulled = [
+            (index, *trees.cable_points(tree.place, route))
+            for index, tree in enumerate(chosen)
+            for route in tree.routes
+        ]
+        laid = keep_apart(
+            [points for _, points, _ in pulled], gap=self.options.hole_gap, winch_gap=2 * self.options.spool_radius
         )
-
-    def _build(self, trees: WinchTrees, chosen: list[Tree]) -> Robot:
-        winches, cables = [], []
-        for index, tree in enumerate(chosen):
-            name = f"winch_{index + 1}"
-            winches.append(
-                Winch(
-                    name=name,
-                    at=_point(self.mesh.nodes[tree.place]),
-                    spool_radius=self.options.spool_radius,
-                    travel=self.options.travel,
-                    release=self.options.release,
-                )
-            )
-            for route in tree.routes:
-                points, lead = trees.cable_points(tree.place, route)
-                sheathed = ((0, lead),) if lead and self.options.sheathed_leads else ()
-                cables.append(Cable(winch=name, points=tuple(map(_point, points)), sheathed=sheathed))
+        if laid is None or not all(self.region.holds(points) for points in laid):
+            return None
+        winches = [self._winch(index, tree) for index, tree in enumerate(chosen)]
+        cables = []
+        for (index, _, lead), points in zip(pulled, laid, strict=True):
+            sheathed = ((0, lead),) if lead and self.options.sheathed_leads else ()
+            cables.append(Cable(winch=winches[index].name, points=tuple(map(_point, points)), sheathed=sheathed))
         return self.robot.with_network(winches, cables)
 
+    def _winch(self, index: int, tree: Tree) -> Winch:
+        return Winch(
+            name=f"winch_{index + 1}",
+            at=_point(self.mesh.nodes[tree.place]),
+            spool_radius=self.options.spool_radius,
+            travel=self.options.travel,
+            release=self.options.release,
+        )
 
-def _point(coordinates: Points) -> tuple[float, ...]:
+
+def _point(coordinates: Vector) -> tuple[float, ...]:
     """Coordinates to a hundredth of a millimetre, as nobody places a cable finer."""
     return tuple(round(float(value), 5) for value in coordinates)
 
@@ -232,7 +240,7 @@ def _shares(cables: int, winches: int) -> Iterator[tuple[int, ...]]:
     yield from sorted({*shares, even}, key=lambda share: (max(share) - min(share), [-count for count in share]))
 
 
-def _shortlist(groups: list[list["_Plan"]], count: int) -> list["_Plan"]:
+def _shortlist(groups: list[list["_Plan"]]) -> list["_Plan"]:
     """The best plan of every group, then every second best, and so on; each network once.
 
     Scores of one group compare, those of different phi do not.
@@ -243,12 +251,12 @@ def _shortlist(groups: list[list["_Plan"]], count: int) -> list["_Plan"]:
         for group in ranked:
             if rank < len(group):
                 plans.setdefault(group[rank].key, group[rank])
-    return list(plans.values())[:count]
+    return list(plans.values())
 
 
-def _apart(routes: list[Points], spacing: float) -> list[Points]:
+def _apart(routes: list[Route], spacing: float) -> list[Route]:
     """Routes without those that run along an earlier one."""
-    kept: list[Points] = []
+    kept: list[Route] = []
     for route in routes:
         near = [np.linalg.norm(route[:, None] - other[None], axis=2).min(axis=1) < 0.6 * spacing for other in kept]
         if not any(close.mean() > 0.6 for close in near):

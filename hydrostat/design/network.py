@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.fibres import Fibres
+from hydrostat.design.judge import rms_error
+from hydrostat.design.region import Route
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Pose, Robot
 
@@ -47,14 +49,14 @@ class Network:
         trees: routes that were grown from them [m] (Fig 3.9c).
         reached: what the new network reaches of each pose by its own winches; the true score (E24).
         score: the thesis's score of the network, between 0 and 1 (R43).
-        tried: networks whose poses were solved before this one was chosen.
+        tried: networks that were judged by their poses before this one was chosen.
         seconds: CPU time of the design [s].
     """
 
     robot: Robot
     activations: tuple[Activation, ...]
     candidates: tuple[Int[np.ndarray, " candidates"], ...]
-    trees: tuple[Points, ...]
+    trees: tuple[Route, ...]
     reached: tuple[ReachedPose, ...]
     score: float
     tried: int
@@ -63,4 +65,4 @@ class Network:
     @property
     def rms_error(self) -> float:
         """Root of the mean squared marker error over all poses [m]."""
-        return float(np.sqrt(np.mean([pose.rms_error**2 for pose in self.reached])))
+        return rms_error(self.reached)

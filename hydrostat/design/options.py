@@ -23,6 +23,7 @@ class DesignOptions:
         distances: largest gaps to bridge between two fibres to try (R40).
         growth_steps: most fibres joined to one route (R40).
         turn: sharpest turn of a route [degrees].
+        shortest: least length of a route worth a cable.
         phis: weights of the mean against the spread in the score to try (R43, E23).
         shares: most ways to share the cables among the winches to try, the evenest first.
         trials: most networks whose poses are solved (E24).
@@ -31,6 +32,7 @@ class DesignOptions:
         clearance: least distance of a cable from the edge of the body [m].
         winch_clearance: least distance of a winch from the edge of the body [m].
         winch_gap: least distance between two winches [m].
+        hole_gap: least distance between two holes through which cables pass the cloth [m].
         travel: travel of the winches [m].
         release: release of the winches [m].
         spool_radius: of the winches [m].
@@ -39,18 +41,20 @@ class DesignOptions:
     fibres: FibreKind = FibreKind.EDGES
     effort: float = 1e-4
     stages: int = 5
-    thresholds: tuple[int, ...] = (60, 120)
-    distances: tuple[float, ...] = (0.6, 1.5)
+    thresholds: tuple[int, ...] = (20, 40, 60, 80, 120, 160)
+    distances: tuple[float, ...] = (0.6, 1.5, 2.5)
     growth_steps: int = 12
-    turn: float = 60.0
-    phis: tuple[float, ...] = (0.4, 0.6, 0.8)
+    turn: float = 75.0
+    shortest: float = 2.5
+    phis: tuple[float, ...] = (0.2, 0.5, 0.8)
     shares: int = 12
-    trials: int = 32
+    trials: int = 64
     lead_penalty: float = 0.1
     sheathed_leads: bool = True
     clearance: float = 0.005
     winch_clearance: float = 0.012
     winch_gap: float = 0.025
+    hole_gap: float = 0.004
     travel: float = 0.06
     release: float = 0.0
     spool_radius: float = 0.006

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Points, Vector
-from hydrostat.design.region import Region
+from hydrostat.arrays import Vector
+from hydrostat.design.region import Region, Route
 
 FibreEnds = Float[np.ndarray, "fibres 2 dim"]
 
@@ -34,7 +34,7 @@ def strongest(tensions: Vector, count: int, *, weakest: float = 0.02) -> Int[np.
     return order[tensions[order] > weakest * tensions.max(initial=0.0)]
 
 
-def grow_routes(ends: FibreEnds, tensions: Vector, limits: GrowthLimits) -> list[Points]:
+def grow_routes(ends: FibreEnds, tensions: Vector, limits: GrowthLimits) -> list[Route]:
     """Routes through candidate fibres, each begun at the largest tension left (R40).
 
     At either end of a route the nearest candidate is joined that is close enough, turns little and does not lead
@@ -57,7 +57,7 @@ def grow_routes(ends: FibreEnds, tensions: Vector, limits: GrowthLimits) -> list
 
 
 def _extend(
-    route: list[Points], ends: FibreEnds, tensions: Vector, free: Bool[np.ndarray, " fibres"], limits: GrowthLimits
+    route: list[Vector], ends: FibreEnds, tensions: Vector, free: Bool[np.ndarray, " fibres"], limits: GrowthLimits
 ) -> bool:
     """Join the best free fibre to one of the two ends of a route; False if none fits."""
     best: tuple[float, float] | None = None
@@ -69,7 +69,7 @@ def _extend(
             gaps = np.linalg.norm(near - tip, axis=1)
             fits = free & (gaps <= limits.distance)
             fits &= _cosines(tip - before, far - tip) >= np.cos(np.radians(limits.turn))
-            fits &= _cosines(far - near, tip - before) >= np.cos(np.radians(limits.turn))
+            fits &= _cosines(tip - before, far - near) >= np.cos(np.radians(limits.turn))
             fits &= ~_near_points(far, np.array(route), 0.5 * limits.spacing)
             for fibre in np.flatnonzero(fits):
                 key = (round(gaps[fibre] / limits.spacing, 1), -tensions[fibre])
@@ -86,18 +86,18 @@ def _extend(
     return True
 
 
-def _cosines(first: Points, second: Points) -> Vector:
+def _cosines(first: Float[np.ndarray, "*rows dim"], second: Float[np.ndarray, "fibres dim"]) -> Vector:
     """Cosine of the angle between vectors, row by row."""
     first, second = np.broadcast_arrays(first, second)
     norms = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
     return (first * second).sum(axis=-1) / np.maximum(norms, 1e-300)
 
 
-def _near_points(spots: Points, route: Points, reach: float) -> Bool[np.ndarray, " spots"]:
+def _near_points(spots: Float[np.ndarray, "spots dim"], route: Route, reach: float) -> Bool[np.ndarray, " spots"]:
     return np.linalg.norm(spots[:, None] - route[None], axis=2).min(axis=1) < reach
 
 
-def _along(ends: FibreEnds, route: Points, reach: float) -> Bool[np.ndarray, " fibres"]:
+def _along(ends: FibreEnds, route: Route, reach: float) -> Bool[np.ndarray, " fibres"]:
     """Fibres that lie wholly within `reach` of a route."""
     starts, spans = route[:-1], np.diff(route, axis=0)
     offsets = ends[:, :, None, :] - starts
@@ -106,7 +106,7 @@ def _along(ends: FibreEnds, route: Points, reach: float) -> Bool[np.ndarray, " f
     return (np.linalg.norm(ends[:, :, None, :] - feet, axis=3).min(axis=2) <= reach).all(axis=1)
 
 
-def lay_route(route: Points, region: Region, spacing: float) -> Points | None:
+def lay_route(route: Route, region: Region, spacing: float) -> Route | None:
     """A route as a cable can run: a clearance inside the body, smoothed, a via point about every `spacing`.
 
     None if it cannot keep clear of the edge.
@@ -118,9 +118,14 @@ def lay_route(route: Points, region: Region, spacing: float) -> Points | None:
     return laid if len(laid) >= 2 and region.holds(laid) else None
 
 
-def resample(route: Points, spacing: float) -> Points:
+def resample(route: Route, spacing: float) -> Route:
     """Points at equal distances along a polyline, both ends kept."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(route, axis=0), axis=1))])
     count = max(round(along[-1] / spacing), 1)
     places = np.linspace(0.0, along[-1], count + 1)
     return np.column_stack([np.interp(places, along, route[:, axis]) for axis in range(route.shape[1])])
+
+
+def length(route: Route) -> float:
+    """Length of a polyline [m]."""
+    return float(np.linalg.norm(np.diff(route, axis=0), axis=1).sum())

@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.options import DesignOptions
-from hydrostat.design.region import Region
+from hydrostat.design.region import Region, Route
+from hydrostat.design.routes import length
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
@@ -34,7 +36,7 @@ class WinchTrees:
     """All routes of one body with the lead from every winch place to each of them."""
 
     def __init__(
-        self, mesh: Mesh, routes: list[Points], posed: list[Points], region: Region, options: DesignOptions
+        self, mesh: Mesh, routes: list[Route], posed: list[Nodes], region: Region, options: DesignOptions
     ) -> None:
         """Routes at rest, and the node positions of each activated pose `posed` [m]."""
         self.mesh, self.routes, self.region, self.options = mesh, routes, region, options
@@ -50,26 +52,37 @@ class WinchTrees:
 
     def best(self, count: int, used: set[int], taken: list[int], phi: float) -> Tree | None:
         """Best winch with `count` of the routes not yet used, over all places not too near winches `taken` (R41)."""
-        found: Tree | None = None
         nodes = self.mesh.nodes
-        scale = max(float(self.shortenings.max(initial=0.0)), 1e-9)
-        for row, place in enumerate(self.places):
-            gaps = [np.linalg.norm(nodes[place] - nodes[other]) for other in taken]
-            if min(gaps, default=np.inf) < self.options.winch_gap:
-                continue
-            reached = [
-                route for route in range(len(self.routes)) if route not in used and np.isfinite(self.leads[row, route])
-            ]
-            reached.sort(key=lambda route: float(self.shortenings[route].mean()))
-            for first in range(max(len(reached) - count + 1, 1 if reached else 0)):
-                chosen = reached[first : first + count]
-                lead = float(self.leads[row, chosen].mean()) / self.mesh.size
-                score = tree_score(self.shortenings[chosen] / scale, phi) - self.options.lead_penalty * lead
-                if found is None or score > found.score + 1e-12:
-                    found = Tree(int(place), tuple(sorted(chosen)), score)
+        rows = np.arange(len(self.places))
+        for other in taken:
+            apart = np.linalg.norm(nodes[self.places[rows]] - nodes[other], axis=1) >= self.options.winch_gap
+            rows = rows[apart]
+        order = np.argsort(self.shortenings.mean(axis=1), kind="stable")
+        order = order[~np.isin(order, list(used))]
+        reached = np.isfinite(self.leads[np.ix_(rows, order)])
+        found: Tree | None = None
+        for pattern in np.unique(reached, axis=0):
+            same = rows[(reached == pattern).all(axis=1)]
+            if pattern.any():
+                tree = self._best_run(same, order[pattern], count, phi)
+                if found is None or tree.score > found.score:
+                    found = tree
         return found
 
-    def cable_points(self, place: int, route: int) -> tuple[Points, int]:
+    def _best_run(
+        self, rows: Int[np.ndarray, " places"], order: Int[np.ndarray, " routes"], count: int, phi: float
+    ) -> Tree:
+        """Best of places that reach the same routes, with `count` of these that follow one another in `order`."""
+        size = min(count, len(order))
+        scale = max(float(self.shortenings.max(initial=0.0)), 1e-9)
+        runs = sliding_window_view(self.shortenings[order] / scale, size, axis=0).swapaxes(1, 2)
+        leads = sliding_window_view(self.leads[np.ix_(rows, order)], size, axis=1).mean(axis=2) / self.mesh.size
+        scores = np.array([tree_score(run, phi) for run in runs]) - self.options.lead_penalty * leads
+        row, first = np.unravel_index(np.argmax(np.round(scores, 12)), scores.shape)
+        chosen = order[first : first + size].tolist()
+        return Tree(int(self.places[rows[row]]), tuple(sorted(chosen)), float(scores[row, first]))
+
+    def cable_points(self, place: int, route: int) -> tuple[Route, int]:
         """Points of the cable from a winch along its lead and its route, and how many of them are the lead.
 
         A route that begins less than a spool's diameter from the winch has no lead: it begins at the winch.
@@ -91,14 +104,14 @@ class WinchTrees:
         pairs = away.reshape(len(self.places), len(self.routes), 2)
         return pairs.min(axis=2), pairs[:, :, 1] < pairs[:, :, 0]
 
-    def _door(self, point: Points) -> int:
+    def _door(self, point: Vector) -> int:
         """Nearest node of the graph in sight of a point, or just the nearest."""
         order = np.argsort(np.linalg.norm(self.mesh.nodes - point, axis=1), kind="stable")[:12]
         order = order[np.diff(self.graph.indptr)[order] > 0] if np.diff(self.graph.indptr)[order].any() else order
         seen = self.region.sees(np.tile(point, (len(order), 1)), self.mesh.nodes[order])
         return int(order[np.argmax(seen)])
 
-    def _lead_path(self, place: int, end: Points) -> Points:
+    def _lead_path(self, place: int, end: Vector) -> Route:
         """From the winch towards `end`, which is left out, through as few bends as the body allows."""
         nodes = self.mesh.nodes
         _, before = dijkstra(self.graph, indices=place, return_predecessors=True)
@@ -125,14 +138,10 @@ def tree_score(contractions: Float[np.ndarray, "cables poses"], phi: float) -> f
     return float(phi * contractions.mean() - (1.0 - phi) * contractions.std(axis=0).mean())
 
 
-def _shortening(mesh: Mesh, route: Points, nodes: Points) -> float:
+def _shortening(mesh: Mesh, route: Route, nodes: Nodes) -> float:
     """By how much a route is shorter in an activated pose than at rest [m]."""
     posed = locate(mesh, route).positions(nodes)
-    return float(_length(route) - _length(posed))
-
-
-def _length(route: Points) -> float:
-    return float(np.linalg.norm(np.diff(route, axis=0), axis=1).sum())
+    return float(length(route) - length(posed))
 
 
 def _graph(mesh: Mesh, region: Region) -> csr_array:

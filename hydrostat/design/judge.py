@@ -1,0 +1,50 @@
+"""`judge`: which of several robots reaches some poses best by its own winches (E24)."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Simulation
+
+Progress = Callable[[str, int, int], None]
+"""Told the stage, how much of it is done, and how much there is."""
+
+_ROUNDS = (InverseOptions(iterations=2), InverseOptions(iterations=4), InverseOptions())
+"""Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
+
+_KEPT = 4
+"""One in so many robots goes on to the next round."""
+
+_FEWEST = 4
+"""At least so many robots go on."""
+
+
+def judge(robots: Sequence[Robot], poses: Sequence[Pose], *, progress: Progress) -> tuple[int, tuple[ReachedPose, ...]]:
+    """The index of the best robot, and what it reaches of each pose.
+
+    In rounds of inverse kinematics, each of which takes up where the last one ended, for ever fewer robots.
+    """
+    simulations = [Simulation(robot) for robot in robots]
+    reached: dict[int, tuple[ReachedPose, ...]] = {}
+    chosen = list(range(len(robots)))
+    for number, options in enumerate(_ROUNDS):
+        for done, index in enumerate(chosen):
+            if number == 0:
+                progress("Judging networks", done, len(robots))
+            starts = [pose.pose for pose in reached[index]] if index in reached else [None] * len(poses)
+            pairs = zip(poses, starts, strict=True)
+            reached[index] = tuple(
+                solve_ik(simulations[index], pose, start=start, options=options) for pose, start in pairs
+            )
+        chosen.sort(key=lambda index: rms_error(reached[index]))
+        if number < len(_ROUNDS) - 1:
+            chosen = chosen[: max(_FEWEST, len(chosen) // _KEPT)]
+    progress("Judging networks", len(robots), len(robots))
+    return chosen[0], reached[chosen[0]]
+
+
+def rms_error(reached: Sequence[ReachedPose]) -> float:
+    """Root of the mean squared marker error over poses [m]."""
+    return float(np.sqrt(np.mean([pose.rms_error**2 for pose in reached])))

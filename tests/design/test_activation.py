@@ -1,0 +1,94 @@
+"""Muscle activation. Oracles: scipy's nnls, the conditions of an optimum, central differences."""
+
+import numpy as np
+import pytest
+from builders import strip_robot
+from scipy.optimize import nnls
+
+from hydrostat.design import DesignOptions, activate, edge_fibres, element_fibres
+from hydrostat.design.activation import _Activation, least_effort
+from hydrostat.design.orientation import wanted_directions
+from hydrostat.mechanics import NewtonOptions, minimise
+from hydrostat.robot import Pose
+from hydrostat.simulation import round_off
+
+BENT = Pose(name="bent", targets={"tip": (0.18, 0.06)})
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_least_effort_against_nnls(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    rows, fibres = int(random.integers(1, 12)), int(random.integers(1, 60))
+    jacobian, wanted = random.normal(size=(rows, fibres)), random.normal(size=rows)
+    rho = 10 ** random.uniform(-4, 1)
+    found = least_effort(jacobian, wanted, rho)
+    stacked = np.vstack([jacobian, np.sqrt(rho) * np.eye(fibres)])
+    expected = nnls(stacked, np.concatenate([wanted, np.zeros(fibres)]), maxiter=100 * fibres)[0]
+    assert np.abs(found - expected).max() <= 1e-8 * max(np.abs(expected).max(), 1e-3)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_least_effort_meets_the_conditions_of_an_optimum(seed: int) -> None:
+    """As in a design: few rows, 600 fibres, a small rho. KKT: t >= 0, slope >= 0, t x slope = 0."""
+    random = np.random.default_rng(seed)
+    jacobian, wanted = 1e-3 * random.normal(size=(10, 600)), 0.05 * random.normal(size=10)
+    rho = 1e-4 * (jacobian**2).sum(axis=0).max()
+    found = least_effort(jacobian, wanted, rho)
+    slope = jacobian.T @ (jacobian @ found - wanted) + rho * found
+    scale = np.abs(jacobian.T @ wanted).max()
+    assert found.min() >= 0
+    assert slope.min() >= -1e-8 * scale
+    assert np.abs(found * slope).max() <= 1e-8 * scale * found.max()
+
+
+def test_nothing_wanted_or_only_pushing_helps() -> None:
+    assert not least_effort(np.ones((1, 3)), np.zeros(1), 0.1).any()
+    assert not least_effort(np.ones((1, 3)), -np.ones(1), 0.1).any()
+
+
+@pytest.mark.parametrize("kind", ["edges", "elements"])
+def test_a_reachable_pose_is_reached_by_muscles_that_pull(kind: str) -> None:
+    robot = strip_robot()
+    mesh = robot.body.mesh
+    fibres = edge_fibres(mesh) if kind == "edges" else element_fibres(mesh, wanted_directions(robot, BENT))
+    found = activate(robot, BENT, fibres, DesignOptions())
+    assert found.rms_error < 2e-3 * mesh.size
+    assert found.tensions.min() >= 0
+    assert found.errors == {"tip": pytest.approx(found.rms_error)}
+
+
+def test_more_effort_leaves_more_error_and_weaker_muscles() -> None:
+    robot = strip_robot(columns=8, rows=2)
+    fibres = edge_fibres(robot.body.mesh)
+    free, dear = (activate(robot, BENT, fibres, DesignOptions(effort=effort)) for effort in (1e-5, 1e-1))
+    assert free.rms_error < dear.rms_error
+    assert np.linalg.norm(free.tensions) > np.linalg.norm(dear.tensions)
+
+
+def test_the_jacobian_by_the_adjoint() -> None:
+    robot = strip_robot(columns=6, rows=2)
+    fibres = edge_fibres(robot.body.mesh)
+    run = _Activation(robot, BENT, fibres, DesignOptions())
+    random = np.random.default_rng(0)
+    tensions = np.where(random.random(len(fibres)) < 0.4, random.uniform(0, 1.0, len(fibres)), 0.0)
+
+    def rest(tensions: np.ndarray, start: np.ndarray) -> np.ndarray:
+        solved = minimise(
+            run.assembly,
+            start,
+            tensions,
+            force_scale=lambda _: 1.0,
+            round_off=round_off(robot),
+            options=NewtonOptions(tolerance=1e-13),
+        )
+        assert solved.converged
+        return solved.nodes
+
+    nodes = rest(tensions, robot.body.mesh.nodes)
+    jacobian = run._jacobian(nodes, tensions)
+    step = 1e-4
+    for fibre in random.choice(len(fibres), 8, replace=False):
+        shift = step * np.eye(len(fibres))[fibre]
+        ahead, behind = (run.anchors.positions(rest(tensions + side * shift, nodes)) for side in (1, -1))
+        expected = (ahead - behind).ravel() / (2 * step)
+        assert jacobian[:, fibre] == pytest.approx(expected, abs=1e-6 * np.abs(jacobian).max())
