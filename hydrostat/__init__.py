@@ -10,9 +10,45 @@ The public names below load their module when they are first used, so that `impo
 """
 
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hydrostat.design import DesignOptions, Network, design_cables
+    from hydrostat.errors import HydrostatError, InputError, NotConvergedError
+    from hydrostat.fabrication import PatternOptions, export_kit
+    from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
+    from hydrostat.mechanics import NewtonOptions
+    from hydrostat.robot import Cable, Marker, Material, Pin, Pose, Robot, Winch, load_robot, save_robot
+    from hydrostat.simulation import Simulation, SolvedPose
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Cable",
+    "DesignOptions",
+    "HydrostatError",
+    "InputError",
+    "InverseOptions",
+    "Marker",
+    "Material",
+    "Network",
+    "NewtonOptions",
+    "NotConvergedError",
+    "PatternOptions",
+    "Pin",
+    "Pose",
+    "ReachedPose",
+    "Robot",
+    "Simulation",
+    "SolvedPose",
+    "Winch",
+    "__version__",
+    "design_cables",
+    "export_kit",
+    "load_robot",
+    "save_robot",
+    "solve_ik",
+]
 
 _HOMES = {
     "Cable": "robot",
@@ -39,8 +75,6 @@ _HOMES = {
     "save_robot": "robot",
     "solve_ik": "ik",
 }
-
-__all__ = sorted([*_HOMES, "__version__"])
 
 
 def __getattr__(name: str) -> Any:

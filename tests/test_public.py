@@ -12,6 +12,7 @@ def test_every_public_name_exists() -> None:
     """Oracle: `__all__` itself; a name that does not load is a broken promise."""
     for name in hs.__all__:
         assert getattr(hs, name) is not None
+    assert set(hs.__all__) == {*hs._HOMES, "__version__"}
     assert set(hs.__all__) <= set(dir(hs))
 
 

@@ -15,6 +15,7 @@ from hydrostat.design.judge import Progress, judge
 from hydrostat.design.network import Activation, Network
 from hydrostat.design.options import DesignOptions, FibreKind
 from hydrostat.design.orientation import wanted_directions
+from hydrostat.design.prune import prune
 from hydrostat.design.region import Route, body_region
 from hydrostat.design.routes import GrowthLimits, grow_routes, lay_route, length, strongest
 from hydrostat.design.via_points import keep_apart
@@ -37,7 +38,9 @@ def design_cables(
     The thesis's way: muscle fibres reach each pose; the strongest are joined to routes; a winch is put where the
     routes it pulls score best; what it uses is removed and the next winch is placed (E25). This is done for every
     combination of thresholds, distances, weights and shares of the options, and of all these networks the one is
-    returned that reaches the poses best by its own winches (E24). Nothing is drawn at random.
+    returned that reaches the poses best by its own winches (E24) without pulling too hard, less the cables that it
+    does as well without.
+    Nothing is drawn at random.
 
     Args:
         robot: body, pins and markers; its own winches and cables are left aside.
@@ -116,8 +119,11 @@ class _Design:
                 "routes of strong muscles keep clear of one another and of the edge of the body; ask for fewer "
                 "winches, lower the clearance, or choose a pose that bends the body more"
             )
-        best, reached = judge([robot for _, robot in built], self.poses, progress=self.progress)
+        best, reached = judge(
+            [robot for _, robot in built], self.poses, tension=self.options.tension, progress=self.progress
+        )
         plan, designed = built[best]
+        designed, reached = prune(designed, self.poses, reached, tension=self.options.tension, loss=self.options.loss)
         return Network(
             robot=designed,
             activations=activations,

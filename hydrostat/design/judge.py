@@ -21,10 +21,18 @@ _FEWEST = 4
 """At least so many robots go on."""
 
 
-def judge(robots: Sequence[Robot], poses: Sequence[Pose], *, progress: Progress) -> tuple[int, tuple[ReachedPose, ...]]:
-    """The index of the best robot, and what it reaches of each pose.
+def judge(
+    robots: Sequence[Robot], poses: Sequence[Pose], *, tension: float, progress: Progress
+) -> tuple[int, tuple[ReachedPose, ...]]:
+    """The index of the robot of least cost, and what it reaches of each pose.
 
     In rounds of inverse kinematics, each of which takes up where the last one ended, for ever fewer robots.
+
+    Args:
+        robots: the candidates.
+        poses: what they should reach.
+        tension: what a cable should bear at most [N], see `cost`.
+        progress: called as the work goes on.
     """
     simulations = [Simulation(robot) for robot in robots]
     reached: dict[int, tuple[ReachedPose, ...]] = {}
@@ -38,11 +46,17 @@ def judge(robots: Sequence[Robot], poses: Sequence[Pose], *, progress: Progress)
             reached[index] = tuple(
                 solve_ik(simulations[index], pose, start=start, options=options) for pose, start in pairs
             )
-        chosen.sort(key=lambda index: rms_error(reached[index]))
+        chosen.sort(key=lambda index: cost(reached[index], tension))
         if number < len(_ROUNDS) - 1:
             chosen = chosen[: max(_FEWEST, len(chosen) // _KEPT)]
     progress("Judging networks", len(robots), len(robots))
     return chosen[0], reached[chosen[0]]
+
+
+def cost(reached: Sequence[ReachedPose], tension: float) -> float:
+    """Pose error [m], times how often the largest tension exceeds `tension` [N] if it does."""
+    largest = max(float(pose.pose.tensions.max(initial=0.0)) for pose in reached)
+    return rms_error(reached) * max(largest / tension, 1.0)
 
 
 def rms_error(reached: Sequence[ReachedPose]) -> float:

@@ -27,6 +27,8 @@ class DesignOptions:
         phis: weights of the mean against the spread in the score to try (R43, E23).
         shares: most ways to share the cables among the winches to try, the evenest first.
         trials: most networks whose poses are solved (E24).
+        tension: largest tension [N] that a cable should bear: on a spool of 6 mm that asks a motor for 0.12 N m.
+        loss: how much of the pose error leaving out cables may add, as a fraction.
         lead_penalty: how much the score loses for a lead as long as the body.
         sheathed_leads: whether leads from a winch to where its cables begin to pull run in sheaths (R14).
         clearance: least distance of a cable from the edge of the body [m].
@@ -49,6 +51,8 @@ class DesignOptions:
     phis: tuple[float, ...] = (0.2, 0.5, 0.8)
     shares: int = 12
     trials: int = 64
+    tension: float = 20.0
+    loss: float = 0.02
     lead_penalty: float = 0.1
     sheathed_leads: bool = True
     clearance: float = 0.005

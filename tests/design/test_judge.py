@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design.judge import judge, rms_error
+from hydrostat.design.judge import cost, judge, rms_error
 from hydrostat.ik import solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
@@ -27,8 +27,25 @@ def test_the_best_robot_is_found_with_what_it_reaches() -> None:
     robots.insert(5, strip_robot(columns=10, rows=3))
     expected = [rms_error([solve_ik(Simulation(robot), pose) for pose in POSES]) for robot in robots]
     calls: list[tuple[str, int, int]] = []
-    best, reached = judge(robots, POSES, progress=lambda *call: calls.append(call))
+    best, reached = judge(robots, POSES, tension=100.0, progress=lambda *call: calls.append(call))
     assert best == int(np.argmin(expected))
     assert rms_error(reached) == pytest.approx(min(expected), rel=1e-4)
     assert [pose.target for pose in reached] == list(POSES)
     assert [done for _, done, _ in calls] == list(range(10))
+
+
+def test_cost_is_the_error_until_a_cable_bears_too_much() -> None:
+    """Oracle: the formula, at a tension limit above and at half of the largest tension."""
+    reached = [solve_ik(Simulation(strip_robot(columns=10, rows=3)), pose) for pose in POSES]
+    largest = max(float(pose.pose.tensions.max()) for pose in reached)
+    assert cost(reached, 2 * largest) == rms_error(reached)
+    assert cost(reached, largest / 2) == pytest.approx(2 * rms_error(reached))
+
+
+def test_a_robot_that_pulls_too_hard_is_not_chosen() -> None:
+    """Oracle: the same two robots, whose order turns when the limit lies between their tensions."""
+    robots = [strip_robot(columns=10, rows=3), shifted(-0.008)]
+    reached = [[solve_ik(Simulation(robot), pose) for pose in POSES] for robot in robots]
+    for limit in (1e-3, 0.5, 100.0):
+        best, _ = judge(robots, POSES, tension=limit, progress=lambda *_: None)
+        assert best == int(np.argmin([cost(found, limit) for found in reached]))
