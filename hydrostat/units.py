@@ -1,4 +1,4 @@
-"""Units at the door: text such as "12 mm" becomes SI, and SI becomes text again without loss."""
+"""Units at the door: text such as "12 mm" becomes SI and back without loss; counts with their nouns."""
 
 import math
 import re
@@ -146,3 +146,9 @@ def _unknown(unit: str, dimension: Dimension) -> InputError:
 
 def _si(number: Decimal, factor: Decimal) -> float:
     return float(number * factor) + 0.0  # no -0.0
+
+
+def counted(number: int, noun: str) -> str:
+    """A number with its noun: "1 winch", "2 winches"."""
+    plural = noun + ("es" if noun.endswith("ch") else "s")
+    return f"{number} {noun if number == 1 else plural}"

@@ -10,16 +10,16 @@ def check(robot: RobotFolder) -> None:
     """
     from hydrostat.geometry import smallest_angle
     from hydrostat.robot import find_risks, load_robot
+    from hydrostat.units import counted
 
     found = load_robot(robot)
     mesh = found.body.mesh
     kind = "triangles" if mesh.dim == 2 else "tetrahedra"
     angle = f", smallest angle {smallest_angle(mesh):.0f} degrees" if mesh.dim == 2 else ""
     print(f"{found.name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}{angle}")
-    print(
-        f"{len(found.pins)} pins, {len(found.winches)} winches, {len(found.cables)} cables, "
-        f"{len(found.markers)} markers, poses: {', '.join(found.poses) or 'none'}"
-    )
+    parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
+    counts = ", ".join(counted(len(entries), noun) for noun, entries in parts.items())
+    print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
     risks = find_risks(found)
     for risk in risks:
         print(f"risky: {risk}")

@@ -80,8 +80,11 @@ def _print_table(network: "Network", rest: float, seconds: float) -> None:
     from rich.console import Console
     from rich.table import Table
 
+    from hydrostat.units import counted
+
     robot = network.robot
-    table = Table(title=f"{robot.name}: {len(robot.winches)} winches, {len(robot.cables)} cables", title_justify="left")
+    network_size = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+    table = Table(title=f"{robot.name}: {network_size}", title_justify="left")
     for name, justify in (("pose", "left"), ("rms error", "right"), ("worst marker", "left"), ("contractions", "left")):
         table.add_column(name, justify=justify)  # type: ignore[arg-type]
     for reached in network.reached:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from hydrostat.design.network import Activation
 from hydrostat.plot.felt import draw_felt, draw_ghost
-from hydrostat.plot.labels import Labels, counted, shorten
+from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.palette import LIGHT, WINCHES
 from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
@@ -16,6 +16,7 @@ from hydrostat.plot.skin import Skin
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
+from hydrostat.units import counted
 
 PALE = 0.62
 """How far felt fades behind muscles."""
@@ -70,7 +71,7 @@ def draw_candidates(
         InputError: a body in space.
     """
     head = f"Candidates: {shorten(activation.target.name)}" if title is None else title
-    note = f"the strongest {len(candidates)} of {counted(len(activation.fibres), 'fibre', 'fibres')}"
+    note = f"the strongest {len(candidates)} of {counted(len(activation.fibres), 'fibre')}"
     sheet = _pale_sheet(robot, head, note, width, bar=True)
     tensions = activation.tensions[candidates]
     scale = TensionScale.of(tensions)
@@ -94,7 +95,7 @@ def draw_trees(robot: Robot, trees: Iterable[Places], *, title: str | None = Non
         InputError: a body in space.
     """
     trees = list(trees)
-    note = f"{counted(len(trees), 'route', 'routes')} grown from the candidates"
+    note = f"{counted(len(trees), 'route')} grown from the candidates"
     sheet = _pale_sheet(robot, "Trees" if title is None else title, note, width, bar=title == "")
     for index, tree in enumerate(trees):
         colour, route = WINCHES[index % len(WINCHES)], MILLIMETRES * np.asarray(tree)

@@ -89,8 +89,3 @@ def shorten(words: str) -> str:
     """Words fit for a picture: no control letters, and not too long."""
     plain = "".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in words)
     return plain if len(plain) <= LONGEST else plain[: LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}"
-
-
-def counted(number: int, one: str, many: str) -> str:
-    """A number with its noun: "1 winch", "2 winches"."""
-    return f"{number} {one if number == 1 else many}"

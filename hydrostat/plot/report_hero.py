@@ -4,13 +4,13 @@ import numpy as np
 
 from hydrostat.design.network import Network
 from hydrostat.plot.html import Html, tag
-from hydrostat.plot.labels import counted
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.pose_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.targets import rest_errors
+from hydrostat.units import counted
 
 PORTRAIT = 4.6
 """Width of a portrait [inch]."""
@@ -19,9 +19,9 @@ PORTRAIT = 4.6
 def hero(network: Network, title: str) -> Html:
     """Headline, the three errors, and portraits at rest and in the first pose."""
     robot = network.robot
-    winches = counted(len(robot.winches), "winch", "winches")
-    cables = counted(len(robot.cables), "cable", "cables")
-    poses = counted(len(network.reached), "pose", "poses")
+    winches = counted(len(robot.winches), "winch")
+    cables = counted(len(robot.cables), "cable")
+    poses = counted(len(network.reached), "pose")
     return tag(
         "div",
         tag("p", "hydrostat \N{MIDDLE DOT} design report", class_="eyebrow"),

@@ -8,7 +8,6 @@ from hydrostat.design.network import Network
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.html import Html, tag
-from hydrostat.plot.labels import counted
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.pose_figures import draw_reached
 from hydrostat.plot.report_tables import contraction_table, marker_table, tension_table
@@ -16,6 +15,7 @@ from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
 from hydrostat.plot.robot_tables import body_table, cable_table, place_table, winch_table
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Robot
+from hydrostat.units import counted
 
 NARROW = 4.9
 """Width of pictures that stand side by side [inch]: the narrower, the larger their letters."""
@@ -60,7 +60,7 @@ def _targets(network: Network) -> Chapter:
     for index, reached in enumerate(network.reached):
         pose = reached.target
         figure = draw_target(network.robot.with_network((), ()), pose, title="", width=NARROW)
-        note = f": where {counted(len(pose.targets), 'marker', 'markers')} should go"
+        note = f": where {counted(len(pose.targets), 'marker')} should go"
         pictures.append(_figure(figure, f"target-{index}", pose.name, note))
     return Chapter("What it should do", words, [_grid(*pictures)])
 
@@ -84,10 +84,10 @@ def _routes(network: Network) -> Chapter:
     pictures = []
     for index, (activation, kept) in enumerate(zip(network.activations, network.candidates, strict=True)):
         figure = draw_candidates(network.robot, activation, kept, title="", width=NARROW)
-        note = f": the strongest {len(kept)} of {counted(len(activation.fibres), 'fibre', 'fibres')}"
+        note = f": the strongest {len(kept)} of {counted(len(activation.fibres), 'fibre')}"
         pictures.append(_figure(figure, f"candidates-{index}", f"Candidates for {activation.target.name}", note))
     figure = draw_trees(network.robot, network.trees, title="", width=NARROW)
-    note = f": {counted(len(network.trees), 'route', 'routes')} that join neighbouring candidates"
+    note = f": {counted(len(network.trees), 'route')} that join neighbouring candidates"
     return Chapter(
         "From muscles to routes", words, [_grid(*pictures, _figure(figure, "trees", "Trees", note), kind="small")]
     )
@@ -96,8 +96,8 @@ def _routes(network: Network) -> Chapter:
 def _network(network: Network) -> Chapter:
     robot = network.robot
     words = (
-        f"{counted(len(robot.winches), 'winch', 'winches')} and {counted(len(robot.cables), 'cable', 'cables')}, "
-        f"chosen from {counted(network.tried, 'network', 'networks')} whose poses were solved. All cables of one winch "
+        f"{counted(len(robot.winches), 'winch')} and {counted(len(robot.cables), 'cable')}, "
+        f"chosen from {counted(network.tried, 'network')} whose poses were solved. All cables of one winch "
         "share its contraction. A bar marks the stopper at the end of a cable, a pale pipe a sheath."
     )
     figure = draw_network(robot, title="", width=NARROW)

@@ -5,13 +5,14 @@ from matplotlib.figure import Figure
 
 from hydrostat.plot.felt import draw_felt, draw_mesh, draw_pins
 from hydrostat.plot.hardware import cable_dots, cable_runs, draw_cables, draw_numbers, draw_winches, name_winches
-from hydrostat.plot.labels import Labels, counted, shorten
+from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.palette import winch_colours
 from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.targets import draw_arrows, draw_crosses, draw_markers, rest_markers, target_points
 from hydrostat.robot import Pose, Robot
+from hydrostat.units import counted
 
 
 def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
@@ -76,7 +77,7 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     Raises:
         InputError: a body in space.
     """
-    count = f"{counted(len(robot.winches), 'winch', 'winches')}, {counted(len(robot.cables), 'cable', 'cables')}"
+    count = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
     head = shorten(robot.name) if title is None else title
     sheet, rings, runs = _at_rest(robot, head, count, width)
     colours = winch_colours(robot)
