@@ -3,7 +3,7 @@
     python benchmarks/robustness.py [--count 1000] [--seed 0] [EXAMPLE ...]
 
 Each winch draws from 0 to 40 % of the length of its shortest cable. Every pose is judged afresh, not by what the solver
-says: the largest nodal force must be under 1e-8 of the largest cable force, every element's J above 0, no number NaN.
+says: the largest nodal force must be under 1e-8 of the largest cable force (or 1e-10 N), every element's J above 0, no number NaN.
 The exit code is 1 if one pose fails.
 """
 
@@ -27,6 +27,8 @@ from hydrostat.robot import Robot
 EXAMPLES = Path(__file__).parents[1] / "examples"
 LARGEST_SHARE = 0.4
 TOLERANCE = 1e-8
+ROUNDING = 1e-10
+"""Forces [N] below this are rounding errors, for a cable that hardly pulls at all."""
 
 
 @dataclass
@@ -115,7 +117,7 @@ def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
     if not ratios.min() > 0:
         return f"J = {ratios.min():.2g}"
     residual = float(np.abs(simulation.assembly.gradient(pose.nodes, pose.contractions)).max())
-    allowed = max(TOLERANCE * float(pose.tensions.max(initial=0.0)), pose.result.allowed)
+    allowed = max(TOLERANCE * float(pose.tensions.max(initial=0.0)), ROUNDING)
     return "" if residual < allowed or residual == 0.0 else f"residual {residual:.2g} N, allowed {allowed:.2g} N"
 
 

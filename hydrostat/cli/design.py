@@ -4,15 +4,16 @@ import json
 import time
 from dataclasses import asdict
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder
+from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.design import Network
+    from hydrostat.design import DesignOptions, Network
     from hydrostat.robot import Robot
 
 
@@ -20,13 +21,14 @@ def design(
     robot: RobotFolder,
     out: OutFolder,
     winches: Annotated[int, typer.Option(min=1, max=20, help="How many winches.")] = 2,
-    cables: Annotated[int, typer.Option(min=1, max=60, help="How many cables in all.")] = 6,
+    cables: Annotated[int, typer.Option(min=1, max=60, help="How many cables in all, at most.")] = 6,
     pose: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Design for this pose; may be repeated; all if left out.")
     ] = None,
     fibres: Annotated[
         str, typer.Option(help="Muscles on mesh edges, or one in each element: edges | elements.")
     ] = "edges",
+    clearance: Annotated[str, typer.Option(help="Least distance of a cable from the edge of the body.")] = "5 mm",
     kit: Annotated[bool, typer.Option(help="Also write the laser pattern.")] = False,
 ) -> None:
     """Find winches and cables that reach a robot's poses.
@@ -39,10 +41,12 @@ def design(
     from hydrostat.cli.progress import progress_bar
     from hydrostat.design import DesignOptions, FibreKind, design_cables, score_card
     from hydrostat.robot import load_robot, replace_file, save_robot
+    from hydrostat.units import LENGTH, parse_quantity
 
+    require_folder(out)
     if fibres not in list(FibreKind):
         raise InputError(f"--fibres {fibres}: must be one of {', '.join(FibreKind)}")
-    options = DesignOptions(fibres=FibreKind(fibres))
+    options = DesignOptions(fibres=FibreKind(fibres), clearance=parse_quantity(clearance, LENGTH))
     began = time.perf_counter()
     source = load_robot(robot)
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
@@ -53,12 +57,17 @@ def design(
         save_robot(network.robot, out / "robot")
         card = score_card(network, source, options, version=__version__)
         replace_file(out / "score.json", (json.dumps(card, indent=2) + "\n").encode())
-        _write_pictures(network, out, {"seed": "none: nothing is drawn at random", **asdict(options)})
+        _write_pictures(network, out, {"seed": "none: nothing is drawn at random", **_told(options)})
+        _forget_kit(out / "pattern")
         warnings = _write_kit(network.robot, out / "pattern") if kit else []
         progress("Writing results", 1, 1)
     _print_table(network, card["rms_error_at_rest"], time.perf_counter() - began)
     for warning in warnings:
         print(f"warning: {warning}")
+    if not kit:
+        print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))} --out {quote(str(out / 'pattern'))}")
+    else:
+        print(f"Laser pattern: {out / 'pattern' / 'pattern.svg'} and pattern.dxf")
     print(f"Open {out / 'report.html'}")
 
 
@@ -66,6 +75,18 @@ def _write_pictures(network: "Network", out: Path, facts: dict[str, object]) -> 
     from hydrostat.plot import write_report
 
     write_report(network, out / "report.html", facts=facts)
+
+
+def _told(options: "DesignOptions") -> dict[str, object]:
+    """Options as a person reads them."""
+    entries = asdict(options).items()
+    return {name: ", ".join(map(str, value)) if isinstance(value, tuple) else value for name, value in entries}
+
+
+def _forget_kit(folder: Path) -> None:
+    """No pattern of an earlier design must lie beside a new one."""
+    for name in ("pattern.svg", "pattern.dxf"):
+        (folder / name).unlink(missing_ok=True)
 
 
 def _write_kit(robot: "Robot", folder: Path) -> tuple[str, ...]:

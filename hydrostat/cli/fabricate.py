@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder
+from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 
 
 def fabricate(
@@ -21,6 +21,7 @@ def fabricate(
     from hydrostat.fabrication import PatternOptions, export_kit, plush_pattern
     from hydrostat.robot import load_robot
 
+    require_folder(out)
     loaded = load_robot(robot)
     options = PatternOptions(force=force)
     pattern = plush_pattern(loaded, options=options)

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -54,7 +55,7 @@ def new(
     for risk in find_risks(made):
         print(f"risky: {risk}")
     print(f"Edit {name / 'robot.toml'}; coordinates count from the middle of the drawing, see {name / 'rest.png'}")
-    print(f"Next: hydrostat design {name} --winches 1 --cables 2 --out {name}_design")
+    print(f"Next: hydrostat design {quote(str(name))} --out {quote(str(name) + '_design')}")
 
 
 def _length(key: str, text: str | None) -> float | None:
@@ -69,15 +70,13 @@ def _length(key: str, text: str | None) -> float | None:
 
 
 def _copy_gallery(robot: str, folder: Path) -> None:
-    import shutil
-
-    from hydrostat.robot import gallery_folder
+    from hydrostat.robot import gallery_folder, replace_file
 
     source = gallery_folder(robot)
     folder.mkdir(parents=True, exist_ok=True)
     for file in sorted(source.iterdir()):
         if file.is_file():
-            shutil.copyfile(file, folder / file.name)
+            replace_file(folder / file.name, file.read_bytes())
 
 
 def _picture(robot: "Robot", folder: Path) -> None:

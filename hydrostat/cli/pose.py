@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder
+from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.errors import InputError
 
 
@@ -28,6 +28,7 @@ def pose(
     from hydrostat.robot import load_robot, replace_file
     from hydrostat.simulation import Simulation, write_pose
 
+    require_folder(out)
     loaded = load_robot(robot)
     if not loaded.poses:
         raise InputError(f"{robot}: the robot has no [[pose]]; add one")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder
+from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def simulate(
     from hydrostat.robot import load_robot
     from hydrostat.simulation import Simulation, write_pose
 
+    require_folder(out)
     loaded = load_robot(robot)
     simulation = Simulation(loaded)
     contractions = dict(_contraction(text) for text in contract or [])
@@ -40,6 +41,11 @@ def simulate(
                 f"note: winch {name} can take in from {-1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
                 f"{1e3 * value:g} mm is beyond it"
             )
+        shortest = min((cable.length for cable in loaded.cables if cable.winch == name), default=float("inf"))
+        if value >= shortest:
+            raise InputError(
+                f"--contract {name}: {1e3 * value:g} mm is all of a cable that is {1e3 * shortest:.3g} mm long"
+            )
     began = time.process_time()
     pose = simulation.solve(contractions, strict=False)
     seconds = time.process_time() - began
@@ -48,7 +54,7 @@ def simulate(
     for name, place in pose.markers.items():
         print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")
     for index, tension in enumerate(pose.tensions):
-        print(f"cable {index:<10} {tension:8.3f} N")
+        print(f"cable {index + 1:<10} {tension:8.3f} N")
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
     print("Wrote " + ", ".join(str(file) for file in files))
     if not pose.result.converged:
@@ -63,7 +69,7 @@ def _contraction(text: str) -> tuple[str, float]:
         raise InputError(f'--contract {text}: write WINCH=LENGTH, for example "left=12mm"')
     sign = -1.0 if length.strip().startswith("-") else 1.0
     try:
-        return name.strip(), sign * parse_quantity(length.strip().lstrip("+-"), LENGTH)
+        return name.strip(), sign * parse_quantity(length.strip().removeprefix("-"), LENGTH)
     except InputError as error:
         raise InputError(f"--contract {text}: {error}") from None
 

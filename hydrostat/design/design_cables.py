@@ -17,7 +17,7 @@ from hydrostat.design.options import DesignOptions, FibreKind
 from hydrostat.design.orientation import wanted_directions
 from hydrostat.design.prune import prune
 from hydrostat.design.region import Route, body_region
-from hydrostat.design.routes import GrowthLimits, grow_routes, lay_route, length, strongest
+from hydrostat.design.routes import GrowthLimits, grow_routes, lay_route, length, sharpest_turn, strongest
 from hydrostat.design.via_points import keep_apart
 from hydrostat.design.winch_tree import Tree, WinchTrees
 from hydrostat.errors import HydrostatError, InputError
@@ -205,7 +205,7 @@ class _Design:
         return chosen
 
     def _build(self, trees: WinchTrees, chosen: list[Tree]) -> Robot | None:
-        """The network as a robot; None if a cable leaves the body, or two of them cannot be kept apart."""
+        """The network as a robot; None if a cable leaves the body, turns too sharply, or cannot be kept apart."""
         pulled = [
             (index, *trees.cable_points(tree.place, route))
             for index, tree in enumerate(chosen)
@@ -215,6 +215,8 @@ class _Design:
             [points for _, points, _ in pulled], gap=self.options.hole_gap, winch_gap=2 * self.options.spool_radius
         )
         if laid is None or not all(self.region.holds(points) for points in laid):
+            return None
+        if max(map(sharpest_turn, laid)) > self.options.bend:
             return None
         winches = [self._winch(index, tree) for index, tree in enumerate(chosen)]
         cables = []

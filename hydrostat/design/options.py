@@ -35,6 +35,7 @@ class DesignOptions:
         winch_clearance: least distance of a winch from the edge of the body [m].
         winch_gap: least distance between two winches [m].
         hole_gap: least distance between two holes through which cables pass the cloth [m].
+        bend: sharpest turn of a finished cable, where its lead joins its route included [degrees].
         travel: travel of the winches [m].
         release: release of the winches [m].
         spool_radius: of the winches [m].
@@ -59,6 +60,7 @@ class DesignOptions:
     winch_clearance: float = 0.012
     winch_gap: float = 0.025
     hole_gap: float = 0.004
+    bend: float = 90.0
     travel: float = 0.06
     release: float = 0.0
     spool_radius: float = 0.006

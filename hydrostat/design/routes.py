@@ -129,3 +129,11 @@ def resample(route: Route, spacing: float) -> Route:
 def length(route: Route) -> float:
     """Length of a polyline [m]."""
     return float(np.linalg.norm(np.diff(route, axis=0), axis=1).sum())
+
+
+def sharpest_turn(route: Route) -> float:
+    """Largest angle between one segment of a polyline and the next [degrees]."""
+    spans = np.diff(route, axis=0)
+    if len(spans) < 2:
+        return 0.0
+    return float(np.degrees(np.arccos(np.clip(_cosines(spans[:-1], spans[1:]), -1.0, 1.0))).max())

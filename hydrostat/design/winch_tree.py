@@ -96,11 +96,20 @@ class WinchTrees:
         return np.vstack([lead, points]), len(lead)
 
     def _leads(self) -> tuple[Float[np.ndarray, "places routes"], Bool[np.ndarray, "places routes"]]:
-        """Length of the way inside the body from every place to the nearer end of every route; is that its last?"""
+        """Length of the way inside the body from every place to the better end of every route; is that its last?
+
+        Where a cable that comes straight from the winch would turn too sharply, the end counts as farther away by
+        the size of the body.
+        """
         ends = np.array([[route[0], route[-1]] for route in self.routes]).reshape(-1, self.mesh.dim)
         doors = [self._door(end) for end in ends]
         away = dijkstra(self.graph, indices=doors)[:, self.places].T
         away += np.linalg.norm(self.mesh.nodes[doors] - ends, axis=1)
+        onward = np.array([[route[1] - route[0], route[-2] - route[-1]] for route in self.routes]).reshape(ends.shape)
+        arriving = ends - self.mesh.nodes[self.places][:, None]
+        lengths = np.linalg.norm(arriving, axis=2) * np.linalg.norm(onward, axis=1)
+        back = (arriving * onward).sum(axis=2) < np.cos(np.radians(self.options.bend)) * lengths
+        away += np.where(back, self.mesh.size, 0.0)
         pairs = away.reshape(len(self.places), len(self.routes), 2)
         return pairs.min(axis=2), pairs[:, :, 1] < pairs[:, :, 0]
 

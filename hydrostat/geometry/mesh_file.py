@@ -2,7 +2,10 @@
 
 import sys
 from collections.abc import Mapping
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +14,7 @@ from hydrostat.geometry.mesh import Mesh
 
 
 def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Mesh:
-    """Mesh of tetrahedra, or of triangles if there are none, from any file that meshio knows.
+    """Mesh of tetrahedra, or of triangles if there are none, from a VTK, VTU or Gmsh file.
 
     Args:
         path: the file.
@@ -21,25 +24,41 @@ def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Me
     Raises:
         InputError: the file cannot be read or holds neither tetrahedra nor flat triangles.
     """
-    import meshio
-
-    try:
-        data = meshio.read(path)
-    except (meshio.ReadError, SystemExit, ValueError, KeyError, IndexError, OSError, UnicodeDecodeError) as error:
-        reason = str(error).strip().splitlines()
-        raise InputError(
-            f"{path.name}: no mesh can be read from it ({reason[0] if reason else 'damaged file'})"
-        ) from None
+    if path.suffix.lower() not in _FORMATS:
+        raise InputError(f"{path.name}: meshes are read from {', '.join(_FORMATS)} files only")
+    data = _read(path)
     for kind, dim in (("tetra", 3), ("triangle", 2)):
         if kind in data.cells_dict:
             return _simplices(path.name, data.points, data.cells_dict[kind], dim, unit, size)
     raise InputError(f"{path.name}: holds neither tetrahedra nor triangles")
 
 
+_FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".msh": "gmsh"}
+"""Endings, and meshio's names of the formats."""
+
+
+def _read(path: Path) -> Any:
+    """What meshio makes of a file, in silence; whatever a damaged file does to it is told in one line."""
+    import meshio
+
+    try:
+        with redirect_stdout(StringIO()), redirect_stderr(StringIO()), np.errstate(all="ignore"):
+            return meshio.read(path, file_format=_FORMATS[path.suffix.lower()])
+    except (Exception, SystemExit) as error:  # noqa: BLE001  a damaged file breaks meshio in any way there is
+        reason = str(error).strip().splitlines()
+        raise InputError(
+            f"{path.name}: no mesh can be read from it ({reason[0] if reason else 'damaged file'})"
+        ) from None
+
+
 def _simplices(name: str, points: np.ndarray, cells: np.ndarray, dim: int, unit: float, size: float | None) -> Mesh:
+    if cells.min(initial=0) < 0 or cells.max(initial=-1) >= len(points):
+        raise InputError(f"{name}: an element names a node that the file does not have")
     used, elements = np.unique(cells, return_inverse=True)
     elements = elements.reshape(cells.shape).astype(np.int64)
     nodes = np.array(points[used], dtype=float)
+    if not np.isfinite(nodes).all():
+        raise InputError(f"{name}: a coordinate is not a finite number")
     if dim == 2 and nodes.shape[1] == 3 and np.ptp(nodes[:, 2]) > 1e-9 * np.ptp(nodes):
         raise InputError(f"{name}: its triangles do not lie in a plane of constant z; a body in space needs tetrahedra")
     nodes = nodes[:, :dim] * unit

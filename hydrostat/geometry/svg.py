@@ -123,6 +123,10 @@ def _chords(segment: Any, tolerance: float) -> int:
     return int(min(max(np.ceil(np.sqrt(bend / (8.0 * tolerance))), 1), MOST_POINTS))
 
 
+MOST_SHAPES = 200
+"""A drawing may have this many closed shapes: the body and its holes."""
+
+
 def _body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
     """The largest ring, and the rings inside it."""
     shapes = []
@@ -135,6 +139,8 @@ def _body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
             shapes.append(polygon)
     if not shapes:
         raise OutlineError(f"{name}: the outline has no area: draw the body as one closed path")
+    if len(shapes) > MOST_SHAPES:
+        raise OutlineError(f"{name}: has {len(shapes)} closed shapes, more than {MOST_SHAPES}: leave out some holes")
     shapes.sort(key=lambda shape: shape.area, reverse=True)
     body, holes = shapes[0], []
     for shape in shapes[1:]:

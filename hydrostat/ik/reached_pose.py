@@ -14,7 +14,7 @@ class InverseReason(StrEnum):
     """Why inverse kinematics ended."""
 
     REACHED = "every marker is at its target"
-    OPTIMAL = "no allowed contraction brings the markers nearer"
+    OPTIMAL = "as near as these winches can bring the markers"
     ITERATION_LIMIT = "iteration limit reached"
     NO_EQUILIBRIUM = "no equilibrium could be found on the way"
 

@@ -121,6 +121,11 @@ class _Search:
         self.low = np.array([-winch.release for winch in robot.winches])
         self.high = np.array([winch.travel for winch in robot.winches])
         self.anchors = locate(robot.body.mesh, np.array([_marker_place(robot, name) for name in target.targets]))
+        for name, goal in target.targets.items():
+            if len(goal) != robot.body.mesh.dim:
+                raise InputError(
+                    f"target {name} has {len(goal)} coordinates, the body {robot.body.mesh.dim} dimensions"
+                )
         self.goals = np.array(list(target.targets.values()), dtype=float)
         size = robot.body.mesh.size
         self.reached = options.tolerance * size

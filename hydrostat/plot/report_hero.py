@@ -3,13 +3,13 @@
 import numpy as np
 
 from hydrostat.design.network import Network
+from hydrostat.design.score_card import rest_error
 from hydrostat.plot.html import Html, tag
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.pose_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.skin import Skin
-from hydrostat.plot.targets import rest_errors
 from hydrostat.units import counted
 
 PORTRAIT = 4.6
@@ -36,8 +36,7 @@ def hero(network: Network, title: str) -> Html:
 
 def _path(network: Network, words: str) -> Html:
     """Error at rest, with all muscles, with the network."""
-    at_rest = [error for reached in network.reached for error in rest_errors(network.robot, reached.target).values()]
-    steps = [_step(_rms(np.array(at_rest)), "at rest, nothing pulls")]
+    steps = [_step(rest_error(network), "at rest, nothing pulls")]
     if network.activations:
         bound = _rms(np.array([activation.rms_error for activation in network.activations]))
         fibres = len(network.activations[0].fibres)

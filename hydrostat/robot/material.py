@@ -31,9 +31,9 @@ class Material:
 
     def __post_init__(self) -> None:
         check_positive("young", self.young, "Pa")
-        if not -1 < self.poisson < 0.5:
+        if not 0 <= self.poisson < 0.5:
             raise InputError(
-                f"poisson must be above -1 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
+                f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
             )
         check_positive("density", self.density, "kg/m^3")
 

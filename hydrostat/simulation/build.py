@@ -21,8 +21,10 @@ def cable_energies(robot: Robot) -> list[CableEnergy]:
 def round_off(robot: Robot) -> RoundOff:
     """What the rounding errors of the body's own forces hide."""
     body = robot.body
-    scale = body.material.young * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
-    return RoundOff(force=1e-13 * scale / body.mesh.size, energy=1e-15 * scale)
+    mu, lame = body.material.lame
+    scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+    springs = max((pin.stiffness for pin in robot.pins), default=0.0) * body.mesh.size
+    return RoundOff(force=1e-13 * scale / body.mesh.size + 2e-16 * springs, energy=1e-15 * scale)
 
 
 def _body(robot: Robot) -> NeoHookean:

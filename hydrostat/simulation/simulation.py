@@ -1,6 +1,7 @@
 """`Simulation`: the physics of one robot."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
@@ -45,9 +46,11 @@ class Simulation:
         if isinstance(given, Mapping):
             for name in given:
                 self.robot.winch(name)
-            values = np.array([float(given.get(winch.name, 0.0)) for winch in winches])
-        else:
+            given = [given.get(winch.name, 0.0) for winch in winches]
+        try:
             values = np.array(given, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"contractions must be numbers [m], not {given!r}") from None
         if values.shape != (len(winches),):
             raise InputError(f"{values.size} contractions given for {len(winches)} winches")
         if not np.isfinite(values).all():
@@ -111,13 +114,15 @@ class Simulation:
 
     def _in_steps(self, goal: Vector, failed: NewtonResult) -> NewtonResult:
         """From rest by smaller and smaller steps; the first failure if even those do not arrive."""
+        iterations = failed.iterations
         for steps in (4, 16):
             nodes, result = self.robot.body.mesh.nodes, failed
             for step in range(1, steps + 1):
                 result = self._minimise(nodes, goal * (step / steps))
                 nodes = result.nodes
+                iterations += result.iterations
             if result.converged:
-                return result
+                return replace(result, iterations=iterations)
         return failed
 
     def _minimise(self, nodes: Nodes, contractions: Vector) -> NewtonResult:

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.mechanics import NewtonOptions
+
 Run = Callable[..., tuple[int, str, str]]
 
 
@@ -55,3 +57,23 @@ def test_a_robot_that_cannot_be_cut_is_refused_with_the_reason(run: Run, starfis
     assert "line" in err
     assert "element_size" in err
     assert "bananas" in err
+
+
+def test_a_file_in_the_way_of_the_results_is_told_before_the_work(run: Run, starfish: Path, tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("mine")
+    for command in ("simulate", "pose", "design", "fabricate"):
+        code, _, err = run(command, starfish, "--out", tmp_path / "out")
+        assert code == 2
+        assert "is a file" in err
+    assert (tmp_path / "out").read_text() == "mine"
+
+
+def test_a_solve_that_does_not_converge_ends_with_code_1(
+    run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Oracle: Newton allowed no iteration; what it found is still written."""
+    monkeypatch.setattr("hydrostat.simulation.simulation.NewtonOptions", lambda: NewtonOptions(iterations=0))
+    code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--out", tmp_path)
+    assert code == 1
+    assert "iteration limit" in out
+    assert "iteration limit" in (tmp_path / "pose.json").read_text()

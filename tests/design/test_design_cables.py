@@ -182,3 +182,12 @@ def test_more_winches_than_the_muscles_can_feed() -> None:
 def test_a_pose_that_is_there_already() -> None:
     with pytest.raises(HydrostatError, match="bends the body more"):
         design_cables(body(), [Pose(name="rest", targets={"tip": (0.2, 0.0)})], winches=1, cables=1)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_no_cable_turns_sharply(case: str, unchecked: None) -> None:
+    """Oracle: angles between segments by arctan2; felt would hold a cable that doubles back."""
+    for cable in designed(case).robot.cables:
+        spans = np.diff(np.array(cable.points), axis=0)
+        turns = np.diff(np.unwrap(np.arctan2(spans[:, 1], spans[:, 0])))
+        assert np.abs(turns).max(initial=0.0) <= np.radians(DesignOptions().bend) + 1e-3

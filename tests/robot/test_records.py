@@ -73,9 +73,9 @@ def test_points(make, point: tuple) -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Material(young=1.0, poisson=0.5, density=1.0), "poisson must be above -1 and below 0.5, not 0.5"),
-        (lambda: Material(young=1.0, poisson=-1.0, density=1.0), "poisson must be above -1"),
-        (lambda: Material(young=1.0, poisson=NAN, density=1.0), "poisson must be above -1"),
+        (lambda: Material(young=1.0, poisson=0.5, density=1.0), "poisson must be at least 0 and below 0.5, not 0.5"),
+        (lambda: Material(young=1.0, poisson=-0.01, density=1.0), "poisson must be at least 0"),
+        (lambda: Material(young=1.0, poisson=NAN, density=1.0), "poisson must be at least 0"),
         (lambda: find_material("steel"), 'unknown material "steel"; known are: polyester fibre, flexfoam-it x'),
         (lambda: Winch(name="", at=(0.0, 0.0)), "name must not be empty"),
         (lambda: Marker(name="", at=(0.0, 0.0)), "name must not be empty"),

@@ -1,9 +1,13 @@
 """Random contractions on every example: all converge. Oracle: residual, J and numbers judged afresh (benchmarks)."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
-from robustness import example_folders, sweep  # pyright: ignore[reportMissingImports]
+from robustness import example_folders, fault, sweep  # pyright: ignore[reportMissingImports]
+
+import hydrostat as hs
 
 
 @pytest.mark.usefixtures("unchecked")
@@ -12,3 +16,18 @@ def test_every_random_contraction_of_every_example_converges(folder: Path) -> No
     found = sweep(folder, 50, seed=1)
     assert found.failures == []
     assert max(found.iterations) < 80
+
+
+def test_the_judge_can_find_fault() -> None:
+    """Oracle: an equilibrium that is none: one node moved, one element turned over, one number lost."""
+    folder = example_folders()[0]
+    simulation = hs.Simulation(hs.load_robot(folder))
+    pose = simulation.solve(np.full(len(simulation.robot.winches), 0.01))
+    assert fault(simulation, pose) == ""
+    moved, inverted, lost = (pose.nodes.copy() for _ in range(3))
+    moved[0] += 1e-7
+    inverted[simulation.robot.body.mesh.elements[0, 0]] += 1.0
+    lost[0] = np.nan
+    assert "residual" in fault(simulation, replace(pose, nodes=moved))
+    assert "J =" in fault(simulation, replace(pose, nodes=inverted))
+    assert "not finite" in fault(simulation, replace(pose, nodes=lost))
