@@ -23,6 +23,7 @@ def pose(
 
     Example: hydrostat pose examples/starfish --pose wave --out build/wave
     """
+    from hydrostat import __version__
     from hydrostat.ik import InverseReason, solve_ik
     from hydrostat.plot import draw_reached, save_png
     from hydrostat.robot import load_robot, replace_file
@@ -40,7 +41,7 @@ def pose(
         reached = solve_ik(simulation, target)
         seconds = time.process_time() - began
         folder: Path = out / target.name if len(targets) > 1 else out
-        extra = {"seconds": seconds, "pose": target.name, "errors": dict(reached.errors)}
+        extra = {"seconds": seconds, "version": __version__, "pose": target.name, "errors": dict(reached.errors)}
         write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)
         taken = {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
         replace_file(folder / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())

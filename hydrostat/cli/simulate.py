@@ -27,6 +27,7 @@ def simulate(
 
     Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
     """
+    from hydrostat import __version__
     from hydrostat.robot import load_robot
     from hydrostat.simulation import Simulation, write_pose
 
@@ -49,7 +50,7 @@ def simulate(
     began = time.process_time()
     pose = simulation.solve(contractions, strict=False)
     seconds = time.process_time() - began
-    files = write_pose(simulation, pose, out, extra={"seconds": seconds}, jacobian=jacobian)
+    files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
     files += _picture(simulation, pose, out)
     for name, place in pose.markers.items():
         print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")

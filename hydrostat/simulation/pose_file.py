@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat import __version__
 from hydrostat.geometry.mesh_file import write_mesh
 from hydrostat.robot import Robot, replace_file, robot_hash
 from hydrostat.simulation.simulation import Simulation
@@ -18,7 +17,6 @@ from hydrostat.simulation.solved_pose import SolvedPose
 def pose_facts(robot: Robot, pose: SolvedPose) -> dict[str, Any]:
     """What pose.json holds: SI units, contractions by winch, tensions in the order of the cables."""
     return {
-        "version": __version__,
         "robot": robot_hash(robot),
         "contractions": {
             winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)

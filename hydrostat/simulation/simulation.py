@@ -46,9 +46,11 @@ class Simulation:
         if isinstance(given, Mapping):
             for name in given:
                 self.robot.winch(name)
-            given = [given.get(winch.name, 0.0) for winch in winches]
+            wanted = [given.get(winch.name, 0.0) for winch in winches]
+        else:
+            wanted = given
         try:
-            values = np.array(given, dtype=float)
+            values = np.array(wanted, dtype=float)
         except (TypeError, ValueError):
             raise InputError(f"contractions must be numbers [m], not {given!r}") from None
         if values.shape != (len(winches),):
