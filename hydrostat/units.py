@@ -31,10 +31,14 @@ LENGTH = Dimension("a length", "m", "mm", "12 mm")
 PRESSURE = Dimension("a pressure", "Pa", "kPa", "30 kPa")
 DENSITY = Dimension("a density", "kg/m^3", "kg/m^3", "40 kg/m^3")
 STIFFNESS = Dimension("a stiffness", "N/m", "N/mm", "4 N/mm")
+ACCELERATION = Dimension("an acceleration", "m/s^2", "m/s^2", "9.81 m/s^2")
+VISCOSITY = Dimension("a viscosity", "Pa*s", "Pa s", "40 Pa s")
+TIME = Dimension("a time", "s", "s", "2 s")
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([^\W\d_].*?)?\s*", re.DOTALL)
 _SYMBOL = r"[^\W\d_]+(?:\s*(?:\^|\*\*)\s*-?\d|[²³])?"
-_UNIT = re.compile(rf"{_SYMBOL}(?:\s*[*/ ]\s*{_SYMBOL}){{0,3}}")
+_UNIT = re.compile(rf"{_SYMBOL}(?:\s*[*/ .·]\s*{_SYMBOL}){{0,3}}")
+_DOT = re.compile("[.·]")
 _LONGEST = 60
 """Characters of a quantity, and of a value shown in an error."""
 
@@ -123,7 +127,7 @@ def unit_factor(unit: str, dimension: Dimension) -> Decimal:
     if not _UNIT.fullmatch(unit):
         raise _unknown(unit, dimension)
     try:
-        factor = _registry().Quantity(Decimal(1), unit).to(dimension.si).magnitude
+        factor = _registry().Quantity(Decimal(1), _DOT.sub("*", unit)).to(dimension.si).magnitude
     except pint.DimensionalityError:
         raise InputError(
             f'{quote(unit)} does not measure {dimension.name}; write for example "{dimension.example}"'

@@ -1,14 +1,16 @@
 """What a robot is: frozen records, checked when made, and the robot.toml they live in."""
 
-from hydrostat.robot.body import Body, Source, mesh_body, outline_body
+from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.gallery import gallery_folder, gallery_names
+from hydrostat.robot.gravity import STANDARD_GRAVITY
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.material import MATERIALS, Material, find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.point import Point
 from hydrostat.robot.pose import Pose
 from hydrostat.robot.read import load_robot
+from hydrostat.robot.relaxation import Relaxation
 from hydrostat.robot.risks import find_risks
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.sketch import sketch_robot
@@ -17,6 +19,7 @@ from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_rob
 
 __all__ = [
     "MATERIALS",
+    "STANDARD_GRAVITY",
     "Body",
     "Cable",
     "Marker",
@@ -25,8 +28,10 @@ __all__ = [
     "Pin",
     "Point",
     "Pose",
+    "Relaxation",
     "Robot",
     "Source",
+    "Volume",
     "Winch",
     "find_material",
     "find_risks",

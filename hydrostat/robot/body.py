@@ -23,6 +23,16 @@ class Source(StrEnum):
     MESH = "mesh"
 
 
+class Volume(StrEnum):
+    """How the change of volume is measured: in each element, or averaged over patches of elements.
+
+    Linear elements are too stiff (they lock) when the material is nearly incompressible; patches are the remedy.
+    """
+
+    ELEMENT = "element"
+    PATCH = "patch"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Body:
     """A meshed body. Two bodies are equal when they come from the same file and numbers.
@@ -35,6 +45,7 @@ class Body:
         size: longest side of the bounding box [m]; None: as the file says.
         element_size: length of a mesh edge [m]; None for a ready mesh.
         thickness: of a flat body [m]; None in space.
+        volume: how its change of volume is measured.
         mesh: nodes and elements.
         outline: of a flat body that was drawn.
     """
@@ -46,6 +57,7 @@ class Body:
     size: float | None = None
     element_size: float | None = None
     thickness: float | None = None
+    volume: Volume = Volume.ELEMENT
     mesh: Mesh = field(compare=False, repr=False)
     outline: Outline | None = field(default=None, compare=False, repr=False)
 
@@ -81,6 +93,7 @@ def outline_body(
     element_size: float,
     thickness: float,
     size: float | None = None,
+    volume: Volume = Volume.ELEMENT,
 ) -> Body:
     """Body from the bytes of an SVG drawing.
 
@@ -106,13 +119,20 @@ def outline_body(
         size=size,
         element_size=element_size,
         thickness=thickness,
+        volume=volume,
         mesh=mesh,
         outline=outline,
     )
 
 
 def mesh_body(
-    path: Path, *, unit: float, material: Material, size: float | None = None, thickness: float | None = None
+    path: Path,
+    *,
+    unit: float,
+    material: Material,
+    size: float | None = None,
+    thickness: float | None = None,
+    volume: Volume = Volume.ELEMENT,
 ) -> Body:
     """Body from a ready mesh of triangles or tetrahedra whose coordinates count `unit` metres each.
 
@@ -129,5 +149,6 @@ def mesh_body(
         material=material,
         size=size,
         thickness=thickness,
+        volume=volume,
         mesh=read_mesh(path, unit=unit, size=size),
     )

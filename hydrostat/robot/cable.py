@@ -8,10 +8,13 @@ from hydrostat.errors import InputError
 from hydrostat.robot.checks import check_not_negative, check_point, check_positive
 from hydrostat.robot.point import Point
 
+LARGEST_FRICTION = 2.0
+"""No coefficient of friction is larger: one half turn would then hold 500 times the tension."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Cable:
-    """A frictionless cable with one tension along its run (R23, R25, R28).
+    """A cable; without friction it has one tension along its run (R23, R25, R28).
 
     Attributes:
         winch: name of the winch that pulls it.
@@ -20,6 +23,8 @@ class Cable:
         smoothing: half the stretch over which it becomes taut [m] (eps of R25).
         slack: how much the winch takes in before it begins to be taut [m] (E12).
         sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length (R14, E11).
+        friction: coefficient mu at the via points: where it bends by an angle, its tension differs between the two
+            sides by at most a factor exp(mu * angle) (capstan).
 
     Raises:
         InputError: fewer than two points, coincident points, or a number out of its range.
@@ -31,6 +36,7 @@ class Cable:
     smoothing: float = 0.5e-3
     slack: float = 0.0
     sheathed: tuple[tuple[int, int], ...] = ()
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         count = len(self.points)
@@ -45,6 +51,8 @@ class Cable:
         check_positive("stiffness", self.stiffness, "N/m")
         check_positive("smoothing", self.smoothing, "m")
         check_not_negative("slack", self.slack, "m")
+        if not 0 <= self.friction <= LARGEST_FRICTION:
+            raise InputError(f"friction must be at least 0 and at most {LARGEST_FRICTION:g}, not {self.friction:g}")
         for start, end in self.sheathed:
             if not 0 <= start < end < count:
                 raise InputError(

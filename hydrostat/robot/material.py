@@ -1,21 +1,25 @@
 """`Material`, and the table of materials known by name."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import Self
 
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import check_positive
+from hydrostat.robot.checks import check_not_negative, check_positive
+from hydrostat.robot.relaxation import MOST_BRANCHES, Relaxation
 from hydrostat.units import quote
 
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """An isotropic elastic material (R22).
+    """An isotropic material: elastic (R22), and optionally viscous.
 
     Attributes:
         young: Young's modulus [Pa].
         poisson: Poisson's ratio.
         density: mass density [kg/m^3].
+        viscosity: shear viscosity of a dashpot beside the elastic material (Kelvin-Voigt) [Pa s].
+        relaxation: Maxwell branches beside the elastic material, together a Prony series.
         name: name in the table, empty for a material given by its numbers.
         source: where the numbers come from.
 
@@ -26,6 +30,8 @@ class Material:
     young: float
     poisson: float
     density: float
+    viscosity: float = 0.0
+    relaxation: tuple[Relaxation, ...] = ()
     name: str = ""
     source: str = ""
 
@@ -36,6 +42,14 @@ class Material:
                 f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
             )
         check_positive("density", self.density, "kg/m^3")
+        check_not_negative("viscosity", self.viscosity, "Pa s")
+        if len(self.relaxation) > MOST_BRANCHES:
+            raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
+
+    @property
+    def elastic(self) -> Self:
+        """The same material without its viscosity and relaxation: what it settles to."""
+        return replace(self, viscosity=0.0, relaxation=())
 
     @property
     def lame(self) -> tuple[float, float]:

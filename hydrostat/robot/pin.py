@@ -48,7 +48,7 @@ class Pin:
         Raises:
             InputError: the pin lies outside the body and holds nothing.
         """
-        held = mesh.nodes[self._holds(mesh)]
+        held = mesh.nodes[self.holds(mesh)]
         if len(held) == 0:
             middle = self.at if self.box is None else np.mean(self.box, axis=0)
             held = np.array([middle], dtype=float)
@@ -57,7 +57,8 @@ class Pin:
             raise InputError("the pin lies outside the body and holds no node; move it, or widen its radius or box")
         return anchors
 
-    def _holds(self, mesh: Mesh) -> np.ndarray:
+    def holds(self, mesh: Mesh) -> np.ndarray:
+        """Which nodes lie in the pin, (nodes,) booleans."""
         if self.box is not None:
             low, high = np.min(self.box, axis=0), np.max(self.box, axis=0)
             return ((mesh.nodes >= low) & (mesh.nodes <= high)).all(axis=1)

@@ -4,6 +4,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
@@ -13,11 +14,13 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.lines import find_line
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.material import Material, find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.pose import Pose
+from hydrostat.robot.relaxation import Relaxation
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Winch
 
@@ -93,7 +96,9 @@ class _Reader:
                 self._fail(f"pose[{index}].name", f'there are two of the name "{pose.name}"; names must be unique')
             poses[pose.name] = pose
         body = self._body()
-        return self._at("", lambda: Robot(name=table.name, body=body, poses=poses, length_unit=self.unit, **parts))
+        gravity = self._at("", lambda: _gravity(table.gravity, body.mesh.dim))
+        options = {"length_unit": self.unit, "gravity": gravity}
+        return self._at("", lambda: Robot(name=table.name, body=body, poses=poses, **options, **parts))
 
     def _parse(self) -> Any:
         from pydantic import ValidationError
@@ -150,7 +155,9 @@ class _Reader:
     def _cable(self, entry: Any) -> Cable:
         points = tuple(self._point(point) for point in entry.points)
         sheathed = {} if entry.sheathed is None else {"sheathed": tuple((start, end) for start, end in entry.sheathed)}
-        return Cable(winch=entry.winch, points=points, **sheathed, **_given(entry, "stiffness", "smoothing", "slack"))
+        friction = {} if entry.friction is None else {"friction": float(entry.friction)}
+        given = _given(entry, "stiffness", "smoothing", "slack")
+        return Cable(winch=entry.winch, points=points, **sheathed, **friction, **given)
 
     def _marker(self, entry: Any) -> Marker:
         return Marker(name=entry.name, at=self._point(entry.at))
@@ -178,7 +185,7 @@ class _Reader:
             make = partial(outline_body, content, file=file.name, element_size=entry.element_size)
         return self._at(
             "body",
-            lambda: make(material=material, size=entry.size, thickness=entry.thickness),
+            lambda: make(material=material, size=entry.size, thickness=entry.thickness, **_given(entry, "volume")),
             otherwise=f"body.{source}",
         )
 
@@ -216,7 +223,25 @@ class _Reader:
 def _material(entry: Any) -> Material:
     if isinstance(entry, str):
         return find_material(entry)
-    return Material(young=entry.young, poisson=float(entry.poisson), density=entry.density)
+    viscous = _given(entry, "viscosity")
+    if entry.relaxation is not None:
+        viscous["relaxation"] = tuple(_branch(index, branch) for index, branch in enumerate(entry.relaxation))
+    if hasattr(entry, "name"):
+        return replace(find_material(entry.name), **viscous)
+    return Material(young=entry.young, poisson=float(entry.poisson), density=entry.density, **viscous)
+
+
+def _branch(index: int, entry: Any) -> Relaxation:
+    try:
+        return Relaxation(modulus=entry.modulus, time=entry.time)
+    except InputError as error:
+        raise InputError(f"relaxation[{index}].{error}") from None
+
+
+def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
+    if entry is None:
+        return None
+    return gravity_along(entry, dim) if isinstance(entry, str) else tuple(entry)
 
 
 def _given(entry: Any, *keys: str) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hydrostat.geometry.quality import smallest_angle
+from hydrostat.robot.body import Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Mount
@@ -12,24 +13,33 @@ from hydrostat.robot.winch import Mount
 LEAST_ANGLE = 20.0
 """Triangles with a smaller angle [degrees] make the simulation less exact."""
 
+LOCKING_POISSON = 0.45
+"""From this Poisson's ratio on, volume measured in each linear element makes a body too stiff in bending."""
+
 LEAST_COVER = 0.003
 """A cable nearer to the edge than this [m] tears out of the cloth."""
 
 
 def find_risks(robot: Robot) -> list[str]:
     """One line for each risk; none if all is well."""
-    return [*_body(robot), *_winches(robot), *_cables(robot), *_poses(robot)]
+    return [*_body(robot), *_pins(robot), *_winches(robot), *_cables(robot), *_poses(robot)]
 
 
 def _body(robot: Robot) -> Iterator[str]:
     mesh = robot.body.mesh
     if mesh.dim == 2 and smallest_angle(mesh) < LEAST_ANGLE:
         yield f"body: the mesh has an angle of {smallest_angle(mesh):.0f} degrees; try another element_size"
-    if robot.body.material.poisson > 0.45:
+    poisson = robot.body.material.poisson
+    if poisson >= LOCKING_POISSON and robot.body.volume is Volume.ELEMENT:
         yield (
-            f"body.material: Poisson's ratio {robot.body.material.poisson:g}: linear elements lock when nearly "
-            "incompressible, the body will bend too little"
+            f"body.material: Poisson's ratio {poisson:g}: linear elements lock when nearly incompressible, the body "
+            'will bend too little; try volume = "patch"'
         )
+
+
+def _pins(robot: Robot) -> Iterator[str]:
+    if np.any([pin.holds(robot.body.mesh) for pin in robot.pins], axis=0).all():
+        yield "pin: every node of the body is held, nothing can move; make a radius or a box smaller"
 
 
 def _winches(robot: Robot) -> Iterator[str]:

@@ -9,6 +9,7 @@ import numpy as np
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.gravity import check_gravity
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.point import Point
@@ -29,6 +30,7 @@ class Robot:
         markers: tracked points.
         poses: by name.
         length_unit: of the coordinates in its file.
+        gravity: acceleration along each axis of the body [m/s^2]; None: weightless.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -42,6 +44,7 @@ class Robot:
     markers: tuple[Marker, ...] = ()
     poses: Mapping[str, Pose]
     length_unit: str = "mm"
+    gravity: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -52,6 +55,8 @@ class Robot:
             if name != pose.name:
                 raise InputError(f'pose[{index}].name: a pose called "{pose.name}" is filed under "{name}"')
         self._check_dimensions()
+        if self.gravity is not None:
+            check_gravity(self.gravity, self.body.mesh.dim)
         self._check_pins()
         self._check_markers_and_poses()
         self._check_cables()

@@ -4,11 +4,14 @@ from collections.abc import Callable
 from decimal import Decimal
 from typing import Annotated
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Strict, Tag
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Strict, Tag
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.robot.body import Volume
+from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.name import check_name
+from hydrostat.robot.relaxation import MOST_BRANCHES
 from hydrostat.robot.winch import Mount
 
 LARGEST = 10**12
@@ -46,6 +49,15 @@ def _name(value: object) -> object:
         raise ValueError(str(error)) from None
 
 
+def _direction(value: str) -> str:
+    if value not in DIRECTIONS:
+        raise ValueError(
+            f"{units.quote(value)} is no direction; allowed are: {', '.join(DIRECTIONS)}; "
+            'or an acceleration for each axis: ["0 m/s^2", "-9.81 m/s^2"]'
+        )
+    return value
+
+
 def _format(value: object) -> object:
     if type(value) is not int or value != 1:
         raise ValueError(f"{units.quote(value)} is not known; this version reads format = 1")
@@ -56,10 +68,15 @@ Length = Annotated[float, BeforeValidator(_quantity(units.LENGTH))]
 Pressure = Annotated[float, BeforeValidator(_quantity(units.PRESSURE))]
 Density = Annotated[float, BeforeValidator(_quantity(units.DENSITY))]
 Stiffness = Annotated[float, BeforeValidator(_quantity(units.STIFFNESS))]
+Acceleration = Annotated[float, BeforeValidator(_quantity(units.ACCELERATION))]
+Viscosity = Annotated[float, BeforeValidator(_quantity(units.VISCOSITY))]
+Time = Annotated[float, BeforeValidator(_quantity(units.TIME))]
 Number = Annotated[Decimal, BeforeValidator(_number)]
 Coordinates = Annotated[list[Number], Field(min_length=2, max_length=3)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 Name = Annotated[str, BeforeValidator(_name)]
+Direction = Annotated[str, AfterValidator(_direction)]
+Components = Annotated[list[Acceleration], Field(min_length=2, max_length=3)]
 Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=2)]
 
 
@@ -69,7 +86,27 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class MaterialTable(Table):
+class RelaxationTable(Table):
+    """A Maxwell branch."""
+
+    modulus: Pressure
+    time: Time
+
+
+class ViscousTable(Table):
+    """What any material may add to its elasticity."""
+
+    viscosity: Viscosity | None = None
+    relaxation: Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)] | None = None
+
+
+class NamedMaterialTable(ViscousTable):
+    """A material of the table of materials, with its viscosity."""
+
+    name: Text
+
+
+class MaterialTable(ViscousTable):
     """A material by its numbers."""
 
     young: Pressure
@@ -78,7 +115,18 @@ class MaterialTable(Table):
 
 
 def _material_tag(value: object) -> str:
-    return "<table>" if isinstance(value, dict) else "<name>"
+    if isinstance(value, dict):
+        return "<named>" if "name" in value else "<numbers>"
+    return "<name>"
+
+
+def _gravity_tag(value: object) -> str:
+    return "<direction>" if isinstance(value, str) else "<components>"
+
+
+Gravity = Annotated[
+    Annotated[Direction, Tag("<direction>")] | Annotated[Components, Tag("<components>")], Discriminator(_gravity_tag)
+]
 
 
 class BodyTable(Table):
@@ -90,8 +138,12 @@ class BodyTable(Table):
     element_size: Length | None = None
     thickness: Length | None = None
     material: Annotated[
-        Annotated[Text, Tag("<name>")] | Annotated[MaterialTable, Tag("<table>")], Discriminator(_material_tag)
+        Annotated[Text, Tag("<name>")]
+        | Annotated[NamedMaterialTable, Tag("<named>")]
+        | Annotated[MaterialTable, Tag("<numbers>")],
+        Discriminator(_material_tag),
     ]
+    volume: Volume | None = None
 
 
 class PinTable(Table):
@@ -123,6 +175,7 @@ class CableTable(Table):
     smoothing: Length | None = None
     slack: Length | None = None
     sheathed: list[Pair] | None = None
+    friction: Number | None = None
 
 
 class MarkerTable(Table):
@@ -145,6 +198,7 @@ class RobotTable(Table):
     format: Annotated[int, BeforeValidator(_format)]
     name: Name
     length_unit: Text = "mm"
+    gravity: Gravity | None = None
     body: BodyTable
     pin: list[PinTable] = []
     winch: list[WinchTable] = []

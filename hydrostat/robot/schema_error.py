@@ -8,20 +8,27 @@ from pydantic import ValidationError
 from hydrostat.robot.schema import RobotTable, Table
 from hydrostat.units import quote
 
-NOT_YET = {
+_NAMED = "a material with a name has its own; remove this key, or the name"
+REFUSED = {
     "body.surface": "surfaces are not meshed yet; give an outline (a drawing) or a mesh (a ready mesh)",
-    "cable.friction": "friction is not simulated yet; remove the key",
+    "body.material.young": _NAMED,
+    "body.material.poisson": _NAMED,
+    "body.material.density": _NAMED,
 }
-"""Keys of the format whose features do not exist yet."""
+"""Known keys where they may not stand, and why."""
 
 _EXAMPLES = {
     "format": "format = 1",
     "body": "[body]",
     "name": 'name = "left"',
+    "gravity": 'gravity = ["0 m/s^2", "-9.81 m/s^2"]',
     "material": 'material = "polyester fibre"',
     "young": 'young = "30 kPa"',
     "poisson": "poisson = 0.3",
     "density": 'density = "40 kg/m^3"',
+    "relaxation": 'relaxation = [{ modulus = "10 kPa", time = "2 s" }]',
+    "modulus": 'modulus = "10 kPa"',
+    "time": 'time = "2 s"',
     "at": "at = [0, 0]",
     "box": "box = [[0, 0], [10, 20]]",
     "winch": 'winch = "left"',
@@ -40,15 +47,13 @@ def first_complaint(error: ValidationError) -> tuple[str, str]:
 
 
 def allowed_keys(key: str) -> list[str]:
-    """Keys that the table at a key such as cable[1] may have; none if it is no table."""
-    table: Any = RobotTable
+    """Keys that the table at a key such as cable[1], in any of its forms, may have; none if it is no table."""
+    tables: list[type[Table]] = [RobotTable]
     for step in filter(None, key.split(".")):
-        field = table.model_fields.get(step.partition("[")[0])
-        tables = _tables(field.annotation) if field else []
-        if not tables:
-            return []
-        table = tables[0]
-    return list(table.model_fields)
+        name = step.partition("[")[0]
+        fields = [table.model_fields[name] for table in tables if name in table.model_fields]
+        tables = [inner for field in fields for inner in _tables(field.annotation)]
+    return list(dict.fromkeys(name for table in tables for name in table.model_fields))
 
 
 def _message(error: Any, location: tuple[Any, ...]) -> str:
@@ -57,7 +62,7 @@ def _message(error: Any, location: tuple[Any, ...]) -> str:
     value, limits = quote(error["input"]), error.get("ctx", {})
     match error["type"]:
         case "extra_forbidden":
-            return NOT_YET.get(".".join(names)) or _unknown(key, _dotted(location[:-1]))
+            return REFUSED.get(".".join(names)) or _unknown(key, _dotted(location[:-1]))
         case "missing":
             return f"the key {quote(key)} is missing; write {_EXAMPLES[key]}"
         case "enum":
@@ -70,7 +75,7 @@ def _message(error: Any, location: tuple[Any, ...]) -> str:
             return f"{value} is too long; at most {limits['max_length']} characters are allowed"
         case "int_type":
             return f"{value} is not a whole number; write for example {_EXAMPLES[key]}"
-        case "list_type" if len(location) == 1:
+        case "list_type" if len(location) == 1 and allowed_keys(key):
             return f"begin each with [[{key}]], in two pairs of brackets"
         case "list_type":
             return f"{value} is not a list; write for example {_EXAMPLES.get(key, '[0, 0]')}"

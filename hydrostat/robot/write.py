@@ -9,12 +9,14 @@ from typing import Any
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.robot.body import Body
+from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.material import MATERIALS
+from hydrostat.robot.gravity import direction_of
+from hydrostat.robot.material import MATERIALS, Material
 from hydrostat.robot.name import check_name
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.point import Point
+from hydrostat.robot.relaxation import Relaxation
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Mount
 
@@ -72,6 +74,8 @@ def robot_text(robot: Robot) -> str:
     document["name"] = robot.name
     if robot.length_unit != "mm":
         document["length_unit"] = robot.length_unit
+    if robot.gravity is not None:
+        document["gravity"] = writer.gravity(robot.gravity)
     document["body"] = writer.body(robot.body)
     groups: dict[str, Iterable[dict[str, Any]]] = {
         "pin": map(writer.pin, robot.pins),
@@ -119,16 +123,43 @@ class _Writer:
         return array
 
     def body(self, body: Body) -> dict[str, Any]:
-        material: Any = body.material.name
-        if MATERIALS.get(material) != body.material:
-            import tomlkit
-
-            material = tomlkit.inline_table()
-            material["young"] = units.format_quantity(body.material.young, units.PRESSURE)
-            material["poisson"] = body.material.poisson
-            material["density"] = units.format_quantity(body.material.density, units.DENSITY)
         lengths = {key: getattr(body, key) for key in ("size", "element_size", "thickness")}
-        return {str(body.source): body.file, **_lengths(lengths), "material": material}
+        volume = {"volume": str(body.volume)} if body.volume is not Volume.ELEMENT else {}
+        return {str(body.source): body.file, **_lengths(lengths), "material": self.material(body.material), **volume}
+
+    def material(self, material: Material) -> Any:
+        """A name of the table, or an inline table of the name or the numbers, then the viscosity."""
+        import tomlkit
+
+        if MATERIALS.get(material.name) == material:
+            return material.name
+        table = tomlkit.inline_table()
+        if MATERIALS.get(material.name) == material.elastic:
+            table["name"] = material.name
+        else:
+            table["young"] = units.format_quantity(material.young, units.PRESSURE)
+            table["poisson"] = material.poisson
+            table["density"] = units.format_quantity(material.density, units.DENSITY)
+        if material.viscosity:
+            table["viscosity"] = units.format_quantity(material.viscosity, units.VISCOSITY)
+        if material.relaxation:
+            table["relaxation"] = self.relaxation(material.relaxation)
+        return table
+
+    def relaxation(self, branches: Iterable[Relaxation]) -> Any:
+        import tomlkit
+
+        array = tomlkit.array()
+        for branch in branches:
+            table = tomlkit.inline_table()
+            table["modulus"] = units.format_quantity(branch.modulus, units.PRESSURE)
+            table["time"] = units.format_quantity(branch.time, units.TIME)
+            array.append(table)
+        return array
+
+    def gravity(self, gravity: tuple[float, ...]) -> Any:
+        """A direction such as "-y", or one acceleration for each axis."""
+        return direction_of(gravity) or [units.format_quantity(value, units.ACCELERATION) for value in gravity]
 
     def pin(self, pin: Pin) -> dict[str, Any]:
         entry: dict[str, Any] = {}
@@ -156,6 +187,8 @@ class _Writer:
         entry.update(_lengths({"smoothing": cable.smoothing, "slack": cable.slack or None}))
         if cable.sheathed:
             entry["sheathed"] = [list(pair) for pair in cable.sheathed]
+        if cable.friction:
+            entry["friction"] = cable.friction
         return entry
 
     def pose(self, pose: Any) -> dict[str, Any]:

@@ -45,7 +45,7 @@ LINES = [
     ("radius = 12", "radios = 12", 'line 13: pin[0].radios: unknown key "radios", did you mean radius?'),
     ("travel", "strength", 'line 19: winch[0].strength: unknown key "strength"; allowed here are: name, at, spool_'),
     ("points =", "pionts =", 'line 29: cable[0].pionts: unknown key "pionts", did you mean points?'),
-    ('winch = "right"', 'winch = "right"\nfriction = 0.2', "line 33: cable[1].friction: friction is not simulated"),
+    ('winch = "right"', 'winch = "right"\nfriction = 2.1', "line 33: cable[1].friction must be at least 0 and at most 2"),
     ('"tip"', '"tip"\nsize = 2', 'line 40: marker[0].size: unknown key "size"; allowed here are: name, at'),
     ('"wave"', '"wave"\ngoal = 2', 'line 44: pose[0].goal: unknown key "goal"; allowed here are: name, targets'),
     ("[body]", '["bo\\ndy"]', 'unknown key "bo\\ndy"'),

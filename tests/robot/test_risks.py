@@ -9,7 +9,7 @@ from builders import box_robot, strip_robot
 from robot_files import GOOD, SVG, edit, load
 
 from hydrostat.geometry import Mesh
-from hydrostat.robot import Cable, Mount, Pose, Robot, Winch, find_risks
+from hydrostat.robot import Cable, Mount, Pin, Pose, Robot, Volume, Winch, find_risks
 
 
 @pytest.fixture(scope="module")
@@ -39,11 +39,21 @@ def test_thin_triangle() -> None:
 
 
 def test_nearly_incompressible(good: Robot) -> None:
-    """Oracle: 0.45 is fine, above it linear elements lock."""
-    for poisson, count in ((0.45, 0), (0.46, 1)):
-        body = replace(good.body, material=replace(good.body.material, poisson=poisson))
-        risks = find_risks(replace(good, body=body))
+    """Oracle: from 0.45 on linear elements lock, unless the volume is measured in patches."""
+    for poisson, volume, count in ((0.449, "element", 0), (0.45, "element", 1), (0.49, "patch", 0)):
+        material = replace(good.body.material, poisson=poisson)
+        risks = find_risks(replace(good, body=replace(good.body, material=material, volume=Volume(volume))))
         assert [risk.startswith(f"body.material: Poisson's ratio {poisson}") for risk in risks] == [True] * count
+        assert all(risk.endswith('try volume = "patch"') for risk in risks)
+
+
+def test_held_everywhere(good: Robot) -> None:
+    """Oracle: one box round the whole body, two boxes that share it, and one of those alone."""
+    halves = (Pin(box=((-1.0, -1.0), (0.0, 1.0))), Pin(box=((0.0, -1.0), (1.0, 1.0))))
+    line = "pin: every node of the body is held, nothing can move; make a radius or a box smaller"
+    assert find_risks(replace(good, pins=(Pin(box=((-1.0, -1.0), (1.0, 1.0))),))) == [line]
+    assert find_risks(replace(good, pins=halves)) == [line]
+    assert find_risks(replace(good, pins=halves[:1])) == []
 
 
 def test_winch_without_cable(good: Robot) -> None:

@@ -1,0 +1,45 @@
+"""Gravity of a robot: an acceleration along each axis of its body, or one word such as "-y"."""
+
+import math
+
+from hydrostat.errors import InputError
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of free fall [m/s^2] (CGPM 1901)."""
+
+LARGEST_GRAVITY = 1000.0
+"""No component of gravity is larger [m/s^2]: about a hundred times that on earth."""
+
+DIRECTIONS = ("-x", "+x", "-y", "+y", "-z", "+z")
+"""Words for standard gravity along an axis."""
+
+
+def gravity_along(direction: str, dim: int) -> tuple[float, ...]:
+    """Standard gravity [m/s^2] in a direction such as "-y", (dim,).
+
+    Raises:
+        InputError: no such direction, or no such axis in a flat body.
+    """
+    allowed = DIRECTIONS[: 2 * dim]
+    if direction not in allowed:
+        raise InputError(f'gravity: "{direction}" is no direction of this body; allowed are: {", ".join(allowed)}')
+    down = STANDARD_GRAVITY if direction[0] == "+" else -STANDARD_GRAVITY
+    return tuple(down if axis == direction[1] else 0.0 for axis in "xyz"[:dim])
+
+
+def direction_of(gravity: tuple[float, ...]) -> str | None:
+    """The word that `gravity_along` makes this gravity of; None if there is none."""
+    dim = len(gravity)
+    return next((word for word in DIRECTIONS[: 2 * dim] if gravity_along(word, dim) == gravity), None)
+
+
+def check_gravity(gravity: tuple[float, ...], dim: int) -> None:
+    """Refuse gravity that has not one finite component of reasonable size for each axis."""
+    if len(gravity) != dim:
+        raise InputError(f"gravity has {len(gravity)} entries, but the body has {dim} axes; give one for each")
+    for axis, component in enumerate(gravity):
+        if not abs(component) <= LARGEST_GRAVITY or math.isnan(component):
+            raise InputError(
+                f"gravity[{axis}] must be from {-LARGEST_GRAVITY:g} to {LARGEST_GRAVITY:g} m/s^2, "
+                f"not {component:g} m/s^2"
+            )
