@@ -6,10 +6,13 @@ from hypothesis import strategies as st
 
 from hydrostat.errors import InputError
 from hydrostat.units import (
+    ACCELERATION,
     DENSITY,
     LENGTH,
     PRESSURE,
     STIFFNESS,
+    TIME,
+    VISCOSITY,
     Dimension,
     format_quantity,
     parse_quantity,
@@ -44,6 +47,21 @@ UNITS = ["mm", "cm", "m", "in", "ft", "um", "km", "yard"]
         ("4 N/mm", STIFFNESS, 4000.0),
         ("4 kN m^-1", STIFFNESS, 4000.0),
         ("-0.0 mm", LENGTH, 0.0),
+        ("-9.81 m/s^2", ACCELERATION, -9.81),
+        ("9.81 m/s²", ACCELERATION, 9.81),
+        ("9.81 N/kg", ACCELERATION, 9.81),
+        ("981 cm / s / s", ACCELERATION, 9.81),
+        ("40 Pa s", VISCOSITY, 40.0),
+        ("0.04 kPa s", VISCOSITY, 40.0),
+        ("40Pa.s", VISCOSITY, 40.0),
+        ("40 Pa·s", VISCOSITY, 40.0),
+        ("40 Pa*s", VISCOSITY, 40.0),
+        ("40. Pa . s", VISCOSITY, 40.0),
+        ("5 mPa s", VISCOSITY, 0.005),
+        ("3 P", VISCOSITY, 0.3),
+        ("2 s", TIME, 2.0),
+        ("30 ms", TIME, 0.03),
+        ("1.5 min", TIME, 90.0),
     ],
 )
 def test_parse(text: str, dimension: Dimension, value: float) -> None:
@@ -68,6 +86,9 @@ def test_parse(text: str, dimension: Dimension, value: float) -> None:
         ("12 mm^2", "does not measure a length"),
         ("12 zorks", 'unknown unit "zorks"; write a length for example as "12 mm"'),
         ("12 m\nm", "does not measure a length|unknown unit"),
+        ("12 mm.", 'unknown unit "mm."'),
+        ("12 mm..mm", 'unknown unit "mm..mm"'),
+        ("12 Pa.s", "does not measure a length"),
         ("12 mm; import os", "unknown unit"),
         ("12 m**9**9**9", "unknown unit"),
         ("12 __class__", '"12 __class__" is not a length'),
@@ -87,7 +108,7 @@ def test_refused(text: object, message: str) -> None:
 @given(value=st.floats(allow_nan=False, allow_infinity=False, min_value=-1e30, max_value=1e30))
 def test_text_keeps_every_bit(value: float) -> None:
     """Oracle: the float itself."""
-    for dimension in (LENGTH, PRESSURE, DENSITY, STIFFNESS):
+    for dimension in (LENGTH, PRESSURE, DENSITY, STIFFNESS, ACCELERATION, VISCOSITY, TIME):
         assert parse_quantity(format_quantity(value, dimension), dimension) == value
 
 

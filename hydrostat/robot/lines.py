@@ -3,7 +3,7 @@
 import re
 
 _HEADER = re.compile(r"\s*\[\[?\s*([A-Za-z_][\w.]*)\s*\]")
-_KEY = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\.(\w+))?(?:\[\d+\])*(?:\.(\w+))?")
+_KEY = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\.(\w+))?(?:\[\d+\])*(?:\.(\w+))?(?:\[(\d+)\])?")
 
 
 def find_line(text: str, key: str) -> int | None:
@@ -26,6 +26,9 @@ def find_line(text: str, key: str) -> int | None:
     block = range(start + 1, next(later, len(lines)))
     inside = [(number, name) for number, name in headers if number in block]
     own = range(start + 1, inside[0][0] if inside else block.stop)
+    deep = [number for number, name in inside if name == f"{table}.{entry}.{inner}"]
+    if deep:
+        return deep[min(int(match[5] or 0), len(deep) - 1)] + 1
     line = _find(lines, own, rf"{entry}(?:\s*\.\s*{inner})?") if entry else None
     for number, name in inside:
         if line is None and name == f"{table}.{entry}":

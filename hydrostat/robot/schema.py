@@ -93,31 +93,31 @@ class RelaxationTable(Table):
     time: Time
 
 
-class ViscousTable(Table):
-    """What any material may add to its elasticity."""
-
-    viscosity: Viscosity | None = None
-    relaxation: Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)] | None = None
+Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
 
 
-class NamedMaterialTable(ViscousTable):
-    """A material of the table of materials, with its viscosity."""
+class NamedMaterialTable(Table):
+    """A material known by name, with its viscosity."""
 
     name: Text
+    viscosity: Viscosity | None = None
+    relaxation: Branches | None = None
 
 
-class MaterialTable(ViscousTable):
+class MaterialTable(Table):
     """A material by its numbers."""
 
     young: Pressure
     poisson: Number
     density: Density
+    viscosity: Viscosity | None = None
+    relaxation: Branches | None = None
 
 
 def _material_tag(value: object) -> str:
-    if isinstance(value, dict):
-        return "<named>" if "name" in value else "<numbers>"
-    return "<name>"
+    if not isinstance(value, dict):
+        return "<name>"
+    return "<named>" if "name" in value else "<numbers>"
 
 
 def _gravity_tag(value: object) -> str:

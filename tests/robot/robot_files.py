@@ -63,13 +63,21 @@ MAXIMAL = """\
 format = 1
 name = "größtes Tier 2.0_a-b"
 length_unit = "{unit}"
+gravity = ["0.3 m/s^2", "-981 cm/s^2"]
 
 [body]
 outline = "body.svg"
 size = "0.06 m"
 element_size = "12 mm"
 thickness = "2.05 cm"
-material = {{ young = "31.7 kPa", poisson = 0.35, density = "0.0411 g/cm^3" }}
+volume = "patch"
+
+[body.material]
+young = "31.7 kPa"
+poisson = 0.35
+density = "0.0411 g/cm^3"
+viscosity = "12.3 Pa.s"
+relaxation = [{{ modulus = "1.7 kPa", time = "30 ms" }}, {{ modulus = "450 Pa", time = "0.5 min" }}]
 
 [[pin]]
 at = [{a}, 0]
@@ -104,6 +112,7 @@ stiffness = "4.4 kN/m"
 smoothing = "0.7 mm"
 slack = "2 mm"
 sheathed = [[0, 1], [2, 3]]
+friction = 0.15
 
 [[cable]]
 winch = "世界"

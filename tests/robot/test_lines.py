@@ -23,6 +23,11 @@ name = "q"
   ]
 [[cable]]           # 19
 winch = [{name = 1}]
+[[cable]]           # 21
+winch.name = 1
+[[cable.winch.top]] # 23
+top = 1
+[[cable.winch.top]] # 25
 """
 
 
@@ -49,6 +54,11 @@ winch = [{name = 1}]
         ("pose[1].targets.top", 15),
         ("cable[0].points[3]", 19),
         ("cable[0].winch[0].name", 20),
+        ("cable[1].winch.name", 22),
+        ("cable[1].winch.top", 23),
+        ("cable[1].winch.top[0].top", 23),
+        ("cable[1].winch.top[1].top", 25),
+        ("cable[1].winch.top[2].top", 25),
         ("", None),
         ("(", None),
     ],

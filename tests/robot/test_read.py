@@ -45,7 +45,11 @@ LINES = [
     ("radius = 12", "radios = 12", 'line 13: pin[0].radios: unknown key "radios", did you mean radius?'),
     ("travel", "strength", 'line 19: winch[0].strength: unknown key "strength"; allowed here are: name, at, spool_'),
     ("points =", "pionts =", 'line 29: cable[0].pionts: unknown key "pionts", did you mean points?'),
-    ('winch = "right"', 'winch = "right"\nfriction = 2.1', "line 33: cable[1].friction must be at least 0 and at most 2"),
+    (
+        'winch = "right"',
+        'winch = "right"\nfriction = 2.1',
+        "line 33: cable[1].friction must be at least 0 and at most 2",
+    ),
     ('"tip"', '"tip"\nsize = 2', 'line 40: marker[0].size: unknown key "size"; allowed here are: name, at'),
     ('"wave"', '"wave"\ngoal = 2', 'line 44: pose[0].goal: unknown key "goal"; allowed here are: name, targets'),
     ("[body]", '["bo\\ndy"]', 'unknown key "bo\\ndy"'),
@@ -140,6 +144,134 @@ LINES = [
         'winch = "left"\nsheathed = [[0, 2]]',
         "line 29: cable[0].sheathed: the whole cable is sheathed",
     ),
+    # gravity, viscosity, relaxation, volume, friction
+    (
+        "format = 1",
+        'format = 1\ngravity = "down"',
+        'line 3: gravity: "down" is no direction; allowed are: -x, +x, -y, +y, -z, +z; or an acc',
+    ),
+    (
+        "format = 1",
+        'format = 1\ngravity = "-z"',
+        'line 3: gravity: "-z" is no direction of this body; allowed are: -x, +x, -y, +y',
+    ),
+    (
+        "format = 1",
+        "format = 1\ngravity = 5",
+        'line 3: gravity: 5 is not a list; write for example gravity = ["0 m/s^2", "-9.81 m/s^2"]',
+    ),
+    ("format = 1", "format = 1\ngravity = { y = 1 }", "line 3: gravity: a table is not a list; write"),
+    ("format = 1", 'format = 1\ngravity = ["0 m/s^2"]', "line 3: gravity: has 1 entries, at least 2"),
+    (
+        "format = 1",
+        'format = 1\ngravity = ["0 m/s^2", "1 m/s^2", "0 m/s^2"]',
+        "line 3: gravity has 3 entries, but the body has 2 axes; give one for each",
+    ),
+    (
+        "format = 1",
+        "format = 1\ngravity = [0, -9.81]",
+        'line 3: gravity[0]: 0 has no unit; write an acceleration as text: "9.81 m/s^2"',
+    ),
+    (
+        "format = 1",
+        'format = 1\ngravity = ["0 m/s^2", "9.81 kg"]',
+        'line 3: gravity[1]: "kg" does not measure an acceleration',
+    ),
+    (
+        "format = 1",
+        'format = 1\ngravity = ["0 m/s^2", "-1000.1 m/s^2"]',
+        "line 3: gravity[1] must be from -1000 to 1000 m/s^2, not -1000.1 m/s^2",
+    ),
+    ("[body]", '[body]\ngravity = "-y"', "line 6: body.gravity: gravity stands at the top of the file, before [body]"),
+    (
+        "[body]",
+        '[body]\nviscosity = "9 Pa s"',
+        "line 6: body.viscosity: it belongs to the material; write material = {",
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "steel", viscosity = "1 Pa s" }',
+        'line 9: body.material: unknown material "steel"; known',
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", poisson = 0.4 }',
+        "line 9: body.material.poisson: a material with a name has its own; remove",
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", viscoity = 1 }',
+        "line 9: body.material.viscoity: unknown key",
+        "did you mean viscosity? allowed here are: name, ",
+    ),
+    ('"polyester fibre"', "{ name = 5 }", "line 9: body.material.name: 5 is not text"),
+    (
+        '"polyester fibre"',
+        '{ viscosity = "1 Pa s" }',
+        'line 9: body.material.young: the key "young" is missing; write young =',
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", viscosity = 40 }',
+        'line 9: body.material.viscosity: 40 has no unit; write a viscosity as text: "40 Pa s"',
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", viscosity = "40 Pa" }',
+        'line 9: body.material.viscosity: "Pa" does not measure a viscosity',
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", viscosity = "-1 Pa s" }',
+        "line 9: body.material.viscosity must be finite and not negative, not -1 Pa s",
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", relaxation = [5] }',
+        "line 9: body.material.relaxation[0]: 5 is not a table",
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", relaxation = { time = "2 s" } }',
+        "line 9: body.material.relaxation: a table is not a list; write for example relaxation = [{ modulus",
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", relaxation = [{ modulus = "1 kPa" }] }',
+        'line 9: body.material.relaxation[0].time: the key "time" is missing; write time = "2 s"',
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", relaxation = [{ modulus = "1 kPa", time = "2 m" }] }',
+        'line 9: body.material.relaxation[0].time: "m" does not measure a time',
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", relaxation = [{ modulus = "0 Pa", time = "2 s" }] }',
+        "line 9: body.material.relaxation[0].modulus must be finite and above 0, not 0 Pa",
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", relaxation = [{ modulus = "1 Pa", time = "-2 s" }] }',
+        "line 9: body.material.relaxation[0].time must be finite and above 0, not -2 s",
+    ),
+    (
+        '"polyester fibre"',
+        '{ name = "polyester fibre", relaxation = [' + 11 * '{ modulus = "1 Pa", time = "1 s" }, ' + "] }",
+        "line 9: body.material.relaxation: has more than 10 entries",
+    ),
+    (
+        'material = "polyester fibre"',
+        'volume = "node"\nmaterial = "polyester fibre"',
+        'line 9: body.volume: "node" is not known; allowed are: element or patch',
+    ),
+    (
+        'winch = "right"',
+        'winch = "right"\nfriction = -0.1',
+        "line 33: cable[1].friction must be at least 0 and at most 2",
+    ),
+    ('winch = "right"', 'winch = "right"\nfriction = nan', "line 33: cable[1].friction: NaN is not a finite number"),
+    ('winch = "right"', 'winch = "right"\nfriction = "0.2"', 'line 33: cable[1].friction: "0.2" is not a number'),
     # how the parts fit together
     ("[0, 10]", "[0, 100]", "line 29: cable[0].points[1] = [0, 100] lies 80 mm outside the body; move it inside"),
     ("[20, -10]", "[40, -10]", "line 33: cable[1].points[1] = [40, -10] lies 10 mm outside the body; move it inside"),

@@ -11,7 +11,21 @@ from shapely import Point as ShapelyPoint
 from shapely import Polygon, unary_union
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Body, Cable, Marker, Material, Mount, Pin, Pose, Robot, Source, Winch, find_material
+from hydrostat.robot import (
+    Body,
+    Cable,
+    Marker,
+    Material,
+    Mount,
+    Pin,
+    Pose,
+    Relaxation,
+    Robot,
+    Source,
+    Volume,
+    Winch,
+    find_material,
+)
 
 INF, NAN = float("inf"), float("nan")
 LINE = ((0.0, 0.0), (0.1, 0.0), (0.1, 0.1))
@@ -28,6 +42,8 @@ LINE = ((0.0, 0.0), (0.1, 0.0), (0.1, 0.1))
         (Cable, "stiffness", {"winch": "w", "points": LINE}),
         (Cable, "smoothing", {"winch": "w", "points": LINE}),
         (Pin, "stiffness", {"at": (0.0, 0.0)}),
+        (Relaxation, "modulus", {"time": 1.0}),
+        (Relaxation, "time", {"modulus": 1.0}),
     ],
 )
 def test_positive(kind: type, field: str, others: dict, value: float) -> None:
@@ -40,6 +56,7 @@ def test_positive(kind: type, field: str, others: dict, value: float) -> None:
 @pytest.mark.parametrize(
     ("kind", "field", "others"),
     [
+        (Material, "viscosity", {"young": 1.0, "poisson": 0.3, "density": 1.0}),
         (Winch, "release", {"name": "w", "at": (0.0, 0.0)}),
         (Cable, "slack", {"winch": "w", "points": LINE}),
         (Pin, "radius", {"at": (0.0, 0.0)}),
@@ -76,6 +93,13 @@ def test_points(make, point: tuple) -> None:
         (lambda: Material(young=1.0, poisson=0.5, density=1.0), "poisson must be at least 0 and below 0.5, not 0.5"),
         (lambda: Material(young=1.0, poisson=-0.01, density=1.0), "poisson must be at least 0"),
         (lambda: Material(young=1.0, poisson=NAN, density=1.0), "poisson must be at least 0"),
+        (
+            lambda: replace(FOAM, relaxation=(Relaxation(modulus=1.0, time=1.0),) * 11),
+            "relaxation must have at most 10 branches, not 11",
+        ),
+        (lambda: Cable(winch="w", points=LINE, friction=-0.01), "friction must be at least 0 and at most 2, not -0.01"),
+        (lambda: Cable(winch="w", points=LINE, friction=2.01), "friction must be at least 0 and at most 2, not 2.01"),
+        (lambda: Cable(winch="w", points=LINE, friction=NAN), "friction must be at least 0 and at most 2, not nan"),
         (lambda: find_material("steel"), 'unknown material "steel"; known are: polyester fibre, flexfoam-it x'),
         (lambda: Winch(name="", at=(0.0, 0.0)), "name must not be empty"),
         (lambda: Marker(name="", at=(0.0, 0.0)), "name must not be empty"),
@@ -113,6 +137,11 @@ POSE = Pose(name="p", targets={"tip": (0.2, 0.0)})
     ("changes", "message"),
     [
         ({"name": ""}, "name must not be empty"),
+        ({"gravity": (0.0, 0.0, -9.81)}, "gravity has 3 entries, but the body has 2 axes; give one for each"),
+        ({"gravity": ()}, "gravity has 0 entries, but the body has 2"),
+        ({"gravity": (NAN, 0.0)}, r"gravity\[0\] must be from -1000 to 1000 m/s\^2, not nan m/s"),
+        ({"gravity": (0.0, -INF)}, r"gravity\[1\] must be from -1000 to 1000 m/s\^2, not -inf m/s"),
+        ({"gravity": (1000.5, 0.0)}, r"gravity\[0\] must be from -1000 to 1000 m/s\^2, not 1000.5 m/s"),
         ({"pins": ()}, r"there is no \[\[pin\]\]"),
         ({"pins": (Pin(at=(0.1, 0.0)),)}, "can still turn"),
         ({"pins": (Pin(at=(9.0, 0.0)),)}, r"pin\[0\]: the pin lies outside the body"),
@@ -158,7 +187,14 @@ def test_world_winch_and_its_cable() -> None:
 
 @pytest.mark.parametrize(
     "record",
-    [strip_robot(columns=2, rows=1), FOAM, Pin(at=(0.0, 0.0)), Marker(name="m", at=(0.0, 0.0)), POSE],
+    [
+        strip_robot(columns=2, rows=1),
+        FOAM,
+        Pin(at=(0.0, 0.0)),
+        Marker(name="m", at=(0.0, 0.0)),
+        POSE,
+        Relaxation(modulus=1.0, time=1.0),
+    ],
     ids=lambda record: type(record).__name__,
 )
 def test_frozen(record) -> None:
@@ -226,6 +262,30 @@ def test_cable_lengths() -> None:
     assert cable.segments == pytest.approx([0.1, 0.1, 0.1])
     assert cable.bare.tolist() == [True, False, False]
     assert cable.length == pytest.approx(0.3)
+
+
+def test_mechanics_by_default() -> None:
+    """Oracle: what robots were before these fields: weightless, elastic, without friction, volume in each element."""
+    robot = strip_robot(columns=2, rows=1)
+    assert (robot.gravity, robot.body.volume) == (None, Volume.ELEMENT)
+    assert (FOAM.viscosity, FOAM.relaxation) == (0.0, ())
+    assert {cable.friction for cable in robot.cables} == {0.0}
+
+
+def test_limits_are_allowed() -> None:
+    """Oracle: the ends of each range, and ten branches."""
+    robot = replace(strip_robot(columns=2, rows=1), gravity=(-1000.0, 1000.0))
+    assert robot.gravity == (-1000.0, 1000.0)
+    assert [Cable(winch="w", points=LINE, friction=value).friction for value in (0.0, 2.0)] == [0.0, 2.0]
+    assert len(replace(FOAM, relaxation=(Relaxation(modulus=1.0, time=1.0),) * 10).relaxation) == 10
+
+
+def test_elastic() -> None:
+    """Oracle: the material before it was given a viscosity and a branch; its elastic numbers do not change."""
+    viscous = replace(FOAM, viscosity=3.0, relaxation=(Relaxation(modulus=1.0, time=1.0),))
+    assert viscous != FOAM
+    assert viscous.elastic == FOAM
+    assert viscous.lame == FOAM.lame
 
 
 def test_lame() -> None:

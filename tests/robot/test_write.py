@@ -1,6 +1,7 @@
 """A robot is written and read without loss."""
 
 import tomllib
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 
@@ -14,13 +15,16 @@ from robot_files import GOOD, MAXIMAL_IN, edit, load, mesh_once, robot_folder
 
 from hydrostat.errors import InputError
 from hydrostat.robot import (
+    MATERIALS,
     Cable,
     Marker,
     Material,
     Mount,
     Pin,
     Pose,
+    Relaxation,
     Robot,
+    Volume,
     Winch,
     gallery_folder,
     gallery_names,
@@ -85,7 +89,11 @@ def test_every_key(unit: str, tmp_path: Path) -> None:
     assert robot.length_unit == unit
     assert robot.body.size == 0.06
     assert robot.body.thickness == 0.0205
-    assert robot.body.material == Material(young=31.7e3, poisson=0.35, density=41.1)
+    branches = (Relaxation(modulus=1700, time=0.03), Relaxation(modulus=450, time=30))
+    material = Material(young=31.7e3, poisson=0.35, density=41.1, viscosity=12.3, relaxation=branches)
+    assert robot.body.material == material
+    assert robot.body.volume is Volume.PATCH
+    assert robot.gravity == (0.3, -9.81)
     assert [pin.stiffness for pin in robot.pins] == [100e3, 12.3e3, 3e4]
     assert robot.pins[0].radius == pytest.approx({"mm": 10.1, "cm": 1.01, "in": 0.35}[unit] * factor, rel=1e-15)
     assert robot.winch("世界").mount is Mount.WORLD
@@ -94,6 +102,7 @@ def test_every_key(unit: str, tmp_path: Path) -> None:
     assert (inner.spool_radius, inner.travel, inner.release, inner.mount) == (0.003, 0.02, 0.0013, Mount.BODY)
     cable = robot.cables[0]
     assert (cable.stiffness, cable.smoothing, cable.slack, cable.sheathed) == (4400, 0.0007, 0.002, ((0, 1), (2, 3)))
+    assert [cable.friction for cable in robot.cables] == [0.15, 0.0]
     assert robot.pose("wave").targets["हाथ"] == pytest.approx((-1e-3 * factor, 1e3 * factor))
     assert list(robot.poses) == ["wave", "rest"]
     check_round_trip(robot, tmp_path / "there")
@@ -136,6 +145,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Robot:
 
 LENGTH = st.floats(1e-30, 1e6)
 PLACE = st.floats(-1e6, 1e6)
+GRAVITY = st.tuples(*[st.floats(-1000, 1000)] * 2) | st.sampled_from([(0.0, -9.80665), (9.80665, 0.0), (0.0, 0.0)])
 WORDS = st.text("aZ9_-. éß世हाথ", min_size=1, max_size=60).map(lambda text: "n" + text[1:])
 
 
@@ -143,7 +153,7 @@ WORDS = st.text("aZ9_-. éß世हाথ", min_size=1, max_size=60).map(lambda t
 @given(data=st.data(), unit=st.sampled_from(["mm", "cm", "m", "in", "ft", "um", "yard"]))
 def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
     """Oracle: bits: whatever floats the records hold, the file gives the very same (the body is not meshed again)."""
-    from hydrostat.robot.read import _Reader
+    from hydrostat.robot.read import _gravity, _material, _Reader
 
     draw = data.draw
     low, high = small.body.mesh.nodes.min(axis=0) * 0.99, small.body.mesh.nodes.max(axis=0) * 0.99
@@ -163,20 +173,35 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
         stiffness=draw(LENGTH),
         smoothing=draw(LENGTH),
         slack=draw(LENGTH | st.just(0.0)),
+        friction=draw(st.floats(0, 2)),
+    )
+    numbers = {"young": LENGTH, "poisson": st.floats(0, 0.499), "density": LENGTH}
+    name = draw(st.sampled_from(["", *MATERIALS]))
+    material = replace(
+        MATERIALS[name] if name else Material(**draw(st.fixed_dictionaries(numbers))),
+        viscosity=draw(LENGTH | st.just(0.0)),
+        relaxation=tuple(
+            Relaxation(modulus=modulus, time=time)
+            for modulus, time in draw(st.lists(st.tuples(LENGTH, LENGTH), max_size=10))
+        ),
     )
     target = (draw(PLACE), draw(PLACE))
     robot = Robot(
         name=draw(WORDS),
-        body=small.body,
+        body=replace(small.body, material=material, volume=draw(st.sampled_from(Volume))),
         pins=(Pin(at=at, radius=0.05, stiffness=draw(LENGTH)), Pin(box=((-1.0, -1.0), at))),
         winches=(winch,),
         cables=(cable,),
         markers=(Marker(name="tip", at=at),),
         poses={"pose": Pose(name="pose", targets={"tip": target})},
         length_unit=unit,
+        gravity=draw(st.none() | GRAVITY),
     )
     text = robot_text(robot)
     reader = _Reader(Path("robot.toml"), text)
+    assert _gravity(reader.table.gravity, 2) == robot.gravity
+    assert _material(reader.table.body.material) == material
+    assert (reader.table.body.volume or Volume.ELEMENT) is robot.body.volume
     assert reader._records("winch", reader._winch) == robot.winches
     assert reader._records("cable", reader._cable) == robot.cables
     assert reader._records("pin", reader._pin) == robot.pins
@@ -197,6 +222,7 @@ def test_pleasant(tmp_path: Path) -> None:
     ):
         assert line in lines
     assert not any(line.startswith(("mount", "release", "slack", "sheathed", "length_unit", "size")) for line in lines)
+    assert not any(line.startswith(("gravity", "friction", "volume")) for line in lines)
     assert all(lines[number - 1] == "" for number, line in enumerate(lines) if line.startswith("["))
     assert "\n\n\n" not in "\n".join(lines)
 
@@ -221,17 +247,84 @@ def test_minus_zero(tmp_path: Path) -> None:
 
 def test_material_of_another_table(tmp_path: Path, small: Robot) -> None:
     """Oracle: the numbers come back, although the name is not, or no longer, the table's."""
-    from dataclasses import replace
-
     stiffer = replace(small.body.material, young=31e3)
     saved = save_robot(replace(small, body=replace(small.body, material=stiffer)), tmp_path)
     assert load_robot(saved).body.material == Material(young=31e3, poisson=0.3, density=40)
+
+
+NAMED = 'material = { name = "Polyester fibre", '
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("format = 1", 'format = 1\ngravity = "-y"', 'gravity = "-y"'),
+        ("format = 1", 'format = 1\ngravity = ["9.80665 N/kg", "0 m/s^2"]', 'gravity = "+x"'),
+        ("format = 1", 'format = 1\ngravity = ["0 m/s^2", "9.81 m/s^2"]', 'gravity = ["0 m/s^2", "9.81 m/s^2"]'),
+        (
+            'material = "p',
+            NAMED + 'viscosity = "40 Pa s" }\n#',
+            'material = {name = "polyester fibre", viscosity = "40 Pa s"}',
+        ),
+        (
+            'material = "p',
+            NAMED + 'relaxation = [{ modulus = "10 kPa", time = "2 s" }] }\n#',
+            'material = {name = "polyester fibre", relaxation = [{modulus = "10 kPa", time = "2 s"}]}',
+        ),
+        ('material = "p', NAMED + 'viscosity = "0 Pa s", relaxation = [] }\n#', 'material = "polyester fibre"'),
+        ('material = "p', 'volume = "patch"\nmaterial = "p', 'volume = "patch"'),
+        ('winch = "left"', 'winch = "left"\nfriction = 0.2', "friction = 0.2"),
+    ],
+)
+def test_mechanics_as_typed(old: str, new: str, line: str, tmp_path: Path) -> None:
+    """Oracle: the line that a person would write, and the robot itself, read again."""
+    robot = load(tmp_path / "here", edit(GOOD, old, new))
+    assert line in check_round_trip(robot, tmp_path / "there").splitlines()
+
+
+def test_gravity_words(tmp_path: Path) -> None:
+    """Oracle: 9.80665 m/s^2 along the axis and sign of the word, by hand, and no gravity without the key."""
+    for word, gravity in {
+        "-x": (-9.80665, 0.0),
+        "+x": (9.80665, 0.0),
+        "-y": (0.0, -9.80665),
+        "+y": (0.0, 9.80665),
+    }.items():
+        assert load(tmp_path, edit(GOOD, "format = 1", f'format = 1\ngravity = "{word}"')).gravity == gravity
+    assert load(tmp_path).gravity is None
+
+
+@pytest.mark.parametrize(("word", "gravity"), [("-z", (0.0, 0.0, -9.80665)), ("+y", (0.0, 9.80665, 0.0))])
+def test_gravity_in_space(word: str, gravity: tuple[float, ...], tmp_path: Path) -> None:
+    """Oracle: three components by hand, and the robot itself, read again."""
+    mesh = box_mesh((2, 1, 1), size=(8.0, 4.0, 4.0))
+    robot_folder(tmp_path / "here")
+    meshio.write(tmp_path / "here" / "body.vtk", meshio.Mesh(mesh.nodes, [("tetra", mesh.elements)]))
+    space = {"extra": 'volume = "patch"', "box": "[-1, -1, -1], [0.1, 999, 999]", "at": "1, 1, 1", "end": "7, 2, 3"}
+    text = MESHED.format(unit="mm", ending="vtk", **space)
+    robot = load(tmp_path / "here", edit(text, "\n\n", f'\ngravity = "{word}"\n\n'))
+    assert robot.gravity == gravity
+    assert robot.body.volume is Volume.PATCH
+    check_round_trip(robot, tmp_path / "there")
+
+
+def test_hash_of_old_files(tmp_path: Path) -> None:
+    """Oracle: the hash that was printed before gravity, viscosity, relaxation, friction and volume were known."""
+    assert robot_hash(load(tmp_path)) == "d8b39a4bf4461d406d77a50cb22861e8a6f110884482cff531ccd9d0e19a7d12"
 
 
 def test_hash_tells_apart(tmp_path: Path) -> None:
     """Oracle: a robot changed in one number, or in one byte of its drawing, has another hash."""
     first = load(tmp_path)
     assert robot_hash(load(tmp_path, edit(GOOD, "[20, 10]]", "[20, 10.0001]]"))) != robot_hash(first)
+    for old, new in (
+        ("format = 1", 'format = 1\ngravity = "-y"'),
+        ('material = "p', 'volume = "patch"\nmaterial = "p'),
+        ('material = "p', NAMED + 'viscosity = "1 Pa s" }\n#'),
+        ('material = "p', NAMED + 'relaxation = [{ modulus = "1 Pa", time = "1 s" }] }\n#'),
+        ('winch = "left"', 'winch = "left"\nfriction = 0.01'),
+    ):
+        assert robot_hash(load(tmp_path, edit(GOOD, old, new))) != robot_hash(first)
     drawing = first.body.content.decode() + " "
     assert robot_hash(load(tmp_path, svg=drawing)) != robot_hash(first)
 
@@ -250,8 +343,6 @@ def test_whole_or_not_at_all(tmp_path: Path, small: Robot) -> None:
 
 def test_unreadable_names_are_not_written(tmp_path: Path, small: Robot) -> None:
     """Oracle: what could not be read again is refused before anything is written."""
-    from dataclasses import replace
-
     with pytest.raises(InputError, match='"a/b" has "/" in it'):
         save_robot(replace(small, name="a/b"), tmp_path / "new")
     assert not (tmp_path / "new").exists()
