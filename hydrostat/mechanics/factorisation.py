@@ -1,32 +1,184 @@
-"""`Factorisation`: a symmetric sparse matrix ready to be solved with."""
+"""`Analysis` and `Factorisation`: a symmetric sparse matrix ready to be solved with.
+
+A finite element matrix has one pattern and is factorised thousands of times. So all that follows from the pattern is
+done once, by the `Analysis`:
+
+1. An order of the nodes in which little fills in, the cheaper of nested dissection (George 1973; `ordering`) and
+   SuperLU's minimum degree, by a model of time.
+2. The elimination tree (Liu 1990), supernodes, and how much they are merged (`symbolic`).
+3. The place of every number (`supernodal.plan`).
+
+A `Factorisation` is then one call of compiled code: the multifrontal method (Duff and Reid 1983; `supernodal`). There
+is no pivoting: an indefinite matrix may lose digits, and one that meets a tiny pivot is called singular. That suits
+Newton, which wants to know whether a matrix is definite, and solves mostly with those that are.
+
+SuperLU does the same from outside: slower, and independent. Figures: docs/decisions/0007-factorisation.md.
+"""
+
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import spilu, splu
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics import ordering, symbolic
+from hydrostat.mechanics.supernodal import SupernodalAnalysis
+
+Backend = Literal["auto", "supernodal", "superlu"]
+
+TINY = 1e-13
+"""A pivot not above this share of the largest diagonal entry counts as 0."""
+
+LEAF = 64
+"""Parts of so many nodes are ordered by minimum degree."""
+
+SHARES = np.array([0.4, 0.5, 0.6])
+"""Where nested dissection tries to cut: parts of the nodes on one side."""
+
+DISTANCES = 3
+"""How many distances in the graph serve as coordinates, beside the points if there are any."""
+
+
+@runtime_checkable
+class Factors(Protocol):
+    """What a back end makes of one matrix."""
+
+    negative: int
+    singular: bool
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Solution for one or several right-hand sides."""
+        ...
+
+
+class Analysis:
+    """What the factorisations of all matrices with one pattern have in common.
+
+    It owns the memory they work in, so one analysis serves one thread.
+
+    Attributes:
+        backend: which one factorises, "supernodal" or "superlu".
+    """
+
+    def __init__(
+        self,
+        indptr: Int[np.ndarray, " _"],
+        indices: Int[np.ndarray, " _"],
+        *,
+        dim: int,
+        points: Nodes | None = None,
+        backend: Backend = "auto",
+    ) -> None:
+        """Analyse the pattern of a symmetric matrix.
+
+        Args:
+            indptr: where each column begins, (dofs + 1,), as in `csc_array`.
+            indices: rows of the entries, rising in each column; both triangles.
+            dim: degrees of freedom of a node, side by side.
+            points: where the nodes are, (nodes, any dimension).
+            backend: who factorises.
+
+        Raises:
+            ValueError: `dim` does not divide the degrees of freedom, or there are more or fewer points than nodes.
+        """
+        size = len(indptr) - 1
+        if size % dim or (points is not None and len(points) * dim != size):
+            count = "no" if points is None else len(points)
+            raise ValueError(f"{size} degrees of freedom, {dim} a node, do not go with {count} points")
+        self.backend = "supernodal" if backend == "auto" else backend
+        indptr, indices = np.ascontiguousarray(indptr, np.int32), np.ascontiguousarray(indices, np.int32)
+        self._indptr, self._indices, self._size = indptr, indices, size
+        if self.backend == "supernodal":
+            tree = _cheapest_tree(indptr, indices, dim, points)
+            self._supernodal = SupernodalAnalysis(tree, indptr, indices, dim)
+
+    def factorise(self, data: Vector) -> "Factorisation":
+        """Factorise the matrix with these values, in the order of `indices`."""
+        if self.backend == "supernodal":
+            return Factorisation(self._supernodal.factorise(np.ascontiguousarray(data), TINY))
+        matrix = csc_array((data, self._indices, self._indptr), shape=(self._size, self._size))
+        return Factorisation(SuperLUFactors(matrix))
 
 
 class Factorisation:
-    """LU without pivoting of a symmetric matrix; the signs of its pivots are those of the eigenvalues.
+    """A = L S L^T with S = diag(+-1), or what does the same.
 
     Attributes:
-        definite: whether the matrix is positive definite.
-        singular: whether the factorisation broke down; then `solve` must not be called.
+        negative: number of negative pivots, which is the number of negative eigenvalues.
+        singular: whether a pivot was 0, too small or not finite; then `solve` must not be called.
+    """
+
+    def __init__(self, factors: Factors | csc_array) -> None:
+        """What a back end made of a matrix, or a matrix still to be factorised by SuperLU."""
+        self._factors = SuperLUFactors(factors) if isinstance(factors, csc_array) else factors
+        self.negative = self._factors.negative
+        self.singular = self._factors.singular
+
+    @property
+    def definite(self) -> bool:
+        """Whether the matrix is positive definite."""
+        return not self.singular and self.negative == 0
+
+    def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
+        """Solution of matrix @ x = right, for one or several right-hand sides."""
+        return self._factors.solve(right)
+
+
+def factorise(matrix: csc_array) -> Factorisation:
+    """Factorise one symmetric matrix whose pattern will not come again."""
+    return Factorisation(SuperLUFactors(matrix))
+
+
+class SuperLUFactors:
+    """LU without row exchanges of a symmetric matrix.
+
+    Attributes:
+        singular: whether it broke down, a row exchange included.
+        negative: number of negative pivots.
     """
 
     def __init__(self, matrix: csc_array) -> None:
         """Factorise a symmetric matrix."""
-        self.definite = False
-        self.singular = True
+        self.singular, self.negative = True, 0
+        diagonal = np.abs(matrix.diagonal())
+        if not np.isfinite(matrix.data).all():
+            return
         try:
             self._lu = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:
             return
         pivots = self._lu.U.diagonal()
-        self.singular = not bool(np.isfinite(pivots).all() and (pivots != 0).all())
         unpivoted = bool((self._lu.perm_r == self._lu.perm_c).all())
-        self.definite = not self.singular and unpivoted and bool((pivots > 0).all())
+        large = np.isfinite(pivots) & (np.abs(pivots) > TINY * diagonal.max(initial=0.0))
+        self.singular = not (unpivoted and bool(large.all()))
+        self.negative = 0 if self.singular else int((pivots < 0).sum())
 
-    def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
-        """Solution of matrix @ x = right, for one or several right-hand sides."""
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Solution for one or several right-hand sides."""
         return self._lu.solve(np.ascontiguousarray(right))
+
+
+def _cheapest_tree(indptr: np.ndarray, indices: np.ndarray, dim: int, points: Nodes | None) -> symbolic.Tree:
+    """Supernodes of the best of the orders that we know."""
+    starts, neighbours = ordering.block_graph(indptr, indices, dim)
+    distances = ordering.graph_coordinates(starts, neighbours, DISTANCES)
+    coordinates = distances if points is None else np.hstack([points, distances])
+    orders = [
+        ordering.nested_dissection(starts, neighbours, coordinates, LEAF, SHARES),
+        _minimum_degree(starts, neighbours),
+    ]
+    trees = [symbolic.Tree(*symbolic.supernodes(starts, neighbours, order, dim)) for order in orders]
+    return min(trees, key=lambda tree: tree.seconds)
+
+
+def _minimum_degree(starts: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    """SuperLU's multiple minimum degree (Liu 1985), by an incomplete factorisation that drops nearly all it finds."""
+    nodes = len(starts) - 1
+    degrees = np.diff(starts)
+    indices = np.concatenate([neighbours, np.arange(nodes)])
+    columns = np.concatenate([np.repeat(np.arange(nodes), degrees), np.arange(nodes)])
+    data = np.concatenate([np.full(len(neighbours), -1.0), degrees + 1.0])
+    graph = csc_array((data, (indices, columns)), shape=(nodes, nodes))
+    return np.argsort(spilu(graph, drop_tol=1e9, fill_factor=1, permc_spec="MMD_AT_PLUS_A").perm_c)
