@@ -1,10 +1,10 @@
 """In which order to eliminate nodes, so that little fills in.
 
 Nested dissection (George 1973): a set of nodes that separates a body into two halves is eliminated last, each half is
-ordered in the same way. A body is cut across a coordinate at one of a few shares of its nodes; the smallest set of nodes
-that touches every cut edge is the separator: a least vertex cover of a bipartite graph, by Koenig's theorem from a
-largest matching (Pothen, Simon and Liou 1990). Of all cuts that with the smallest ratio of separator to the product of
-the halves is taken. Small parts are ordered by minimum degree, which counts the separators around them too.
+ordered in the same way. A body is cut across a coordinate, at one of a few shares of its nodes; the smallest set of
+nodes that touches every cut edge is the separator: a least vertex cover of a bipartite graph, by Koenig's theorem from
+a largest matching (Pothen, Simon and Liou 1990). Of all cuts that with the smallest ratio of the separator to the
+product of the halves is taken. Small parts are ordered by minimum degree, which counts the separators around them too.
 
 Without coordinates, distances in the graph from a few far-apart nodes serve as such (Harel and Koren 2002).
 
@@ -88,8 +88,8 @@ def _distances(starts, neighbours, root):
 def nested_dissection(starts, neighbours, points, leaf, shares):
     """Order of elimination, (nodes,): the node to eliminate first, second, ...
 
-    Parts of up to `leaf` nodes are not cut; others are where a cut leaves a share of the nodes, from `shares`, on one side
-    of a coordinate, a column of `points`.
+    Parts of up to `leaf` nodes are not cut. `shares` are the parts of the nodes that a cut may leave on one side; it
+    runs across a coordinate, a column of `points`.
     """
     nodes, axes = points.shape
     order = np.arange(nodes)
@@ -122,7 +122,7 @@ def nested_dissection(starts, neighbours, points, leaf, shares):
 @njit(cache=True)
 @no_type_check
 def _separator(starts, neighbours, part, values, share, mate, side):
-    """Side of every node of `part` (1, 2; 3 on the separator) where `share` of them is cut off, and the separator's size.
+    """Side of each node of `part` (1, 2; 3 on the separator) where `share` of them is cut off; the separator's size.
 
     `mate` is -1 and `side` 0 everywhere before and after.
     """
