@@ -1,0 +1,373 @@
+"""How long an equilibrium in space takes, beside SOFA's times and the goals; and how the cost grows with the body.
+
+    python benchmarks/simulate.py [--quick] [--robots FOLDER] [--only finger trunk ...] [--largest 20000]
+
+The robots that SOFA ships are read from a folder beside this checkout (see sofa_robots.py) and left out if it is not
+there. Each row is measured in a process of its own: CPU time of one thread, after one solve that is not counted.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from machine import machine
+
+os.environ["NUMBA_NUM_THREADS"] = "1"
+
+import numpy as np
+
+ROBOTS = Path(__file__).parents[2] / "shared" / "robots"
+SIZES = {1_000: 9.3e-3, 2_000: 7.0e-3, 5_000: 4.95e-3, 10_000: 3.8e-3, 20_000: 2.95e-3}
+"""About how many nodes a hand has at which spacing of its lattice [m]."""
+
+FINGER_TIPS = {0: (-101.011, -8.132, 7.0), 5: (-100.811, 3.302, 6.617), 10: (-98.458, 14.537, 6.458)}
+"""Contraction [mm] and tip [mm] of the finger under gravity by SOFA 25.06: corotated elements, not Neo-Hookean ones."""
+
+
+@dataclass(frozen=True)
+class Solve:
+    """One equilibrium to find: contractions [m], whether from the pose before, whether it is measured."""
+
+    goal: np.ndarray
+    onwards: bool = False
+    counted: bool = True
+
+
+Walk = Callable[[Any, np.random.Generator, int], Iterator[Solve]]
+"""The solves for a robot, random numbers and a count."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One row of the table.
+
+    Attributes:
+        name: short, for --only.
+        what: is solved.
+        sofa: CPU time of SOFA 25.06 for the same [ms], as text.
+        goal: CPU time to stay under [ms].
+        repeats: how often each solve is measured; steps of the stream, poses of the hand.
+        few: the same with --quick.
+        walk: the solves.
+    """
+
+    name: str
+    what: str
+    sofa: str
+    goal: float
+    repeats: int
+    few: int
+    walk: Walk
+
+
+@dataclass
+class Row:
+    """What was measured: of each solve the CPU time [ms], Newton's iterations, convergence, residual and least J."""
+
+    nodes: int = 0
+    elements: int = 0
+    times: list[float] = field(default_factory=list)
+    iterations: list[int] = field(default_factory=list)
+    converged: int = 0
+    residual: float = 0.0
+    least_j: float = np.inf
+    memory: float = np.nan
+
+
+def finger_steps(_robot: Any, _random: np.random.Generator, count: int) -> Iterator[Solve]:
+    for _ in range(count):
+        yield Solve(np.zeros(1), counted=False)
+        for contraction in (5e-3, 10e-3, 15e-3, 20e-3):
+            yield Solve(np.array([contraction]), onwards=True)
+
+
+def one_cable(contraction: float) -> Walk:
+    """The first winch takes in a length [m], from rest."""
+
+    def walk(robot: Any, _random: np.random.Generator, count: int) -> Iterator[Solve]:
+        for _ in range(count):
+            yield Solve(contraction * np.eye(len(robot.winches))[0])
+
+    return walk
+
+
+def random_poses(robot: Any, random: np.random.Generator, count: int) -> Iterator[Solve]:
+    for _ in range(count):
+        yield Solve(random.uniform(0, 0.3 * lengths(robot)))
+
+
+def stream(robot: Any, random: np.random.Generator, count: int) -> Iterator[Solve]:
+    share = random.uniform(0.05, 0.2, len(robot.winches))
+    yield Solve(share * lengths(robot), counted=False)
+    for _ in range(count):
+        share = np.abs(share + random.choice([-0.01, 0.01], len(share)))
+        share = np.where(share > 0.3, 0.6 - share, share)
+        yield Solve(share * lengths(robot), onwards=True)
+
+
+def lengths(robot: Any) -> np.ndarray:
+    """Rest length of each winch's cable [m]; every winch has one."""
+    return np.array([cable.length for cable in robot.cables])
+
+
+CASES = {
+    case.name: case
+    for case in (
+        Case(
+            name="finger",
+            what="5 mm step, 0 to 20 mm, from the pose before",
+            sofa="16 to 96",
+            goal=5,
+            repeats=10,
+            few=2,
+            walk=finger_steps,
+        ),
+        Case(
+            name="trunk",
+            what="one cable 10 mm, from rest, no gravity",
+            sofa="2300",
+            goal=80,
+            repeats=10,
+            few=2,
+            walk=one_cable(10e-3),
+        ),
+        Case(
+            name="diamond",
+            what="one cable 20 mm, from rest",
+            sofa="580",
+            goal=100,
+            repeats=10,
+            few=2,
+            walk=one_cable(20e-3),
+        ),
+        Case(
+            name="diamond_34k",
+            what="one cable 20 mm, from rest",
+            sofa="15000",
+            goal=3000,
+            repeats=3,
+            few=1,
+            walk=one_cable(20e-3),
+        ),
+        Case(
+            name="hand",
+            what="10 cables at random, 0 to 30 %, from rest",
+            sofa="",
+            goal=60,
+            repeats=30,
+            few=5,
+            walk=random_poses,
+        ),
+        Case(
+            name="stream",
+            what="hand, steps of 1 % of every cable, from the pose before",
+            sofa="",
+            goal=15,
+            repeats=100,
+            few=20,
+            walk=stream,
+        ),
+    )
+}
+
+
+def read_robot(name: str, folder: Path) -> Any:
+    """The robot of a case; a name such as "hand 3.8e-3" is a hand of that spacing with one cable."""
+    from hand_body import hand_robot
+    from sofa_robots import sofa_robots
+
+    if name.startswith("hand "):
+        robot = hand_robot(float(name.split()[1]))
+        winch = robot.winch("middle flexor")
+        return robot.with_network([winch], [cable for cable in robot.cables if cable.winch == winch.name])
+    if name in ("hand", "stream"):
+        return hand_robot()
+    robot = sofa_robots(folder)[name]()
+    return replace(robot, gravity=None) if name == "trunk" else robot
+
+
+def measure(name: str, folder: Path, count: int) -> Row:
+    """Solve all that a case asks for, in this process."""
+    from hydrostat import Simulation
+
+    robot = read_robot(name, folder)
+    walk = CASES[name].walk if name in CASES else one_cable(0.15 * lengths(robot)[0])
+    simulation = Simulation(robot)
+    mesh = robot.body.mesh
+    row = Row(nodes=len(mesh.nodes), elements=len(mesh.elements))
+    warm = False
+    pose = None
+    for solve in walk(robot, np.random.default_rng(0), count):
+        start = pose if solve.onwards else None
+        if not warm:
+            simulation.solve(solve.goal, start=start, strict=False)
+        warm = warm or solve.goal.any()
+        began = time.process_time()
+        pose = simulation.solve(solve.goal, start=start, strict=False)
+        taken = 1e3 * (time.process_time() - began)
+        if solve.counted:
+            row.times.append(taken)
+            row.iterations.append(pose.result.iterations)
+            row.converged += pose.result.converged
+            row.residual = max(row.residual, pose.result.residual / float(pose.tensions.max()))
+            row.least_j = min(row.least_j, least_j(mesh, pose.nodes))
+    row.memory = peak_memory()
+    return row
+
+
+def least_j(mesh: Any, nodes: np.ndarray) -> float:
+    """Least ratio of an element's volume to that at rest."""
+    corners = nodes[mesh.elements]
+    return float((np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6 / mesh.volumes).min())
+
+
+def peak_memory() -> float:
+    """Most memory this process has held [MB], Python and libraries included; NaN where the system does not tell."""
+    try:
+        import resource
+    except ImportError:
+        return float("nan")
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3)
+
+
+def first_solve(name: str, folder: Path) -> dict[str, float]:
+    """CPU time of this process [s] when each thing is done for the first time."""
+    import hydrostat
+
+    done = {"import": time.process_time()}
+    robot = read_robot(name, folder)
+    done["robot"] = time.process_time()
+    simulation = hydrostat.Simulation(robot)
+    done["simulation"] = time.process_time()
+    simulation.solve(0.1 * lengths(robot), strict=False)
+    return {**done, "solve": time.process_time()}
+
+
+def in_own_process(folder: Path, *arguments: str, **environment: str) -> Any:
+    """What this file prints when it is called with other arguments; None and the reason on stderr if it fails."""
+    command = [sys.executable, __file__, "--robots", str(folder), *arguments]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ, **environment})
+    if ended.returncode == 0:
+        return json.loads(ended.stdout)
+    print(f"{' '.join(arguments)}: {ended.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
+    return None
+
+
+def print_heads(*heads: str) -> None:
+    print(f"| {' | '.join(heads)} |\n{'|---' * len(heads)}|", flush=True)
+
+
+def print_cases(cases: Sequence[Case], folder: Path, *, quick: bool) -> None:
+    times = ("ms median", "p95", "SOFA", "goal")
+    print_heads("robot", "nodes", "what", "n", *times, "iterations", "converged", "residual", "least J", "MB")
+    for case in cases:
+        found = in_own_process(folder, "--measure", case.name, str(case.few if quick else case.repeats))
+        if found is None:
+            print(f"| {case.name} | | {case.what} | failed | | | {case.sofa} | {case.goal:g} | | | | | |", flush=True)
+            continue
+        row = Row(**found)
+        count = len(row.times)
+        print(
+            f"| {case.name} | {row.nodes} | {case.what} | {count} | {np.median(row.times):.1f} "
+            f"| {np.percentile(row.times, 95):.1f} | {case.sofa} | {case.goal:g} | {np.median(row.iterations):.0f} "
+            f"| {row.converged} of {count} | {row.residual:.0e} | {row.least_j:.2f} | {row.memory:.0f} |",
+            flush=True,
+        )
+    print(
+        "\nTimes are CPU time. Residual: largest nodal force left over by the largest cable force, of the worst solve. "
+        "MB: most memory the process held (getrusage), Python and libraries included. SOFA's are corotated elements.\n"
+    )
+
+
+def print_first_solve(folder: Path) -> None:
+    """CPU time from a fresh process to the first solve of the hand, without and with what numba has stored."""
+    print_heads("first solve of the hand, s", "import", "robot", "simulation", "solve", "in all")
+    with tempfile.TemporaryDirectory() as cache:
+        for what in ("no stored kernels", "stored kernels"):
+            found = in_own_process(folder, "--first", "hand", NUMBA_CACHE_DIR=cache)
+            if found is not None:
+                steps = np.diff([0.0, *found.values()])
+                print(f"| {what} | {' | '.join(f'{step:.2f}' for step in steps)} | {found['solve']:.2f} |", flush=True)
+    print()
+
+
+def print_sizes(largest: int, folder: Path, *, quick: bool) -> None:
+    """One cable of the hand, at several spacings."""
+    print(
+        "| nodes | elements | ms | iterations | ms each | converged | MB |\n|---|---|---|---|---|---|---|", flush=True
+    )
+    points = []
+    for size, spacing in SIZES.items():
+        if size > largest:
+            continue
+        found = in_own_process(folder, "--measure", f"hand {spacing}", "1" if quick else "3")
+        if found is None:
+            continue
+        row = Row(**found)
+        took, steps = float(np.median(row.times)), float(np.median(row.iterations))
+        points.append((row.nodes, took, took / max(steps, 1)))
+        print(
+            f"| {row.nodes} | {row.elements} | {took:.0f} | {steps:.0f} | {took / max(steps, 1):.1f} "
+            f"| {row.converged} of {len(row.times)} | {row.memory:.0f} |",
+            flush=True,
+        )
+    if len(points) > 1:
+        logs = np.log(points)
+        slopes = [np.polyfit(logs[:, 0], logs[:, column], 1)[0] for column in (1, 2)]
+        print(f"\nCPU time grows as nodes^{slopes[0]:.2f}, that of an iteration as nodes^{slopes[1]:.2f}.\n")
+
+
+def print_finger_tips(folder: Path) -> None:
+    """Whether the scene is the same: the tip of the finger, that of SOFA, and how far they are apart."""
+    from hydrostat import Simulation
+
+    simulation = Simulation(read_robot("finger", folder))
+    print_heads("finger: contraction mm", "tip mm", "SOFA's, corotated", "apart mm")
+    pose = None
+    for contraction, expected in FINGER_TIPS.items():
+        pose = simulation.solve(np.array([1e-3 * contraction]), start=pose, strict=False)
+        tip = 1e3 * pose.markers["tip"]
+        apart = np.linalg.norm(tip - expected)
+        print(f"| {contraction} | {np.round(tip, 2)} | {np.round(expected, 2)} | {apart:.2f} |", flush=True)
+    print()
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="few repeats, no large bodies")
+    parser.add_argument("--robots", type=Path, default=ROBOTS, help="folder of SOFA's robots")
+    parser.add_argument("--only", nargs="+", choices=CASES, default=list(CASES), help="rows of the first table alone")
+    parser.add_argument("--largest", type=int, default=20_000, help="nodes of the largest hand; 0: no such table")
+    parser.add_argument("--measure", nargs=2, help=argparse.SUPPRESS)
+    parser.add_argument("--first", help=argparse.SUPPRESS)
+    options = parser.parse_args(arguments)
+    if options.measure:
+        print(json.dumps(asdict(measure(options.measure[0], options.robots, int(options.measure[1])))))
+        return
+    if options.first:
+        print(json.dumps(first_solve(options.first, options.robots)))
+        return
+    there = {"hand", "stream"} | {name for name in CASES if (options.robots / name / "case.json").is_file()}
+    print(f"{machine()}\n")
+    missing = [name for name in options.only if name not in there]
+    if missing:
+        print(f"Left out, for {options.robots} does not hold them: {', '.join(missing)}\n")
+    print_cases([CASES[name] for name in options.only if name in there], options.robots, quick=options.quick)
+    if options.only != list(CASES):
+        return
+    print_first_solve(options.robots)
+    if "finger" in there:
+        print_finger_tips(options.robots)
+    print_sizes(min(options.largest, 2_000) if options.quick else options.largest, options.robots, quick=options.quick)
+
+
+if __name__ == "__main__":
+    main()
