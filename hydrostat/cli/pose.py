@@ -45,8 +45,7 @@ def pose(
         write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)
         taken = {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
         replace_file(folder / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())
-        if loaded.body.mesh.dim == 2:
-            save_png(draw_reached(loaded, reached), folder / "pose.png")
+        save_png(draw_reached(loaded, reached), folder / "pose.png")
         text = ", ".join(f"{winch} {1e3 * value:.1f} mm" for winch, value in taken.items())
         print(f"{target.name}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.reason} ({1e3 * seconds:.0f} ms)")
         print(f"  contractions: {text}")

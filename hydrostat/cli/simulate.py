@@ -78,7 +78,4 @@ def _contraction(text: str) -> tuple[str, float]:
 def _picture(simulation: "Simulation", pose: "SolvedPose", out: Path) -> list[Path]:
     from hydrostat.plot import draw_pose, save_png
 
-    if simulation.robot.body.mesh.dim != 2:
-        print("note: there are no pictures of bodies in space yet; open pose.vtu in ParaView")
-        return []
     return [save_png(draw_pose(simulation.robot, pose), out / "pose.png")]

@@ -1,4 +1,4 @@
-"""Pictures and the report: how robots, poses and designs look. Bodies in the plane only, so far."""
+"""Pictures and the report: how robots, poses and designs look."""
 
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.motion import motion_frames, motion_svg

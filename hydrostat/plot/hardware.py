@@ -4,31 +4,42 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.anchors import locate
 from hydrostat.plot.labels import Labels, shorten
-from hydrostat.plot.palette import DARK, LIGHT, mix, winch_colours
-from hydrostat.plot.places import Place, Places
+from hydrostat.plot.palette import DARK, FELT, LIGHT, mix, winch_colours
+from hydrostat.plot.places import Place, Places, Spread
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
-from hydrostat.robot import Cable, Mount, Robot, Winch
+from hydrostat.plot.surface import Run
+from hydrostat.robot import Mount, Robot, Winch
+from hydrostat.robot.point import Point
 
 SHARES = np.linspace(0.3, 0.9, 13)
 """Shares of a cable's length where its number may stand."""
 
 
-def cable_runs(robot: Robot, nodes: Nodes) -> list[Places]:
-    """Where the points of each cable are [mm] when the nodes are at `nodes` [m]."""
-    return [MILLIMETRES * _run(robot, cable, nodes) for cable in robot.cables]
+def cable_points(robot: Robot, nodes: Nodes) -> list[Spread]:
+    """Where the points of each cable are [m] when the nodes are at `nodes` [m]."""
+    points = [point for cable in robot.cables for point in cable.points]
+    fixed = [
+        place == 0 and robot.winch(cable.winch).mount is Mount.WORLD
+        for cable in robot.cables
+        for place in range(len(cable.points))
+    ]
+    moved = _moved(robot, points, fixed, nodes)
+    ends = np.cumsum([len(cable.points) for cable in robot.cables])
+    return np.split(moved, ends[:-1]) if robot.cables else []
 
 
-def winch_places(robot: Robot, nodes: Nodes) -> list[Place]:
-    """Where each winch is [mm] when the nodes are at `nodes` [m]."""
-    return [MILLIMETRES * _place(robot, winch, nodes) for winch in robot.winches]
+def winch_points(robot: Robot, nodes: Nodes) -> Points:
+    """Where each winch is [m] when the nodes are at `nodes` [m]."""
+    fixed = [winch.mount is Mount.WORLD for winch in robot.winches]
+    return _moved(robot, [winch.at for winch in robot.winches], fixed, nodes)
 
 
 def spool_size(winch: Winch, scale: float) -> float:
     """Diameter of a winch's picture [pt] where a point shows `scale` millimetres: true, unless too small or large."""
-    return min(max(2 * MILLIMETRES * winch.spool_radius / scale, 9.0), 22.0)
+    return min(max(2 * MILLIMETRES * winch.spool_radius / scale, 9.0), 22.0 if len(winch.at) == 2 else 12.0)
 
 
 def stopper_bar(run: Places, scale: float) -> Places:
@@ -39,40 +50,42 @@ def stopper_bar(run: Places, scale: float) -> Places:
 
 
 def draw_cables(
-    sheet: Sheet, robot: Robot, runs: list[Places], *, colours: Sequence[str] | None = None, width: float = 2.0
+    sheet: Sheet, robot: Robot, runs: list[Run], *, colours: Sequence[str] | None = None, width: float = 2.0
 ) -> None:
-    """Cables along their runs [mm]: sheaths as pale pipes, a bead at each via point, a bar as the stopper.
+    """Cables along their runs: sheaths as pale pipes, a bead at each via point, a bar as the stopper.
+
+    What the body covers is thinner and of the colour of the body, the more so the deeper it lies.
 
     Args:
         sheet: to draw on.
         robot: whose cables they are.
-        runs: the points of each cable [mm].
+        runs: where each cable runs.
         colours: of each cable; those of the winches if left out.
         width: of a cable [pt].
     """
     by_winch = winch_colours(robot)
     for index, (cable, run) in enumerate(zip(robot.cables, runs, strict=True)):
         colour = colours[index] if colours is not None else by_winch[cable.winch]
-        sheet.curve(run, color=LIGHT, linewidth=width + 1.8, alpha=0.85, zorder=8)
         for start, end in cable.sheathed:
-            pipe = run[start : end + 1]
-            sheet.curve(pipe, color=mix(colour, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=8.2)
-            sheet.curve(pipe, color=mix(colour, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=8.3)
-        sheet.curve(run, color=colour, linewidth=width, zorder=9)
-        sheet.dots(run[1:-1], 3.0, color=LIGHT, markeredgecolor=colour, markeredgewidth=0.9, zorder=9.2)
+            pipe, faded = run.points[start : end + 1], _faded(colour, float(run.fades[start : end + 1].mean()))
+            sheet.curve(pipe, color=mix(faded, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=8.2)
+            sheet.curve(pipe, color=mix(faded, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=8.3)
+        for part, fade in run.parts:
+            _draw_part(sheet, part, colour, width, fade)
+        _draw_beads(sheet, run, colour)
         _draw_stopper(sheet, run, colour, width)
 
 
-def draw_winches(sheet: Sheet, robot: Robot, nodes: Nodes) -> None:
-    """A spool for each winch when the nodes are at `nodes` [m]."""
+def draw_winches(sheet: Sheet, robot: Robot, centres: Places, fades: Vector) -> None:
+    """A spool for each winch at its centre [mm], faded where the body covers it."""
     colours = winch_colours(robot)
-    for winch, centre in zip(robot.winches, winch_places(robot, nodes), strict=True):
-        _draw_spool(sheet, winch, centre, colours[winch.name])
+    for winch, centre, fade in zip(robot.winches, centres, fades, strict=True):
+        _draw_spool(sheet, winch, centre, colours[winch.name], float(fade))
 
 
-def name_winches(labels: Labels, robot: Robot, nodes: Nodes, notes: Sequence[str] = ()) -> None:
-    """The name of each winch, and a note behind it, on a flag at its spool when the nodes are at `nodes` [m]."""
-    colours, centres = winch_colours(robot), winch_places(robot, nodes)
+def name_winches(labels: Labels, robot: Robot, centres: Places, notes: Sequence[str] = ()) -> None:
+    """The name of each winch, and a note behind it, on a flag at its spool with the centre [mm]."""
+    colours = winch_colours(robot)
     for centre in centres:
         labels.reserve(centre, 18)
     for index, (winch, centre) in enumerate(zip(robot.winches, centres, strict=True)):
@@ -114,13 +127,12 @@ def _beads(runs: list[Places], gap: float) -> list[Place]:
     return beads
 
 
-def _run(robot: Robot, cable: Cable, nodes: Nodes) -> Places:
-    points = np.array(cable.points)
-    moving = np.ones(len(points), dtype=bool)
-    moving[0] = robot.winch(cable.winch).mount is Mount.BODY
-    run = points.copy()
-    run[moving] = locate(robot.body.mesh, points[moving]).positions(nodes)
-    return run
+def _moved(robot: Robot, points: Sequence[Point], fixed: Sequence[bool], nodes: Nodes) -> Points:
+    """Points [m] that the body takes with it, but for those that are fixed in space."""
+    places = np.array(points, dtype=float).reshape(len(points), robot.body.mesh.dim)
+    moving = ~np.array(fixed, dtype=bool)
+    places[moving] = locate(robot.body.mesh, places[moving]).positions(nodes)
+    return places
 
 
 def _length(run: Places) -> float:
@@ -134,25 +146,41 @@ def _along(run: Places, share: float) -> Place:
     return np.array([np.interp(share * places[-1], places, run[:, side]) for side in range(2)])
 
 
-def _place(robot: Robot, winch: Winch, nodes: Nodes) -> Place:
-    at = np.array(winch.at)
-    return at if winch.mount is Mount.WORLD else locate(robot.body.mesh, at[None]).positions(nodes)[0]
-
-
-def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str) -> None:
+def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str, fade: float) -> None:
     """Flange, drum and axle; a winch outside the body sits on a square plate."""
-    size = spool_size(winch, sheet.scale)
+    size, light, colour = spool_size(winch, sheet.scale), _faded(LIGHT, fade), _faded(colour, fade)
     if winch.mount is Mount.WORLD:
         sheet.curve(
-            centre[None], linestyle="none", marker="s", markersize=1.5 * size, color=LIGHT, markeredgecolor=DARK,
-            markeredgewidth=0.9, zorder=19,
+            centre[None], linestyle="none", marker="s", markersize=1.5 * size, color=light,
+            markeredgecolor=_faded(DARK, fade), markeredgewidth=0.9, zorder=19,
         )  # fmt: skip
-    sheet.dots(centre[None], size, color=colour, markeredgecolor=LIGHT, markeredgewidth=1.0, zorder=20)
-    sheet.dots(centre[None], 0.58 * size, color=mix(colour, LIGHT, 0.75), markeredgecolor="none", zorder=20.1)
+    sheet.dots(centre[None], size, color=colour, markeredgecolor=light, markeredgewidth=1.0, zorder=20)
+    sheet.dots(centre[None], 0.58 * size, color=mix(colour, light, 0.75), markeredgecolor="none", zorder=20.1)
     sheet.dots(centre[None], 0.2 * size, color=colour, markeredgecolor="none", zorder=20.2)
 
 
-def _draw_stopper(sheet: Sheet, run: Places, colour: str, width: float) -> None:
-    bar = stopper_bar(run, sheet.scale)
-    sheet.curve(bar, color=LIGHT, linewidth=width + 2.4, zorder=9.3)
-    sheet.curve(bar, color=colour, linewidth=width + 0.8, zorder=9.4)
+def _draw_part(sheet: Sheet, part: Places, colour: str, width: float, fade: float) -> None:
+    """A piece of a cable: with a pale border where it lies in front, thinner where the body covers it."""
+    if fade > 0:
+        sheet.curve(part, color=_faded(colour, fade), linewidth=0.8 * width, zorder=7 - fade)
+    else:
+        sheet.curve(part, color=LIGHT, linewidth=width + 1.8, alpha=0.85, zorder=8)
+        sheet.curve(part, color=colour, linewidth=width, zorder=9)
+
+
+def _draw_beads(sheet: Sheet, run: Run, colour: str) -> None:
+    fades = run.fades[1:-1]
+    for fade in np.unique(fades):
+        look = {"color": _faded(LIGHT, fade), "markeredgecolor": _faded(colour, fade)}
+        beads = run.points[1:-1][fades == fade]
+        sheet.dots(beads, 2.2 if fade else 3.0, markeredgewidth=0.6 if fade else 0.9, zorder=9.2 - 2 * fade, **look)
+
+
+def _draw_stopper(sheet: Sheet, run: Run, colour: str, width: float) -> None:
+    bar, fade = stopper_bar(run.points, sheet.scale), float(run.fades[-1])
+    sheet.curve(bar, color=_faded(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
+    sheet.curve(bar, color=_faded(colour, fade), linewidth=width + 0.8, zorder=9.4)
+
+
+def _faded(colour: str, fade: float) -> str:
+    return mix(colour, FELT, fade) if fade > 0 else colour

@@ -31,7 +31,7 @@ class Labels:
         self._sheet = sheet
         self._body = shapely.unary_union([shapely.Polygon(ring).buffer(0) for ring in rings[:1]]).simplify(0.5)
         self._avoid = avoid
-        self._taken: list[np.ndarray] = []
+        self._taken: list[np.ndarray] = [np.array(box) for box in sheet.kept]
 
     def place(self, at: Place, words: str, *, size: float = 8, weight: str = "normal", outside: float = 0.8) -> None:
         """Write words beside a point; `outside` is how much it matters that they lie off the body."""

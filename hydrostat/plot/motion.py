@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.plot.hardware import cable_runs, spool_size, stopper_bar, winch_places
+from hydrostat.plot.hardware import cable_points, spool_size, stopper_bar, winch_points
 from hydrostat.plot.html import Html, tag
 from hydrostat.plot.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
 from hydrostat.plot.places import Places
@@ -80,11 +80,11 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float
 
 
 def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    colours, runs = winch_colours(robot), [cable_runs(robot, nodes) for nodes in frames]
+    colours, runs = winch_colours(robot), [cable_points(robot, nodes) for nodes in frames]
     lines = []
     for index, cable in enumerate(robot.cables):
-        bars = [_path([stopper_bar(run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
-        paths = [_path([run[index] / MILLIMETRES], closed=False) for run in runs]
+        bars = [_path([stopper_bar(MILLIMETRES * run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
+        paths = [_path([run[index]], closed=False) for run in runs]
         for colour, width in ((LIGHT, 3.2), (colours[cable.winch], 1.7)):
             look = {"fill": "none", "stroke": colour, "stroke_linecap": "round"}
             lines.append(_moving(paths, seconds, stroke_width=f"{width}", **look))
@@ -93,7 +93,7 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
 
 
 def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    places = [winch_places(robot, nodes) for nodes in frames]
+    places = [MILLIMETRES * winch_points(robot, nodes) for nodes in frames]
     spools = []
     for index, (winch, colour) in enumerate(zip(robot.winches, winch_colours(robot).values(), strict=True)):
         radius = spool_size(winch, SCALE) * SCALE / 2

@@ -8,3 +8,6 @@ Place = Float[np.ndarray, " 2"]
 
 Places = Float[np.ndarray, "_ 2"]
 """Places, one row each, in millimetres unless their function says otherwise."""
+
+Spread = Float[np.ndarray, "_ dim"]
+"""Points or nodes of a robot [m], any number of them in one call."""

@@ -1,17 +1,28 @@
 """Pictures of a robot in a pose that its winches make."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.ik import ReachedPose
-from hydrostat.plot.felt import draw_felt, draw_ghost
-from hydrostat.plot.hardware import cable_dots, cable_runs, draw_cables, draw_numbers, draw_winches, name_winches
+from hydrostat.plot.hardware import (
+    cable_dots,
+    cable_points,
+    draw_cables,
+    draw_numbers,
+    draw_winches,
+    name_winches,
+    winch_points,
+)
 from hydrostat.plot.labels import Labels, shorten
-from hydrostat.plot.places import Places
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
-from hydrostat.plot.skin import Skin
-from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_points
+from hydrostat.plot.open_sheet import open_sheet
+from hydrostat.plot.pane import Pane
+from hydrostat.plot.places import Places, Spread
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
+from hydrostat.plot.surface import Run, Surface
+from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
 from hydrostat.simulation import SolvedPose
@@ -25,16 +36,14 @@ def draw_pose(robot: Robot, pose: SolvedPose, *, title: str | None = None, width
         pose: its equilibrium.
         title: above the picture; the robot's name if left out, nothing if empty.
         width: of the picture [inch].
-
-    Raises:
-        InputError: a body in space.
     """
     head = shorten(robot.name) if title is None else title
     note = f"under the given contractions: {pose.result.reason}"
-    sheet, labels = _in_pose(robot, pose, head, note, width, targets=np.empty((0, 2)))
-    draw_markers(sheet, pose.markers)
-    for name, place in pose.markers.items():
-        labels.place(MILLIMETRES * place, shorten(name))
+    sheet, panes, labels = _in_pose(robot, pose, head, note, width, targets={})
+    for pane in panes:
+        draw_markers(sheet, pane.named(pose.markers))
+    for name, place in panes[0].named(pose.markers).items():
+        labels.place(place, shorten(name))
     return sheet.figure
 
 
@@ -46,23 +55,23 @@ def draw_reached(robot: Robot, reached: ReachedPose, *, title: str | None = None
         reached: the pose found.
         title: above the picture; the pose's name if left out, nothing if empty.
         width: of the picture [inch].
-
-    Raises:
-        InputError: a body in space.
     """
     head = f"Reached: {shorten(reached.target.name)}" if title is None else title
     note = f"marker error {MILLIMETRES * reached.rms_error:.2f} mm rms"
-    sheet, labels = _in_pose(robot, reached.pose, head, note, width, targets=target_points(reached.target))
-    markers = {name: reached.pose.markers[name] for name in reached.target.targets}
-    draw_errors(sheet, markers, reached.target)
-    draw_crosses(sheet, reached.target)
-    draw_markers(sheet, markers)
-    for name, place in markers.items():
-        labels.place(MILLIMETRES * place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
+    goals = target_places(reached.target)
+    sheet, panes, labels = _in_pose(robot, reached.pose, head, note, width, targets=goals)
+    tracked = {name: reached.pose.markers[name] for name in goals}
+    for pane in panes:
+        markers, targets = pane.named(tracked), pane.named(goals)
+        draw_errors(sheet, markers, targets)
+        draw_crosses(sheet, targets)
+        draw_markers(sheet, markers)
+    for name, place in panes[0].named(tracked).items():
+        labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
     return sheet.figure
 
 
-def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Places | None = None, width: float = WIDTH) -> Figure:
+def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, width: float = WIDTH) -> Figure:
     """The robot alone, without grid or words, when its nodes are at `nodes` [m].
 
     Args:
@@ -70,49 +79,61 @@ def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Places | None = None, wi
         nodes: positions of the nodes [m].
         frame: points that the picture must hold [m], so that several share one frame; the body if left out.
         width: of the picture [inch].
-
-    Raises:
-        InputError: a body in space.
     """
-    skin = Skin.of(robot.body)
-    points = MILLIMETRES * (skin.shape(nodes)[0] if frame is None else frame)
-    sheet = new_sheet(points, width=width, ruled=False, room=0.04)
-    draw_felt(sheet, skin, nodes)
-    draw_cables(sheet, robot, cable_runs(robot, nodes))
-    draw_winches(sheet, robot, nodes)
+    shapes, points = ([nodes], []) if frame is None else ([], [frame])
+    sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
+    surface = panes[0].draw_body(sheet, nodes)
+    draw_cables(sheet, robot, [surface.run(points) for points in cable_points(robot, nodes)])
+    winches = winch_points(robot, nodes)
+    draw_winches(sheet, robot, panes[0].places(winches), surface.fades(winches))
     return sheet.figure
 
 
 def _in_pose(
-    robot: Robot, pose: SolvedPose, title: str, subtitle: str, width: float, *, targets: Places
-) -> tuple[Sheet, Labels]:
-    """A sheet with ghost, posed felt, cables by tension and winches, and room for labels off the targets [mm]."""
-    skin = Skin.of(robot.body)
-    rings = [MILLIMETRES * ring for ring in skin.shape(pose.nodes)]
-    ghost = MILLIMETRES * skin.shape(robot.body.mesh.nodes)[0]
-    runs = cable_runs(robot, pose.nodes)
-    seen = np.concatenate([rings[0], ghost, *runs, targets])
-    sheet = new_sheet(seen, title=title, subtitle=subtitle, width=width, bar=bool(runs))
-    draw_ghost(sheet, skin, robot.body.mesh.nodes)
-    draw_felt(sheet, skin, pose.nodes, pale=0.35)
-    markers = MILLIMETRES * np.array(list(pose.markers.values())).reshape(-1, 2)
-    labels = Labels(sheet, rings=rings, avoid=np.concatenate([cable_dots(sheet, runs), markers, targets]))
-    for place in (*markers, *targets):
-        labels.reserve(place, 6)
-    draw_winches(sheet, robot, pose.nodes)
-    if runs:
-        _draw_tensions(sheet, robot, pose, runs, labels)
-    return sheet, labels
-
-
-def _draw_tensions(sheet: Sheet, robot: Robot, pose: SolvedPose, runs: list[Places], labels: Labels) -> None:
-    """Cables coloured by tension, each with its number and its newtons."""
+    robot: Robot, pose: SolvedPose, title: str, subtitle: str, width: float, *, targets: Mapping[str, Vector]
+) -> tuple[Sheet, list[Pane], Labels]:
+    """A sheet with ghost, posed body, cables by tension and winches, and room for labels off the targets [m]."""
+    rest, cables, winches = robot.body.mesh.nodes, cable_points(robot, pose.nodes), winch_points(robot, pose.nodes)
+    goals = np.array(list(targets.values())).reshape(-1, robot.body.mesh.dim)
+    sheet, panes = open_sheet(
+        robot, [pose.nodes, rest], [*cables, goals], title=title, subtitle=subtitle, width=width, bar=bool(cables)
+    )
     scale = TensionScale.of(pose.tensions)
     colours = [scale.colour(float(tension)) for tension in pose.tensions]
-    draw_cables(sheet, robot, runs, colours=colours, width=2.6)
-    scale.draw_bar(sheet, of="cable tension")
+    drawn: list[tuple[Surface, list[Run]]] = []
+    for pane in panes:
+        pane.draw_ghost(sheet)
+        surface = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
+        runs = [surface.run(points) for points in cables]
+        draw_winches(sheet, robot, pane.places(winches), surface.fades(winches))
+        draw_cables(sheet, robot, runs, colours=colours, width=2.6)
+        drawn.append((surface, runs))
+    surface, runs = drawn[0]
+    labels = _labels(sheet, panes[0], surface, runs, [*pose.markers.values(), *goals])
+    if cables:
+        scale.draw_bar(sheet, of="cable tension")
+        _tell_tensions(sheet, robot, pose, [run.points for run in runs], panes[0].places(winches), labels)
+    return sheet, panes, labels
+
+
+def _labels(sheet: Sheet, pane: Pane, surface: Surface, runs: list[Run], points: list[Vector]) -> Labels:
+    """Labels that keep off cables, and off markers and targets at points [m]."""
+    dots = cable_dots(sheet, [run.points for run in runs])
+    places = pane.places(np.array(points)) if points else np.empty((0, 2))
+    labels = Labels(sheet, rings=surface.rings, avoid=np.concatenate([dots, places]))
+    for place in places:
+        labels.reserve(place, 6)
+    return labels
+
+
+def _tell_tensions(
+    sheet: Sheet, robot: Robot, pose: SolvedPose, runs: list[Places], winches: Places, labels: Labels
+) -> None:
+    """Each cable's number and newtons, each winch's contraction."""
+    scale = TensionScale.of(pose.tensions)
+    colours = [scale.colour(float(tension)) for tension in pose.tensions]
     beads = draw_numbers(sheet, runs, colours, labels)
-    name_winches(labels, robot, pose.nodes, [_note(contraction) for contraction in pose.contractions])
+    name_winches(labels, robot, winches, [_note(contraction) for contraction in pose.contractions])
     for bead, tension in zip(beads, pose.tensions, strict=True):
         labels.place(bead, f"{tension:.1f} N" if tension > 0 else "slack", size=6.5, weight="bold", outside=0.1)
 

@@ -1,16 +1,28 @@
 """Pictures of a robot at rest: its parts, its targets, its network."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.plot.felt import draw_felt, draw_mesh, draw_pins
-from hydrostat.plot.hardware import cable_dots, cable_runs, draw_cables, draw_numbers, draw_winches, name_winches
+from hydrostat.arrays import Vector
+from hydrostat.plot.hardware import (
+    cable_dots,
+    cable_points,
+    draw_cables,
+    draw_numbers,
+    draw_winches,
+    name_winches,
+    winch_points,
+)
 from hydrostat.plot.labels import Labels, shorten
+from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.palette import winch_colours
-from hydrostat.plot.places import Places
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, new_sheet
-from hydrostat.plot.skin import Skin
-from hydrostat.plot.targets import draw_arrows, draw_crosses, draw_markers, rest_markers, target_points
+from hydrostat.plot.pane import Pane
+from hydrostat.plot.places import Places, Spread
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
+from hydrostat.plot.surface import Run, Surface
+from hydrostat.plot.targets import draw_arrows, draw_crosses, draw_markers, rest_markers, target_places, target_points
 from hydrostat.robot import Pose, Robot
 from hydrostat.units import counted
 
@@ -22,20 +34,19 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
         robot: to draw.
         title: above the picture; the robot's name if left out, nothing if empty.
         width: of the picture [inch].
-
-    Raises:
-        InputError: a body in space.
     """
     body = robot.body
     count = f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"
-    sheet, rings, runs = _at_rest(robot, shorten(robot.name) if title is None else title, count, width, mesh=True)
-    draw_cables(sheet, robot, runs)
-    draw_winches(sheet, robot, body.mesh.nodes)
-    draw_markers(sheet, rest_markers(robot))
-    labels = _labels(sheet, robot, rings, runs)
-    name_winches(labels, robot, body.mesh.nodes)
-    for marker in robot.markers:
-        labels.place(MILLIMETRES * np.array(marker.at), shorten(marker.name))
+    head = shorten(robot.name) if title is None else title
+    sheet, views = _at_rest(robot, head, count, width, mesh=True, cables=True)
+    for view in views:
+        draw_cables(sheet, robot, view.runs)
+        draw_winches(sheet, robot, view.winches, view.fades)
+        draw_markers(sheet, view.pane.named(rest_markers(robot)))
+    labels = _labels(sheet, robot, views[0])
+    name_winches(labels, robot, views[0].winches)
+    for name, place in views[0].pane.named(rest_markers(robot)).items():
+        labels.place(place, shorten(name))
     return sheet.figure
 
 
@@ -47,22 +58,23 @@ def draw_target(robot: Robot, pose: Pose, *, title: str | None = None, width: fl
         pose: the targets.
         title: above the picture; the pose's name if left out, nothing if empty.
         width: of the picture [inch].
-
-    Raises:
-        InputError: a body in space.
     """
     head = f"Target: {shorten(pose.name)}" if title is None else title
-    sheet, rings, _ = _at_rest(robot, head, "how far each marker has to go", width, also=target_points(pose))
-    markers = {name: place for name, place in rest_markers(robot).items() if name in pose.targets}
-    draw_arrows(sheet, markers, pose)
-    draw_crosses(sheet, pose)
-    draw_markers(sheet, markers)
-    ways = [np.linspace(markers[name], np.array(target), 9) for name, target in pose.targets.items()]
-    labels = Labels(sheet, rings=rings, avoid=MILLIMETRES * np.concatenate(ways))
-    for name, target in pose.targets.items():
-        way = float(MILLIMETRES * np.linalg.norm(markers[name] - np.array(target)))
+    sheet, views = _at_rest(robot, head, "how far each marker has to go", width, also=target_points(pose))
+    goals = target_places(pose)
+    tracked = {name: place for name, place in rest_markers(robot).items() if name in goals}
+    for view in views:
+        markers, targets = view.pane.named(tracked), view.pane.named(goals)
+        draw_arrows(sheet, markers, targets)
+        draw_crosses(sheet, targets)
+        draw_markers(sheet, markers)
+    markers, targets = views[0].pane.named(tracked), views[0].pane.named(goals)
+    ways = [np.linspace(markers[name], target, 9) for name, target in targets.items()]
+    labels = Labels(sheet, rings=views[0].surface.rings, avoid=np.concatenate(ways))
+    for name, target in targets.items():
+        way = float(MILLIMETRES * np.linalg.norm(tracked[name] - goals[name]))
         words = f"{way:.0f} mm" if way >= 0.5 else "stays"
-        labels.place(MILLIMETRES * np.array(target), f"{shorten(name)}\N{EN SPACE}{words}")
+        labels.place(target, f"{shorten(name)}\N{EN SPACE}{words}")
     return sheet.figure
 
 
@@ -73,44 +85,62 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
         robot: to draw.
         title: above the picture; a count of winches and cables if left out, nothing if empty.
         width: of the picture [inch].
-
-    Raises:
-        InputError: a body in space.
     """
     count = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
     head = shorten(robot.name) if title is None else title
-    sheet, rings, runs = _at_rest(robot, head, count, width)
+    sheet, views = _at_rest(robot, head, count, width, cables=True)
     colours = winch_colours(robot)
-    draw_cables(sheet, robot, runs, width=2.4)
-    draw_winches(sheet, robot, robot.body.mesh.nodes)
-    labels = _labels(sheet, robot, rings, runs)
-    draw_numbers(sheet, runs, [colours[cable.winch] for cable in robot.cables], labels)
-    name_winches(labels, robot, robot.body.mesh.nodes)
-    draw_markers(sheet, rest_markers(robot), size=4.0)
+    for view in views:
+        draw_cables(sheet, robot, view.runs, width=2.4)
+        draw_winches(sheet, robot, view.winches, view.fades)
+        draw_markers(sheet, view.pane.named(rest_markers(robot)), size=4.0)
+    labels = _labels(sheet, robot, views[0])
+    places = [run.points for run in views[0].runs]
+    draw_numbers(sheet, places, [colours[cable.winch] for cable in robot.cables], labels)
+    name_winches(labels, robot, views[0].winches)
     return sheet.figure
 
 
+@dataclass(frozen=True, eq=False)
+class _View:
+    """One pane with the body at rest: where its cables run, where its winches are [mm] and how far these fade."""
+
+    pane: Pane
+    surface: Surface
+    runs: list[Run]
+    winches: Places
+    fades: Vector
+
+
 def _at_rest(
-    robot: Robot, title: str, subtitle: str, width: float, *, mesh: bool = False, also: Places | None = None
-) -> tuple[Sheet, list[Places], list[Places]]:
-    """A sheet with the felt body and its pins, the body's rings and the runs of its cables [mm]."""
-    skin, nodes = Skin.of(robot.body), robot.body.mesh.nodes
-    rings = [MILLIMETRES * ring for ring in skin.shape(nodes)]
-    runs = cable_runs(robot, nodes)
+    robot: Robot,
+    title: str,
+    subtitle: str,
+    width: float,
+    *,
+    mesh: bool = False,
+    cables: bool = False,
+    also: Spread | None = None,
+) -> tuple[Sheet, list[_View]]:
+    """A sheet with the body and its pins, and where `cables` run in each of its panes."""
+    nodes = robot.body.mesh.nodes
+    lines, winches = cable_points(robot, nodes), winch_points(robot, nodes)
     extra = [] if also is None else [also]
-    winches = [MILLIMETRES * np.array([winch.at]) for winch in robot.winches]
-    sheet = new_sheet(np.concatenate([rings[0], *runs, *winches, *extra]), title=title, subtitle=subtitle, width=width)
-    draw_felt(sheet, skin, nodes)
-    if mesh:
-        draw_mesh(sheet, robot, nodes)
-    draw_pins(sheet, robot, rings)
-    return sheet, rings, runs
+    fixed = np.array([winch.at for winch in robot.winches], dtype=float).reshape(-1, nodes.shape[1])
+    sheet, panes = open_sheet(robot, [nodes], [*lines, fixed, *extra], title=title, subtitle=subtitle, width=width)
+    views = []
+    for pane in panes:
+        surface = pane.draw_body(sheet, nodes, mesh=mesh, pins=True)
+        runs = [surface.run(points) for points in lines] if cables else []
+        views.append(_View(pane, surface, runs, pane.places(winches), surface.fades(winches)))
+    return sheet, views
 
 
-def _labels(sheet: Sheet, robot: Robot, rings: list[Places], runs: list[Places]) -> Labels:
+def _labels(sheet: Sheet, robot: Robot, view: _View) -> Labels:
     """Labels that keep off cables and markers."""
-    markers = MILLIMETRES * np.array([marker.at for marker in robot.markers]).reshape(-1, 2)
-    labels = Labels(sheet, rings=rings, avoid=np.concatenate([markers, cable_dots(sheet, runs)]))
+    markers = np.array(list(view.pane.named(rest_markers(robot)).values())).reshape(-1, 2)
+    dots = cable_dots(sheet, [run.points for run in view.runs])
+    labels = Labels(sheet, rings=view.surface.rings, avoid=np.concatenate([markers, dots]))
     for marker in markers:
         labels.reserve(marker, 6)
     return labels

@@ -33,6 +33,7 @@ class Sheet:
         low: lower left corner of the axes [mm].
         high: upper right corner [mm].
         scale: millimetres of the body that one point (1/72 inch) on the picture shows.
+        kept: boxes where no label may lie: left, lower, right and upper end [mm].
     """
 
     figure: Figure
@@ -40,6 +41,7 @@ class Sheet:
     low: np.ndarray
     high: np.ndarray
     scale: float
+    kept: tuple[tuple[float, float, float, float], ...] = ()
 
     def curve(self, points: Places, **style: object) -> None:
         """A line through points [mm]; rows of NaN break it."""
@@ -116,7 +118,7 @@ def framed(points: Places, room: float) -> tuple[Place, Place]:
 
 def _rule(sheet: Sheet) -> None:
     """Thin grid lines at round millimetres, numbered along the left and lower sides."""
-    step = _step(float((sheet.high - sheet.low).max()))
+    step = round_step(float((sheet.high - sheet.low).max()))
     axes = sheet.axes
     for axis, low, high in ((axes.xaxis, *_span(sheet, 0)), (axes.yaxis, *_span(sheet, 1))):
         ticks = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
@@ -136,7 +138,7 @@ def _span(sheet: Sheet, side: int) -> tuple[float, float]:
     return float(sheet.low[side]), float(sheet.high[side])
 
 
-def _step(span: float) -> float:
+def round_step(span: float) -> float:
     """A round distance between grid lines [mm], such that there are four to ten."""
     power = 10.0 ** np.floor(np.log10(span / 4))
     return float(max(factor * power for factor in (1, 2, 5) if factor * power <= span / 4))

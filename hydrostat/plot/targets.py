@@ -5,37 +5,38 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
+from hydrostat.arrays import Points, Vector
 from hydrostat.plot.palette import DARK, ERROR, LIGHT
-from hydrostat.plot.places import Place, Places
-from hydrostat.plot.sheet import MILLIMETRES, Sheet
+from hydrostat.plot.places import Place
+from hydrostat.plot.sheet import Sheet
 from hydrostat.robot import Pose, Robot
 
 
-def rest_markers(robot: Robot) -> dict[str, Place]:
+def rest_markers(robot: Robot) -> dict[str, Vector]:
     """Each marker in the rest pose [m]."""
     return {marker.name: np.array(marker.at) for marker in robot.markers}
 
 
 def draw_markers(sheet: Sheet, places: Mapping[str, Place], *, size: float = 6.0) -> None:
-    """A white dot with a dark rim for each marker [m]."""
+    """A white dot with a dark rim for each marker [mm]."""
     if places:
-        points = MILLIMETRES * np.array(list(places.values()))
+        points = np.array(list(places.values()))
         sheet.dots(points, size, color=LIGHT, markeredgecolor=DARK, markeredgewidth=1.3, zorder=16)
 
 
-def draw_crosses(sheet: Sheet, pose: Pose) -> None:
-    """A cross at each target."""
+def draw_crosses(sheet: Sheet, targets: Mapping[str, Place]) -> None:
+    """A cross at each target [mm]."""
     cross = 3.2 * sheet.scale * np.array([[(-1, -1), (1, 1)], [(-1, 1), (1, -1)]])
-    for target in pose.targets.values():
-        strokes = cross + MILLIMETRES * np.array(target)
+    for target in targets.values():
+        strokes = cross + target
         sheet.segments(strokes, color=LIGHT, linewidth=3.6, zorder=17)
         sheet.segments(strokes, color=DARK, linewidth=1.5, zorder=17.1)
 
 
-def draw_arrows(sheet: Sheet, places: Mapping[str, Place], pose: Pose) -> None:
-    """An arrow from each marker [m] to its target, a little short of both."""
-    for name, target in pose.targets.items():
-        start, end = MILLIMETRES * places[name], MILLIMETRES * np.array(target)
+def draw_arrows(sheet: Sheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
+    """An arrow from each marker [mm] to its target [mm], a little short of both."""
+    for name, end in targets.items():
+        start = places[name]
         if np.linalg.norm(end - start) > 10 * sheet.scale:
             for colour, width, order in ((LIGHT, 3.4, 14), (DARK, 1.3, 14.1)):
                 arrow = FancyArrowPatch(
@@ -46,16 +47,21 @@ def draw_arrows(sheet: Sheet, places: Mapping[str, Place], pose: Pose) -> None:
                 sheet.axes.add_patch(arrow)
 
 
-def draw_errors(sheet: Sheet, places: Mapping[str, Place], pose: Pose) -> None:
-    """A thin red line from each marker [m] to its target."""
-    ends = np.array([[places[name], target] for name, target in pose.targets.items()])
-    sheet.segments(MILLIMETRES * ends, color=LIGHT, linewidth=2.6, zorder=15)
-    sheet.segments(MILLIMETRES * ends, color=ERROR, linewidth=1.3, zorder=15.1)
+def draw_errors(sheet: Sheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
+    """A thin red line from each marker [mm] to its target [mm]."""
+    ends = np.array([[places[name], target] for name, target in targets.items()])
+    sheet.segments(ends, color=LIGHT, linewidth=2.6, zorder=15)
+    sheet.segments(ends, color=ERROR, linewidth=1.3, zorder=15.1)
 
 
-def target_points(pose: Pose) -> Places:
-    """All targets [mm]."""
-    return MILLIMETRES * np.array(list(pose.targets.values()))
+def target_places(pose: Pose) -> dict[str, Vector]:
+    """Each target [m]."""
+    return {name: np.array(target, dtype=float) for name, target in pose.targets.items()}
+
+
+def target_points(pose: Pose) -> Points:
+    """All targets [m]."""
+    return np.array(list(pose.targets.values()), dtype=float)
 
 
 def rest_errors(robot: Robot, pose: Pose) -> dict[str, float]:

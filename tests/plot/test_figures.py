@@ -100,9 +100,9 @@ def test_a_winch_in_the_world() -> None:
     assert figure.axes[0].get_xlim()[0] < -50  # mm; it stands beyond the body
 
 
-def test_bodies_in_space_are_refused() -> None:
+def test_skin_is_of_flat_bodies_only() -> None:
     with pytest.raises(InputError, match="space"):
-        plot.draw_rest(box_robot())
+        Skin.of(box_robot().body)
 
 
 def test_skin_follows_the_drawing_and_an_affine_motion() -> None:

@@ -1,0 +1,139 @@
+"""`open_sheet`: an empty sheet with a pane for each view of a robot."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.plot.camera import Camera, along_an_axis, three_quarter
+from hydrostat.plot.compass import SIDES, draw_compass, draw_rules, free_corner
+from hydrostat.plot.pane import FlatPane, Pane, SpacePane
+from hydrostat.plot.places import Place, Spread
+from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, Sheet, new_sheet
+from hydrostat.plot.skin import Skin
+from hydrostat.robot import Robot
+
+ROOM = (34.0, 22.0)
+"""Free border around the three-quarter view, at its sides and above and below [pt]: there is place for words."""
+
+BARE = 5.0
+"""Free border around a view that stands alone [pt]."""
+
+RULES = (28.0, 12.0, 20.0, 14.0)
+"""Free border around the view along an axis [pt], on its left, right, lower and upper side: there are numbers."""
+
+
+def open_sheet(
+    robot: Robot,
+    shapes: Sequence[Spread],
+    points: Sequence[Spread] = (),
+    *,
+    title: str = "",
+    subtitle: str = "",
+    width: float = WIDTH,
+    bar: bool = False,
+    ruled: bool = True,
+) -> tuple[Sheet, list[Pane]]:
+    """A sheet that shows a robot, and its panes.
+
+    A flat body has one pane; a body in space has a three-quarter view and, beside or below it, a view along the axis
+    that shows most.
+
+    Args:
+        robot: to draw.
+        shapes: positions of the nodes [m] that must be seen.
+        points: more points that must be seen [m].
+        title: its name, in the upper left corner.
+        subtitle: a line below it; left out with the title.
+        width: of the picture [inch].
+        bar: leave room for a colour bar.
+        ruled: with millimetres; without, one pane is all there is.
+    """
+    if robot.body.mesh.dim == 2:
+        skin = Skin.of(robot.body)
+        seen = [*(skin.shape(nodes)[0] for nodes in shapes), *points]
+        room = 0.09 if ruled else 0.04
+        places = MILLIMETRES * np.concatenate(seen)
+        sheet = new_sheet(places, title=title, subtitle=subtitle, width=width, bar=bar, ruled=ruled, room=room)
+        return sheet, [FlatPane(robot, skin)]
+    cameras = _cameras(robot, shapes)[: 2 if ruled else 1]
+    skins = [nodes[robot.body.mesh.boundary_nodes] for nodes in shapes]
+    seen = np.concatenate([*skins, *points])
+    views = [camera.see(seen)[:, :2] for camera in cameras]
+    layout = _lay_out([np.ptp(view, axis=0) for view in views], 72 * (width - 0.1))
+    corners = np.array([np.zeros(2), layout.whole])
+    sheet = new_sheet(corners, title=title, subtitle=subtitle, width=width, bar=bar, ruled=False, room=0.0)
+    shifts = [low - view.min(axis=0) for low, view in zip(layout.lows, views, strict=True)]
+    if len(cameras) > 1:
+        side = layout.lows[1], layout.lows[1] + np.ptp(views[1], axis=0)
+        draw_rules(sheet, cameras[1], *side, views[1].min(axis=0))
+        extent = SIDES * sheet.scale
+        corner = free_corner(*layout.first, extent, views[0] + shifts[0])
+        draw_compass(sheet, cameras[0], corner)
+        kept = [(corner, corner + extent), side]
+        sheet = replace(sheet, kept=tuple((*map(float, low), *map(float, high)) for low, high in kept))
+    return sheet, [SpacePane(robot, camera, shift) for camera, shift in zip(cameras, shifts, strict=True)]
+
+
+def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
+    mesh = robot.body.mesh
+    outer = mesh.boundary_nodes
+    shown = [point for cable in robot.cables for point in cable.points]
+    shown = np.array([*shown, *(part.at for part in (*robot.winches, *robot.markers))], dtype=float).reshape(-1, 3)
+    ways = np.concatenate([nodes[outer] - mesh.nodes[outer] for nodes in shapes])
+    corners = np.concatenate([nodes[outer] for nodes in shapes])
+    return [three_quarter(mesh.nodes[outer], shown), along_an_axis(corners, shown, ways)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """Where views lie on a sheet.
+
+    Attributes:
+        whole: size of the sheet [mm].
+        lows: lower left corner of each view [mm].
+        first: lower left and upper right corner of what belongs to the first view, its border too [mm].
+    """
+
+    whole: Place
+    lows: list[Place]
+    first: tuple[Place, Place]
+
+
+def _lay_out(sides: Sequence[Place], paper: float) -> _Layout:
+    """Views of these sizes [mm] on paper of a width [pt], all to one scale.
+
+    Side by side or one below the other, whichever shows the body larger; side by side if that makes little difference.
+    """
+    if len(sides) == 1:
+        scale = max(sides[0][0] / (paper - 2 * BARE), sides[0][1] / (TALLEST * paper - 2 * BARE))
+        whole = np.array([paper * scale, sides[0][1] + 2 * BARE * scale])
+        return _Layout(whole, [(whole - sides[0]) / 2], (np.zeros(2), whole))
+    borders = [np.array([2 * ROOM[0], 2 * ROOM[1]]), np.array([RULES[0] + RULES[1], RULES[2] + RULES[3]])]
+    scales = []
+    for beside in (True, False):
+        need, free = _joined(sides[0], sides[1], beside), _joined(borders[0], borders[1], beside)
+        scales.append(max(need[0] / (paper - free[0]), need[1] / (TALLEST * paper - free[1])))
+    beside = scales[0] <= 1.2 * scales[1]
+    scale = scales[0] if beside else scales[1]
+    first, second = (side + border * scale for side, border in zip(sides, borders, strict=True))
+    whole = _joined(first, second, beside)
+    spare = max(paper * scale - whole[0], 0.0)
+    whole[0] += spare
+    if beside:
+        first[0] += spare / 2
+        boxes = [np.zeros(2), np.array([first[0], (whole[1] - second[1]) / 2])]
+        first[1] = whole[1]
+    else:
+        first[0] = whole[0]
+        boxes = [np.array([0.0, second[1]]), np.array([(whole[0] - second[0]) / 2, 0.0])]
+    lows = [boxes[0] + (first - sides[0]) / 2, boxes[1] + np.array([RULES[0], RULES[2]]) * scale]
+    return _Layout(whole, lows, (boxes[0], boxes[0] + first))
+
+
+def _joined(first: Place, second: Place, beside: bool) -> Place:
+    """Size of two boxes beside each other, or one below the other."""
+    along = 0 if beside else 1
+    size = np.maximum(first, second)
+    size[along] = first[along] + second[along]
+    return size

@@ -1,0 +1,79 @@
+"""`Surface`: a drawn body, and what of cables, winches and markers lies behind it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.plot.camera import Camera
+from hydrostat.plot.places import Place, Places
+from hydrostat.plot.render import Render
+from hydrostat.plot.sheet import MILLIMETRES
+
+STEP = 1.0
+"""Length of the pieces into which a run is cut to see which of them are covered, in pixels."""
+
+LEVELS = 8
+"""Steps from what is just covered to what is deep inside."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A cable on a picture.
+
+    Attributes:
+        points: its points [mm].
+        parts: all of it in pieces [mm], each with how far it has faded: 0 in front of the body, towards 1 behind it.
+        fades: how far each of its points has faded.
+    """
+
+    points: Places
+    parts: list[tuple[Places, float]]
+    fades: Vector
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """The drawn body.
+
+    Attributes:
+        rings: its silhouette [mm], the outer ring first.
+        sight: camera, shift on the sheet [mm], image and size of the body [mm]; None for a flat body, which hides
+            nothing.
+    """
+
+    rings: list[Places]
+    sight: tuple[Camera, Place, Render, float] | None = None
+
+    def fades(self, points: Points) -> Vector:
+        """How far things at points [m] fade behind the body: 0 in front of it, towards 1 behind it."""
+        if self.sight is None:
+            return np.zeros(len(points))
+        camera, _, image, size = self.sight
+        depths = image.covers(camera.see(points)) / size
+        levels = np.ceil(LEVELS * (1 - np.exp(-4 * depths))) / LEVELS
+        return np.where(depths > 0.006, 0.26 + 0.42 * levels, 0.0)
+
+    def run(self, points: Points) -> Run:
+        """A cable through points [m]."""
+        if self.sight is None:
+            places = MILLIMETRES * points
+            return Run(places, [(places, 0.0)], np.zeros(len(points)))
+        camera, shift, image, _ = self.sight
+        fine = _divided(points, STEP * image.pixel / MILLIMETRES)
+        places, fades = camera.see(fine)[:, :2] + shift, self.fades(fine)
+        cuts = np.flatnonzero(np.diff(fades)) + 1
+        starts, ends = [0, *cuts], [*cuts, len(fades)]
+        parts = [(places[start : end + 1], float(fades[start])) for start, end in zip(starts, ends, strict=True)]
+        whole = camera.see(points)[:, :2] + shift
+        return Run(whole, [part for part in parts if len(part[0]) > 1], self.fades(points))
+
+
+def _divided(points: Points, step: float) -> Points:
+    """Points close together along the lines through points [m]."""
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    parts = [
+        start + np.linspace(0, 1, max(2, int(np.ceil(length / step))), endpoint=False)[:, None] * (end - start)
+        for start, end, length in zip(points[:-1], points[1:], lengths, strict=True)
+    ]
+    return np.concatenate([*parts, points[-1:]])
