@@ -6,8 +6,9 @@ entries of A and what its children hand up (extend-add), eliminates its own colu
     [F11 .  ]   [L11  ] [S1  ] [L11^T L21^T]
     [F21 F22] = [L21 I] [   U] [      I    ]        U = F22 - L21 S1 L21^T
 
-The signs S are those of the pivots; by Sylvester's law there are as many -1 as negative eigenvalues. A definite front
-goes to LAPACK; where that meets a pivot below 0 the front is eliminated again by our own blocks with signs.
+The signs S are those of the pivots; by Sylvester's law there are as many -1 as negative eigenvalues. A few columns at a
+time are eliminated by plain loops and applied to the rest by BLAS, which is as fast as LAPACK's Cholesky followed by a
+triangular solve, and takes pivots of either sign.
 
 Own columns are kept in L ("panels": columns and rows together, column by column). What is handed up lies on one of two
 stacks, in turn with the depth in the tree: then the children of a front are always on top of the other stack.
@@ -18,9 +19,8 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.mechanics.lapack import (
+from hydrostat.mechanics.blas import (
     Scratch,
-    cholesky,
     divide_right,
     scratch,
     subtract_plain_product,
@@ -29,11 +29,8 @@ from hydrostat.mechanics.lapack import (
 )
 from hydrostat.mechanics.symbolic import Tree
 
-BLOCK = 48
-"""Columns eliminated together where signs are mixed or fronts are small."""
-
-PLAIN = 24
-"""Fronts with fewer columns are eliminated by plain loops, which beat the overhead of LAPACK there."""
+BLOCK = 24
+"""Columns eliminated together by plain loops, before BLAS applies them to the rest."""
 
 FINE = {"contract", "reassoc", "nsz"}
 """What the compiler may do with sums; NaN and infinity stay what they are."""
@@ -287,24 +284,6 @@ def _eliminate(panel, columns, below, update, sign, spare, call, least):
     """Eliminate the own columns of a front; the number of negative pivots, or -1 where one is too small."""
     height = columns + below
     at, handed = panel.ctypes.data, update.ctypes.data
-    if columns >= PLAIN:
-        # LAPACK stops half way at a pivot below 0, so keep what it overwrites.
-        for column in range(columns):
-            for row in range(column, columns):
-                spare[column * columns + row] = panel[column * height + row]
-        if cholesky(call, columns, at, height) == 0:
-            for column in range(columns):
-                pivot = panel[column * height + column]
-                if not (pivot * pivot > least and pivot < np.inf):
-                    return -1
-                sign[column] = 1.0
-            if below > 0:
-                divide_right(call, True, below, columns, at, height, at + 8 * columns, height)
-                subtract_square(call, below, columns, at + 8 * columns, height, handed, below)
-            return 0
-        for column in range(columns):
-            for row in range(column, columns):
-                panel[column * height + row] = spare[column * columns + row]
     negative = 0
     for low in range(0, columns, BLOCK):
         high = min(columns, low + BLOCK)
@@ -315,7 +294,7 @@ def _eliminate(panel, columns, below, update, sign, spare, call, least):
         if high < columns:
             _subtract_signed(panel, height, low, high, high, columns, sign, spare, call, at, 0, height)
     if below > 0:
-        if negative == 0 and columns >= 8:
+        if negative == 0:
             subtract_square(call, below, columns, at + 8 * columns, height, handed, below)
         else:
             _subtract_signed(panel, height, 0, columns, columns, height, sign, spare, call, handed, columns, below)

@@ -1,4 +1,4 @@
-"""BLAS and LAPACK for compiled loops: SciPy's own, called without Python.
+"""BLAS for compiled loops: SciPy's own, called without Python.
 
 SciPy publishes the addresses of its BLAS for Cython. Registered under a name of ours they are external symbols to
 numba, so that compiled code is cached on disk and finds them again in the next process, wherever they then are.
@@ -34,10 +34,10 @@ def scratch() -> Scratch:
     return Scratch(np.zeros(8, np.int32), np.array([1.0, -1.0, 0.0]), np.frombuffer(b"LRNTU", np.uint8).copy())
 
 
-def _routine(name: str, arguments: int, module: str = "blas") -> types.ExternalFunction:
+def _routine(name: str, arguments: int) -> types.ExternalFunction:
     """A Fortran routine as a symbol that compiled code may call."""
     symbol = f"hydrostat_{name}"
-    address = get_cython_function_address(f"scipy.linalg.cython_{module}", name)
+    address = get_cython_function_address("scipy.linalg.cython_blas", name)
     llvmlite.binding.add_symbol(symbol, address)
     return types.ExternalFunction(symbol, types.void(*[types.intp] * arguments))
 
@@ -45,7 +45,6 @@ def _routine(name: str, arguments: int, module: str = "blas") -> types.ExternalF
 _dgemm = _routine("dgemm", 13)
 _dsyrk = _routine("dsyrk", 10)
 _dtrsm = _routine("dtrsm", 11)
-_dpotrf = _routine("dpotrf", 5, "lapack")
 
 
 @njit(cache=True, inline="never")
@@ -89,14 +88,3 @@ def divide_right(call, transposed, rows, size, lower, lda, b, ldb):
     at, one, letter = integers.ctypes.data, call.reals.ctypes.data, call.letters.ctypes.data
     trans = letter + 3 if transposed else letter + 2
     _dtrsm(letter + 1, letter, trans, letter + 2, at, at + 4, one, lower, at + 8, b, at + 12)
-
-
-@njit(cache=True, inline="never")
-@no_type_check
-def cholesky(call, size, a, lda):
-    """Lower Cholesky factor in place; 0, or the number of the pivot that is not positive."""
-    integers = call.integers
-    integers[0], integers[1], integers[2] = size, lda, 0
-    at, letter = integers.ctypes.data, call.letters.ctypes.data
-    _dpotrf(letter, at, a, at + 4, at + 8)
-    return integers[2]
