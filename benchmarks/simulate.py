@@ -1,6 +1,7 @@
 """How long an equilibrium in space takes, beside SOFA's times and the goals; and how the cost grows with the body.
 
     python benchmarks/simulate.py [--quick] [--robots FOLDER] [--only finger trunk ...] [--largest 20000]
+    python benchmarks/simulate.py --profile hand
 
 The robots that SOFA ships are read from a folder beside this checkout (see sofa_robots.py) and left out if it is not
 there. Each row is measured in a process of its own: CPU time of one thread, after one solve that is not counted.
@@ -14,8 +15,11 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import nullcontext
+from cProfile import Profile
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from pstats import Stats
 from typing import Any
 
 from machine import machine
@@ -25,7 +29,7 @@ os.environ["NUMBA_NUM_THREADS"] = "1"
 import numpy as np
 
 ROBOTS = Path(__file__).parents[2] / "shared" / "robots"
-SIZES = {1_000: 9.3e-3, 2_000: 7.0e-3, 5_000: 4.95e-3, 10_000: 3.8e-3, 20_000: 2.95e-3}
+SIZES = {1_000: 9.45e-3, 2_000: 7.33e-3, 5_000: 5.19e-3, 10_000: 4.0e-3, 20_000: 3.11e-3}
 """About how many nodes a hand has at which spacing of its lattice [m]."""
 
 FINGER_TIPS = {0: (-101.011, -8.132, 7.0), 5: (-100.811, 3.302, 6.617), 10: (-98.458, 14.537, 6.458)}
@@ -45,7 +49,7 @@ Walk = Callable[[Any, np.random.Generator, int], Iterator[Solve]]
 """The solves for a robot, random numbers and a count."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Case:
     """One row of the table.
 
@@ -70,7 +74,19 @@ class Case:
 
 @dataclass
 class Row:
-    """What was measured: of each solve the CPU time [ms], Newton's iterations, convergence, residual and least J."""
+    """What was measured.
+
+    Attributes:
+        nodes: of the mesh.
+        elements: of the mesh.
+        times: CPU time of each solve [ms].
+        iterations: Newton's, of each solve.
+        converged: how many solves did.
+        residual: largest force left over by the largest cable force, of the worst solve.
+        least_j: of any element in any solve.
+        made: CPU time to make robot and simulation [s].
+        memory: most that the process held [MB].
+    """
 
     nodes: int = 0
     elements: int = 0
@@ -79,6 +95,7 @@ class Row:
     converged: int = 0
     residual: float = 0.0
     least_j: float = np.inf
+    made: float = np.nan
     memory: float = np.nan
 
 
@@ -121,60 +138,12 @@ def lengths(robot: Any) -> np.ndarray:
 CASES = {
     case.name: case
     for case in (
-        Case(
-            name="finger",
-            what="5 mm step, 0 to 20 mm, from the pose before",
-            sofa="16 to 96",
-            goal=5,
-            repeats=10,
-            few=2,
-            walk=finger_steps,
-        ),
-        Case(
-            name="trunk",
-            what="one cable 10 mm, from rest, no gravity",
-            sofa="2300",
-            goal=80,
-            repeats=10,
-            few=2,
-            walk=one_cable(10e-3),
-        ),
-        Case(
-            name="diamond",
-            what="one cable 20 mm, from rest",
-            sofa="580",
-            goal=100,
-            repeats=10,
-            few=2,
-            walk=one_cable(20e-3),
-        ),
-        Case(
-            name="diamond_34k",
-            what="one cable 20 mm, from rest",
-            sofa="15000",
-            goal=3000,
-            repeats=3,
-            few=1,
-            walk=one_cable(20e-3),
-        ),
-        Case(
-            name="hand",
-            what="10 cables at random, 0 to 30 %, from rest",
-            sofa="",
-            goal=60,
-            repeats=30,
-            few=5,
-            walk=random_poses,
-        ),
-        Case(
-            name="stream",
-            what="hand, steps of 1 % of every cable, from the pose before",
-            sofa="",
-            goal=15,
-            repeats=100,
-            few=20,
-            walk=stream,
-        ),
+        Case("finger", "5 mm step, 0 to 20 mm, from the pose before", "16 to 96", 5, 10, 2, finger_steps),
+        Case("trunk", "one cable 10 mm, from rest, no gravity", "2300", 80, 10, 2, one_cable(10e-3)),
+        Case("diamond", "one cable 20 mm, from rest", "580", 100, 10, 2, one_cable(20e-3)),
+        Case("diamond_34k", "one cable 20 mm, from rest", "15000", 3000, 3, 1, one_cable(20e-3)),
+        Case("hand", "10 cables at random, 0 to 30 %, from rest", "", 60, 30, 5, random_poses),
+        Case("stream", "hand, steps of 1 % of every cable, from the pose before", "", 15, 100, 20, stream),
     )
 }
 
@@ -194,15 +163,16 @@ def read_robot(name: str, folder: Path) -> Any:
     return replace(robot, gravity=None) if name == "trunk" else robot
 
 
-def measure(name: str, folder: Path, count: int) -> Row:
-    """Solve all that a case asks for, in this process."""
+def measure(name: str, folder: Path, count: int, profile: Profile | None = None) -> Row:
+    """Solve all that a case asks for, in this process; a profile, if given, sees the solves that count."""
     from hydrostat import Simulation
 
+    began = time.process_time()
     robot = read_robot(name, folder)
     walk = CASES[name].walk if name in CASES else one_cable(0.15 * lengths(robot)[0])
     simulation = Simulation(robot)
     mesh = robot.body.mesh
-    row = Row(nodes=len(mesh.nodes), elements=len(mesh.elements))
+    row = Row(nodes=len(mesh.nodes), elements=len(mesh.elements), made=time.process_time() - began)
     warm = False
     pose = None
     for solve in walk(robot, np.random.default_rng(0), count):
@@ -211,7 +181,8 @@ def measure(name: str, folder: Path, count: int) -> Row:
             simulation.solve(solve.goal, start=start, strict=False)
         warm = warm or solve.goal.any()
         began = time.process_time()
-        pose = simulation.solve(solve.goal, start=start, strict=False)
+        with profile if profile and solve.counted else nullcontext():
+            pose = simulation.solve(solve.goal, start=start, strict=False)
         taken = 1e3 * (time.process_time() - began)
         if solve.counted:
             row.times.append(taken)
@@ -301,9 +272,7 @@ def print_first_solve(folder: Path) -> None:
 
 def print_sizes(largest: int, folder: Path, *, quick: bool) -> None:
     """One cable of the hand, at several spacings."""
-    print(
-        "| nodes | elements | ms | iterations | ms each | converged | MB |\n|---|---|---|---|---|---|---|", flush=True
-    )
+    print_heads("nodes", "elements", "ms", "iterations", "ms each", "converged", "made s", "MB")
     points = []
     for size, spacing in SIZES.items():
         if size > largest:
@@ -316,13 +285,14 @@ def print_sizes(largest: int, folder: Path, *, quick: bool) -> None:
         points.append((row.nodes, took, took / max(steps, 1)))
         print(
             f"| {row.nodes} | {row.elements} | {took:.0f} | {steps:.0f} | {took / max(steps, 1):.1f} "
-            f"| {row.converged} of {len(row.times)} | {row.memory:.0f} |",
+            f"| {row.converged} of {len(row.times)} | {row.made:.1f} | {row.memory:.0f} |",
             flush=True,
         )
+    print("\nMade: CPU time to make mesh, robot and simulation. Contraction: 15 % of the cable, from rest.")
     if len(points) > 1:
         logs = np.log(points)
         slopes = [np.polyfit(logs[:, 0], logs[:, column], 1)[0] for column in (1, 2)]
-        print(f"\nCPU time grows as nodes^{slopes[0]:.2f}, that of an iteration as nodes^{slopes[1]:.2f}.\n")
+        print(f"CPU time grows as nodes^{slopes[0]:.2f}, that of an iteration as nodes^{slopes[1]:.2f}.\n")
 
 
 def print_finger_tips(folder: Path) -> None:
@@ -340,12 +310,20 @@ def print_finger_tips(folder: Path) -> None:
     print()
 
 
+def print_profile(name: str, folder: Path) -> None:
+    """The functions that take most of the solves of a row, in this process."""
+    profile = Profile()
+    measure(name, folder, CASES[name].few, profile)
+    Stats(profile).strip_dirs().sort_stats("tottime").print_stats(25)
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="few repeats, no large bodies")
     parser.add_argument("--robots", type=Path, default=ROBOTS, help="folder of SOFA's robots")
     parser.add_argument("--only", nargs="+", choices=CASES, default=list(CASES), help="rows of the first table alone")
     parser.add_argument("--largest", type=int, default=20_000, help="nodes of the largest hand; 0: no such table")
+    parser.add_argument("--profile", choices=CASES, help="where the time of one row goes, by function")
     parser.add_argument("--measure", nargs=2, help=argparse.SUPPRESS)
     parser.add_argument("--first", help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
@@ -354,6 +332,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         return
     if options.first:
         print(json.dumps(first_solve(options.first, options.robots)))
+        return
+    if options.profile:
+        print_profile(options.profile, options.robots)
         return
     there = {"hand", "stream"} | {name for name in CASES if (options.robots / name / "case.json").is_file()}
     print(f"{machine()}\n")
