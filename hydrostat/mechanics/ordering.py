@@ -95,51 +95,59 @@ def nested_dissection(starts, neighbours, points, leaf, shares):
     order = np.arange(nodes)
     place = np.arange(nodes)
     mate = np.full(nodes, -1, np.int64)
+    parent = np.full(nodes, -1, np.int64)
+    bit = np.full(nodes, -1, np.int64)
     side = np.zeros(nodes, np.int8)
-    todo = [(0, nodes)]
-    while len(todo) > 0:
-        low, high = todo.pop()
+    todo = np.zeros((nodes + 1, 2), np.int64)
+    todo[0, 1] = nodes
+    waiting = 1
+    while waiting > 0:
+        waiting -= 1
+        low, high = todo[waiting]
         if high - low > leaf:
             part = order[low:high].copy()
             best, least = side[:0], np.inf
             for axis in range(axes):
                 for share in shares:
-                    sides, size = _separator(starts, neighbours, part, points[:, axis], share, mate, side)
+                    sides, size = _separator(starts, neighbours, part, points[:, axis], share, mate, parent, side)
                     near = np.sum(sides == 1)
                     far = len(part) - near - size
                     if near > 0 and far > 0 and size / (float(near) * far) < least:
                         best, least = sides, size / (float(near) * far)
             if len(best) > 0 and np.sum(best == 3) < 0.4 * len(part):
                 ends = _arrange(order, place, part, best, points, low)
-                todo.append((low, ends[0]))
-                todo.append((ends[0], ends[1]))
+                todo[waiting, 0], todo[waiting, 1] = low, ends[0]
+                todo[waiting + 1, 0], todo[waiting + 1, 1] = ends[0], ends[1]
+                waiting += 2
                 continue
         if high > low:
-            _minimum_degree(starts, neighbours, order, place, low, high)
+            _minimum_degree(starts, neighbours, order, place, low, high, bit)
     return order
 
 
 @njit(cache=True)
 @no_type_check
-def _separator(starts, neighbours, part, values, share, mate, side):
+def _separator(starts, neighbours, part, values, share, mate, parent, side):
     """Side of each node of `part` (1, 2; 3 on the separator) where `share` of them is cut off; the separator's size.
 
-    `mate` is -1 and `side` 0 everywhere before and after.
+    `mate` and `parent` are -1 and `side` 0 everywhere before and after.
     """
-    ranks = np.argsort(values[part], kind="mergesort")
+    ranks = np.argsort(values[part])
     half = int(len(part) * share)
     for rank in range(len(part)):
         side[part[ranks[rank]]] = 1 if rank < half else 2
-    parent = np.full(len(values), -1, np.int64)
     queue = np.empty(len(part), np.int64)
     touched = np.empty(len(part), np.int64)
-    border = [part[0] for _ in range(0)]
+    border = np.empty(len(part), np.int64)
+    bordering = 0
     for node in part:
         if side[node] == 1:
             for entry in range(starts[node], starts[node + 1]):
                 if side[neighbours[entry]] == 2:
-                    border.append(node)
+                    border[bordering] = node
+                    bordering += 1
                     break
+    border = border[:bordering]
     for node in border:
         for entry in range(starts[node], starts[node + 1]):
             other = neighbours[entry]
@@ -170,6 +178,7 @@ def _separator(starts, neighbours, part, values, share, mate, side):
     sides = side[part]
     for node in part:
         mate[node] = -1
+        parent[node] = -1
         side[node] = 0
     return sides, size
 
@@ -226,7 +235,7 @@ def _arrange(order, place, part, sides, points, low):
         width = values.max() - values.min() if len(values) > 0 else 0.0
         if width > widest:
             widest, axis = width, column
-    for rank in np.argsort(points[separator, axis], kind="mergesort"):
+    for rank in np.argsort(points[separator, axis]):
         order[at] = separator[rank]
         place[separator[rank]] = at
         at += 1
@@ -235,30 +244,31 @@ def _arrange(order, place, part, sides, points, low):
 
 @njit(cache=True)
 @no_type_check
-def _minimum_degree(starts, neighbours, order, place, low, high):
+def _minimum_degree(starts, neighbours, order, place, low, high, bit):
     """Reorder the nodes order[low:high] by least degree in what is left, counting neighbours that are ordered later.
 
-    Neighbourhoods are sets of bits: eliminating a node joins its neighbourhood to that of each of its neighbours.
+    Neighbourhoods are sets of bits: eliminating a node joins its neighbourhood to that of each of its neighbours. `bit`
+    is -1 everywhere before and after.
     """
     size = high - low
     part = order[low:high].copy()
-    outside = {part[0]: 0}
-    outside.clear()
+    bits = size
     for node in part:
+        bit[node] = place[node] - low
         for entry in range(starts[node], starts[node + 1]):
             other = neighbours[entry]
-            if not low <= place[other] < high and other not in outside:
-                outside[other] = size + len(outside)
-    words = (size + len(outside) + 63) // 64
+            if not low <= place[other] < high and bit[other] < 0:
+                bit[other] = bits
+                bits += 1
+    words = (bits + 63) // 64
     sets = np.zeros((size, words), np.uint64)
     one = np.uint64(1)
     degree = np.zeros(size, np.int64)
     for position in range(size):
         node = part[position]
         for entry in range(starts[node], starts[node + 1]):
-            other = neighbours[entry]
-            bit = place[other] - low if low <= place[other] < high else outside[other]
-            sets[position, bit >> 6] |= one << np.uint64(bit & 63)
+            other = bit[neighbours[entry]]
+            sets[position, other >> 6] |= one << np.uint64(other & 63)
         degree[position] = starts[node + 1] - starts[node]
     for step in range(size):
         pivot = np.argmin(degree)
@@ -278,6 +288,10 @@ def _minimum_degree(starts, neighbours, order, place, low, high):
                 sets[position, word] = joined
                 count += _bits(joined)
             degree[position] = count
+    for node in part:
+        bit[node] = -1
+        for entry in range(starts[node], starts[node + 1]):
+            bit[neighbours[entry]] = -1
     for step in range(low, high):
         place[order[step]] = step
 

@@ -207,12 +207,18 @@ def _collect(starts, neighbours, order, parent, count, head, dim):
     tops = np.flatnonzero(above > -2)
     number = np.full(nodes, -1, np.int64)
     number[tops] = np.arange(len(tops))
-    lifted = np.array([number[above[top]] if above[top] >= 0 else -1 for top in tops])
+    total = len(tops)
+    lifted = np.full(total, -1, np.int64)
+    for which in range(total):
+        if above[tops[which]] >= 0:
+            lifted[which] = number[above[tops[which]]]
     walk = _postorder(lifted)
-    total = len(walk)
     rank = np.empty(total, np.int64)
     rank[walk] = np.arange(total)
-    up = np.array([rank[lifted[old]] if lifted[old] >= 0 else -1 for old in walk])
+    up = np.full(total, -1, np.int64)
+    for which in range(total):
+        if lifted[walk[which]] >= 0:
+            up[which] = rank[lifted[walk[which]]]
     first = np.zeros(total + 1, np.int64)
     for node in range(nodes):
         first[rank[number[head[node]]] + 1] += 1
