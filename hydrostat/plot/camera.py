@@ -62,7 +62,7 @@ def three_quarter(shape: Spots, shown: Spots) -> Camera:
 
 
 def along_an_axis(shape: Spots, shown: Spots, ways: Spots) -> Camera:
-    """The camera along x, y or z that shows most of where points go or, where nothing moves, most of the body.
+    """The camera along x, y or z that shows most of the body and of where its points go.
 
     Args:
         shape: points all over the body [m].
@@ -74,8 +74,9 @@ def along_an_axis(shape: Spots, shown: Spots, ways: Spots) -> Camera:
     scores = []
     for axis in range(3):
         others = [other for other in range(3) if other != axis]
-        scores.append((np.round(moved[others].sum() / max(moved.sum(), 1e-18), 2), float(np.prod(sides[others]))))
-    axis = max(range(3), key=lambda index: scores[index])
+        share = moved[others].sum() / moved.sum() if moved.sum() > 0 else 1.0
+        scores.append(share * np.sqrt(np.prod(sides[others])))
+    axis = int(np.argmax(np.round(np.array(scores) / max(scores), 4)))
     middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
     lean = float((shown - middle).mean(axis=0)[axis]) if len(shown) else 0.0
     usual = (1.0, -1.0, 1.0)[axis]

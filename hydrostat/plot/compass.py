@@ -4,14 +4,14 @@ import numpy as np
 
 from hydrostat.plot.camera import Camera
 from hydrostat.plot.palette import GRID, INK, MUTED
-from hydrostat.plot.places import Place, Places
+from hydrostat.plot.places import Place
 from hydrostat.plot.sheet import Sheet, round_step
 
 ARM = 15.0
 """Length of an axis of the compass [pt]."""
 
 
-SIDES = np.array([112.0, 42.0])
+SIDES = np.array([112.0, 38.0])
 """Room that compass and bar take [pt]."""
 
 
@@ -32,17 +32,6 @@ def draw_compass(sheet: Sheet, camera: Camera, low: Place) -> None:
     sheet.curve(bar, color=INK, linewidth=1.6, solid_capstyle="butt", zorder=12)
     words = left + np.array([length / 2, 4 * point])
     sheet.text((words[0], words[1]), f"{length:g} mm", fontsize=7, color=INK, ha="center", va="bottom", zorder=12)
-
-
-def free_corner(low: Place, high: Place, extent: Place, points: Places) -> Place:
-    """Lower left corner of a box of this extent in that corner of a frame where it covers fewest points.
-
-    All in millimetres; of equal corners, the first of lower left, lower right, upper left and upper right.
-    """
-    rights = (low[0], high[0] - extent[0])
-    lows = [np.array([x, y]) for y in (low[1], high[1] - extent[1]) for x in rights]
-    covered = [int(((points >= corner) & (points <= corner + extent)).all(axis=1).sum()) for corner in lows]
-    return lows[int(np.argmin(covered))]
 
 
 def draw_rules(sheet: Sheet, camera: Camera, low: Place, high: Place, origin: Place) -> None:

@@ -162,6 +162,7 @@ def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str, fade: fl
 def _draw_part(sheet: Sheet, part: Places, colour: str, width: float, fade: float) -> None:
     """A piece of a cable: with a pale border where it lies in front, thinner where the body covers it."""
     if fade > 0:
+        sheet.curve(part, color=_faded(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
         sheet.curve(part, color=_faded(colour, fade), linewidth=0.8 * width, zorder=7 - fade)
     else:
         sheet.curve(part, color=LIGHT, linewidth=width + 1.8, alpha=0.85, zorder=8)

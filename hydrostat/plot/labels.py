@@ -47,7 +47,7 @@ class Labels:
     def flag(self, at: Place, words: str, colour: str) -> None:
         """Write words on a coloured flag that is tied to a point."""
         extent = np.array([0.64 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
-        centre = self._find(at, extent, (12.0, 18.0, 27.0, 40.0), 0.0)
+        centre = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0), 0.0)
         self._sheet.curve(np.array([at, centre]), color=colour, linewidth=0.9, zorder=10)
         self._sheet.text(
             (centre[0], centre[1]), words, fontsize=7, color=LIGHT, weight="bold", ha="center", va="center_baseline",
@@ -82,7 +82,7 @@ class Labels:
         covered = ((self._avoid >= boxes[:, None, :2]) & (self._avoid <= boxes[:, None, 2:])).all(axis=2)
         frame = shapely.box(*self._sheet.low, *self._sheet.high)
         beyond = 1 - shapely.area(shapely.intersection(rectangles, frame)) / areas
-        return costs + 0.2 * np.minimum(covered.sum(axis=1), 8) + 8 * beyond
+        return costs + 0.2 * np.minimum(covered.sum(axis=1), 8) + 20 * beyond
 
 
 def shorten(words: str) -> str:

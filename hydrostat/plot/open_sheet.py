@@ -6,15 +6,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.plot.camera import Camera, along_an_axis, three_quarter
-from hydrostat.plot.compass import SIDES, draw_compass, draw_rules, free_corner
+from hydrostat.plot.compass import SIDES, draw_compass, draw_rules
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
 from hydrostat.plot.places import Place, Spread
 from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, Sheet, new_sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.robot import Robot
 
-ROOM = (34.0, 22.0)
-"""Free border around the three-quarter view, at its sides and above and below [pt]: there is place for words."""
+ROOM = (34.0, 34.0, 40.0, 20.0)
+"""Free border around the three-quarter view [pt], on its left, right, lower and upper side: there is place for words,
+below for the compass."""
 
 BARE = 5.0
 """Free border around a view that stands alone [pt]."""
@@ -67,11 +68,11 @@ def open_sheet(
     if len(cameras) > 1:
         side = layout.lows[1], layout.lows[1] + np.ptp(views[1], axis=0)
         draw_rules(sheet, cameras[1], *side, views[1].min(axis=0))
-        extent = SIDES * sheet.scale
-        corner = free_corner(*layout.first, extent, views[0] + shifts[0])
-        draw_compass(sheet, cameras[0], corner)
-        kept = [(corner, corner + extent), side]
-        sheet = replace(sheet, kept=tuple((*map(float, low), *map(float, high)) for low, high in kept))
+        draw_compass(sheet, cameras[0], layout.corner)
+        kept = [(layout.corner, layout.corner + SIDES * sheet.scale), side]
+        boxes = tuple((*map(float, low), *map(float, high)) for low, high in kept)
+        inset = 4 * sheet.scale
+        sheet = replace(sheet, low=sheet.low + inset, high=sheet.high - inset, kept=boxes)
     return sheet, [SpacePane(robot, camera, shift) for camera, shift in zip(cameras, shifts, strict=True)]
 
 
@@ -80,8 +81,8 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
     outer = mesh.boundary_nodes
     shown = [point for cable in robot.cables for point in cable.points]
     shown = np.array([*shown, *(part.at for part in (*robot.winches, *robot.markers))], dtype=float).reshape(-1, 3)
-    ways = np.concatenate([nodes[outer] - mesh.nodes[outer] for nodes in shapes])
-    corners = np.concatenate([nodes[outer] for nodes in shapes])
+    corners = np.concatenate([mesh.nodes[outer], *(nodes[outer] for nodes in shapes)])
+    ways = corners - np.tile(mesh.nodes[outer], (1 + len(shapes), 1))
     return [three_quarter(mesh.nodes[outer], shown), along_an_axis(corners, shown, ways)]
 
 
@@ -92,12 +93,12 @@ class _Layout:
     Attributes:
         whole: size of the sheet [mm].
         lows: lower left corner of each view [mm].
-        first: lower left and upper right corner of what belongs to the first view, its border too [mm].
+        corner: lower left corner of what belongs to the first view, its border too [mm].
     """
 
     whole: Place
     lows: list[Place]
-    first: tuple[Place, Place]
+    corner: Place
 
 
 def _lay_out(sides: Sequence[Place], paper: float) -> _Layout:
@@ -108,13 +109,13 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _Layout:
     if len(sides) == 1:
         scale = max(sides[0][0] / (paper - 2 * BARE), sides[0][1] / (TALLEST * paper - 2 * BARE))
         whole = np.array([paper * scale, sides[0][1] + 2 * BARE * scale])
-        return _Layout(whole, [(whole - sides[0]) / 2], (np.zeros(2), whole))
-    borders = [np.array([2 * ROOM[0], 2 * ROOM[1]]), np.array([RULES[0] + RULES[1], RULES[2] + RULES[3]])]
+        return _Layout(whole, [(whole - sides[0]) / 2], np.zeros(2))
+    borders = [_around(ROOM), _around(RULES)]
     scales = []
     for beside in (True, False):
         need, free = _joined(sides[0], sides[1], beside), _joined(borders[0], borders[1], beside)
         scales.append(max(need[0] / (paper - free[0]), need[1] / (TALLEST * paper - free[1])))
-    beside = scales[0] <= 1.2 * scales[1]
+    beside = bool(scales[0] <= 1.4 * scales[1])
     scale = scales[0] if beside else scales[1]
     first, second = (side + border * scale for side, border in zip(sides, borders, strict=True))
     whole = _joined(first, second, beside)
@@ -127,8 +128,16 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _Layout:
     else:
         first[0] = whole[0]
         boxes = [np.array([0.0, second[1]]), np.array([(whole[0] - second[0]) / 2, 0.0])]
-    lows = [boxes[0] + (first - sides[0]) / 2, boxes[1] + np.array([RULES[0], RULES[2]]) * scale]
-    return _Layout(whole, lows, (boxes[0], boxes[0] + first))
+    lows = []
+    for box, border, whole_side, side in zip(boxes, (ROOM, RULES), (first, second), sides, strict=True):
+        free = whole_side - side - _around(border) * scale
+        lows.append(box + np.array([border[0], border[2]]) * scale + free / 2)
+    return _Layout(whole, lows, boxes[0])
+
+
+def _around(border: tuple[float, float, float, float]) -> Place:
+    """What a border of left, right, lower and upper width adds to a box."""
+    return np.array([border[0] + border[1], border[2] + border[3]])
 
 
 def _joined(first: Place, second: Place, beside: bool) -> Place:

@@ -80,11 +80,12 @@ def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, wi
         frame: points that the picture must hold [m], so that several share one frame; the body if left out.
         width: of the picture [inch].
     """
-    shapes, points = ([nodes], []) if frame is None else ([], [frame])
+    cables, winches = cable_points(robot, nodes), winch_points(robot, nodes)
+    beside = [*cables, winches] if nodes.shape[1] == 3 else []
+    shapes, points = ([nodes], beside) if frame is None else ([], [frame])
     sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
     surface = panes[0].draw_body(sheet, nodes)
-    draw_cables(sheet, robot, [surface.run(points) for points in cable_points(robot, nodes)])
-    winches = winch_points(robot, nodes)
+    draw_cables(sheet, robot, [surface.run(points) for points in cables])
     draw_winches(sheet, robot, panes[0].places(winches), surface.fades(winches))
     return sheet.figure
 

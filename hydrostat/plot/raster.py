@@ -108,22 +108,25 @@ def sky_shares(depth, normals, reach):
     """
     height, width = depth.shape
     sky = np.ones((height, width), dtype=np.float32)
+    offsets = np.empty((SAMPLES, 2), dtype=np.int64)
+    for sample in range(SAMPLES):
+        radius = reach * np.sqrt((sample + 0.5) / SAMPLES)
+        offsets[sample, 0] = int(np.round(radius * np.cos(2.399963229728653 * sample)))
+        offsets[sample, 1] = int(np.round(radius * np.sin(2.399963229728653 * sample)))
     for row in range(height):
         for column in range(width):
             if depth[row, column] == -np.inf:
                 continue
             taken = 0.0
             for sample in range(SAMPLES):
-                radius = reach * np.sqrt((sample + 0.5) / SAMPLES)
-                angle = 2.399963229728653 * sample
-                dx, dy = int(np.round(radius * np.cos(angle))), int(np.round(radius * np.sin(angle)))
+                dx, dy = offsets[sample]
                 x, y = column + dx, row + dy
                 if x < 0 or y < 0 or x >= width or y >= height or depth[y, x] == -np.inf:
                     continue
                 rise = depth[y, x] - depth[row, column]
                 far = np.sqrt(dx * dx + dy * dy + rise * rise) + 1e-6
-                n = normals[row, column]
-                lean = (n[0] * dx + n[1] * dy + n[2] * rise) / far - 0.12
+                n_x, n_y, n_z = normals[row, column, 0], normals[row, column, 1], normals[row, column, 2]
+                lean = (n_x * dx + n_y * dy + n_z * rise) / far - 0.12
                 if lean > 0 and far < 2 * reach:
                     taken += lean * (1 - far / (2 * reach))
             sky[row, column] = max(0.0, 1.0 - 2.6 * taken / SAMPLES)
@@ -153,26 +156,29 @@ def paint(depth, shown, rim, sky, look, table, inks, shares):
     height, width = sky.shape
     image = np.zeros((height, width, 4))
     covers = np.empty(3)
+    around = np.empty((8, 2), dtype=np.int64)
+    for turn in range(8):
+        around[turn, 0] = int(np.round(0.55 * dot * np.cos(turn * np.pi / 4)))
+        around[turn, 1] = int(np.round(0.55 * dot * np.sin(turn * np.pi / 4)))
     for row in range(height * fine):
         for column in range(width * fine):
             if depth[row, column] == -np.inf:
                 continue
-            n = shown[row, column, :3]
-            length = max(np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), 1e-12)
-            x, y, z = n[0] / length, n[1] / length, n[2] / length
+            x, y, z = shown[row, column, 0], shown[row, column, 1], shown[row, column, 2]
+            length = max(np.sqrt(x * x + y * y + z * z), 1e-12)
+            x, y, z = x / length, y / length, z / length
             light = _light(x, y, z, look[3], look[4]) * (0.35 + 0.65 * sky[row // fine, column // fine])
             place = min(max(light, 0.0), 1.0) * (len(table) - 1)
             lower = min(int(place), len(table) - 2)
             covers[0] = _hatching(row, column, dot) if shown[row, column, 3] > 0.5 else 0.0
             covers[1] = min(max(0.24 * dot + 0.5 - rim[row, column], 0.0), 1.0)
-            covers[2] = _edge(depth, row, column, x, y, z, jump, 0.55 * dot)
-            pixel = image[row // fine, column // fine]
+            covers[2] = _edge(depth, row, column, x, y, z, jump, around)
             for channel in range(3):
                 value = table[lower, channel] + (place - lower) * (table[lower + 1, channel] - table[lower, channel])
                 for ink in range(3):
                     value += shares[ink] * covers[ink] * (inks[ink, channel] - value)
-                pixel[channel] += value
-            pixel[3] += 1.0
+                image[row // fine, column // fine, channel] += value
+            image[row // fine, column // fine, 3] += 1.0
     for row in range(height):
         for column in range(width):
             if image[row, column, 3] > 0:
@@ -208,13 +214,12 @@ def _hatching(row, column, dot):
 
 @njit(cache=True)
 @no_type_check
-def _edge(depth, row, column, x, y, z, jump, reach):
-    """1 where a nearer part of the body begins within reach, 0 elsewhere."""
+def _edge(depth, row, column, x, y, z, jump, around):
+    """1 where a nearer part of the body begins at a neighbour, 0 elsewhere."""
     height, width = depth.shape
     lean_x, lean_y = x / max(z, 0.15), y / max(z, 0.15)
     for turn in range(8):
-        dx = int(np.round(reach * np.cos(turn * np.pi / 4)))
-        dy = int(np.round(reach * np.sin(turn * np.pi / 4)))
+        dx, dy = around[turn]
         u, v = column + dx, row + dy
         if u < 0 or v < 0 or u >= width or v >= height or depth[v, u] == -np.inf:
             continue

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Vector
@@ -54,13 +55,16 @@ class Render:
         return np.maximum(surface - spots[:, 2], 0.0)
 
     def rings(self) -> list[Places]:
-        """The silhouette as rings [mm], the longest first."""
+        """The silhouette as rings [mm], the widest first."""
         from contourpy import contour_generator
 
         cover = np.pad(self.colours[..., 3], 1)
         lines = contour_generator(z=cover).lines(0.5)
-        rings = [self.low + (np.asarray(line)[:-1] - 0.5) * self.pixel for line in lines if len(line) > 4]
-        return sorted(rings, key=len, reverse=True)
+        smooth = [
+            shapely.simplify(shapely.LineString(np.asarray(line, dtype=float)), 0.15) for line in lines if len(line) > 4
+        ]
+        rings = [self.low + (shapely.get_coordinates(line)[:-1] - 0.5) * self.pixel for line in smooth]
+        return sorted(rings, key=lambda ring: float(np.prod(np.ptp(ring, axis=0))), reverse=True)
 
 
 def render(
@@ -94,7 +98,8 @@ def render(
     origin = np.array([low[0], low[1], 0.0])
     corners = ((spots - origin) / fine)[facets]
     held = np.zeros(len(spots)) if held is None else held
-    values = np.concatenate([_normals(corners, facets), held[facets][..., None]], axis=2)
+    normals = _normals(corners, facets) if shaded else np.empty((*facets.shape, 0))
+    values = np.concatenate([normals, held[facets][..., None]], axis=2)
     depth, shown, rim = rasterise(corners, values, FINER * width, FINER * height)
     middle = depth[FINER // 2 :: FINER, FINER // 2 :: FINER] * fine
     if not shaded:

@@ -1,19 +1,26 @@
 """The top of the report: the robot at rest and in its poses, and how near it comes to them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from hydrostat.arrays import Nodes
 from hydrostat.design.network import Network
 from hydrostat.design.score_card import rest_error
 from hydrostat.plot.html import Html, tag
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
+from hydrostat.plot.places import Spread
 from hydrostat.plot.pose_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.skin import Skin
+from hydrostat.robot import Robot
 from hydrostat.units import counted
 
 PORTRAIT = 4.6
 """Width of a portrait [inch]."""
+
+HOW = ", by its own winches, in simulation"
 
 
 def hero(network: Network, title: str) -> Html:
@@ -57,20 +64,35 @@ def _rms(errors: np.ndarray) -> float:
 
 def _portraits(network: Network) -> Html:
     robot, first = network.robot, network.reached[0]
-    skin, rest = Skin.of(robot.body), robot.body.mesh.nodes
-    frame = np.concatenate([skin.shape(reached.pose.nodes)[0] for reached in network.reached] + [skin.shape(rest)[0]])
+    rest = robot.body.mesh.nodes
+    frame = _frame(robot, [*(reached.pose.nodes for reached in network.reached), rest])
     still, posed = (
         Html(inline_svg(draw_portrait(robot, nodes, frame=frame, width=PORTRAIT), name=name, label=label))
         for nodes, name, label in ((rest, "hero-rest", "At rest"), (first.pose.nodes, "hero-pose", "In a pose"))
     )
+    if rest.shape[1] == 3:
+        return tag("div", _figure_of(still, "At rest", ", as it is made"), _figure_of(posed, first.target.name, HOW),
+            class_="grid")  # fmt: skip
     frames = motion_frames(robot, [reached.pose.contractions for reached in network.reached])
     moving = motion_svg(robot, frames, label="The robot moves from rest into each of its poses and back")
     names = ", ".join(reached.target.name for reached in network.reached)
-    how = ", by its own winches, in simulation"
     return tag(
         "div",
-        tag("figure", still, tag("figcaption", tag("b", "At rest"), ", as it is sewn")),
-        tag("figure", posed, tag("figcaption", tag("b", first.target.name), how), class_="still"),
-        tag("figure", moving, tag("figcaption", tag("b", names), how), class_="moving"),
+        _figure_of(still, "At rest", ", as it is sewn"),
+        _figure_of(posed, first.target.name, HOW, class_="still"),
+        _figure_of(moving, names, HOW, class_="moving"),
         class_="grid",
     )
+
+
+def _figure_of(picture: Html, head: str, words: str, **more: str) -> Html:
+    return tag("figure", picture, tag("figcaption", tag("b", head), words), **more)
+
+
+def _frame(robot: Robot, shapes: Sequence[Nodes]) -> Spread:
+    """Points that hold all shapes [m]."""
+    if robot.body.mesh.dim == 3:
+        outer = robot.body.mesh.boundary_nodes
+        return np.concatenate([nodes[outer] for nodes in shapes])
+    skin = Skin.of(robot.body)
+    return np.concatenate([skin.shape(nodes)[0] for nodes in shapes])

@@ -44,8 +44,9 @@ def _section(number: int, chapter: Chapter) -> Html:
 
 
 def _body(robot: Robot) -> Chapter:
+    elements = "triangles" if robot.body.mesh.dim == 2 else "tetrahedra"
     words = (
-        f"{robot.body.file} is filled with {len(robot.body.mesh.elements)} triangles of soft material. The hatched "
+        f"{robot.body.file} is filled with {len(robot.body.mesh.elements)} {elements} of soft material. The hatched "
         "fields are held; the white dots are the markers, points to be watched."
     )
     figure = draw_rest(robot.with_network((), ()), title="", width=NARROW)

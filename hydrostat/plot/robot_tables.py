@@ -12,7 +12,7 @@ def body_table(robot: Robot) -> Html:
     body, material = robot.body, robot.body.material
     rows = [
         ("size", f"{MILLIMETRES * body.mesh.size:.0f} mm"),
-        ("thickness", f"{MILLIMETRES * (body.thickness or 0):.3g} mm"),
+        *([("thickness", f"{MILLIMETRES * body.thickness:.3g} mm")] if body.thickness else []),
         ("material", material.name or "by its numbers"),
         ("Young's modulus", f"{material.young / 1e3:.3g} kPa"),
         ("Poisson's ratio", f"{material.poisson:g}"),

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.plot.camera import Camera
-from hydrostat.plot.places import Place, Places
+from hydrostat.plot.places import Place, Places, Spread
 from hydrostat.plot.render import Render
 from hydrostat.plot.sheet import MILLIMETRES
 
@@ -69,7 +69,7 @@ class Surface:
         return Run(whole, [part for part in parts if len(part[0]) > 1], self.fades(points))
 
 
-def _divided(points: Points, step: float) -> Points:
+def _divided(points: Points, step: float) -> Spread:
     """Points close together along the lines through points [m]."""
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     parts = [

@@ -1,0 +1,163 @@
+"""Pictures of a robot in space: the same calls as for flat bodies."""
+
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from PIL import Image
+from plot.designs import space_network
+
+from hydrostat import plot
+from hydrostat.plot.open_sheet import open_sheet
+from hydrostat.plot.palette import FELT, mix
+from hydrostat.plot.tension_scale import TensionScale
+from hydrostat.robot import Winch
+
+FIGURES = (
+    "draw_rest", "draw_target", "draw_network", "draw_pose", "draw_reached", "draw_activation", "draw_candidates",
+    "draw_trees", "draw_portrait",
+)  # fmt: skip
+
+
+def figure(kind: str) -> Figure:
+    network = space_network()
+    activation, reached = network.activations[0], network.reached[0]
+    arguments = {
+        "draw_target": (reached.target,),
+        "draw_pose": (reached.pose,),
+        "draw_reached": (reached,),
+        "draw_activation": (activation,),
+        "draw_candidates": (activation, network.candidates[0]),
+        "draw_trees": (network.trees,),
+        "draw_portrait": (reached.pose.nodes,),
+    }
+    return getattr(plot, kind)(network.robot, *arguments.get(kind, ()))
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_png_twice_the_same(kind: str, tmp_path: Path) -> None:
+    one = plot.save_png(figure(kind), tmp_path / "one.png", dpi=60)
+    two = plot.save_png(figure(kind), tmp_path / "two.png", dpi=60)
+    assert one.read_bytes() == two.read_bytes()
+    with Image.open(one) as image:
+        assert min(image.size) > 50
+        assert len(image.convert("RGB").getcolors(1 << 20) or []) > 100
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+def test_svg_twice_the_same(kind: str) -> None:
+    text = plot.inline_svg(figure(kind), name="it", label="a box")
+    assert text == plot.inline_svg(figure(kind), name="it", label="a box")
+    root = ElementTree.fromstring(text)
+    names = [element.get("id") for element in root.iter() if element.get("id")]
+    assert len(names) == len(set(names))
+    assert any(element.tag.endswith("image") for element in root.iter())
+
+
+@pytest.mark.parametrize("kind", FIGURES)
+@pytest.mark.parametrize("width", [4.9, 6.4])
+def test_all_words_lie_within_the_picture(kind: str, width: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: matplotlib's own measure of every text."""
+    drawn = figure(kind) if width == 6.4 else None
+    if drawn is None:
+        network = space_network()
+        drawn = plot.draw_reached(network.robot, network.reached[0], width=width)
+    drawn.canvas.draw()  # pyright: ignore[reportAttributeAccessIssue]
+    page = drawn.bbox
+    for text in drawn.findobj(Text):
+        if text.get_text() and text.get_visible():
+            box = text.get_window_extent()
+            assert box.x0 >= page.x0 - 1, text
+            assert box.y0 >= page.y0 - 1, text
+            assert box.x1 <= page.x1 + 1, text
+            assert box.y1 <= page.y1 + 1, text
+
+
+def test_cables_wear_the_colours_of_their_tension() -> None:
+    """Oracle: the tension scale; where the body covers a cable, the same colour mixed with felt."""
+    network = space_network()
+    pose = network.reached[0].pose
+    scale = TensionScale.of(pose.tensions)
+    lines = figure("draw_pose").axes[0].lines
+    colours = {to_hex(line.get_color()) for line in lines}  # pyright: ignore[reportArgumentType]
+    for tension in pose.tensions:
+        full = scale.colour(float(tension))
+        assert full in colours
+        assert any(mix(full, FELT, share / 10000) in colours for share in range(2000, 7000, 25))
+
+
+def test_a_wire_in_front_is_drawn_over_one_behind() -> None:
+    network = space_network()
+    pose = network.reached[0].pose
+    full = TensionScale.of(pose.tensions).colour(float(pose.tensions[0]))
+    lines = figure("draw_pose").axes[0].lines
+    solid = [line.get_zorder() for line in lines if to_hex(line.get_color()) == full and len(line.get_xdata()) > 2]  # pyright: ignore
+    rest = [line.get_zorder() for line in lines if to_hex(line.get_color()) != full and len(line.get_xdata()) > 40]  # pyright: ignore
+    assert solid
+    assert rest
+    assert min(solid) > 3
+    assert max(solid) > max(rest)
+
+
+def test_two_views_to_one_scale_that_do_not_meet() -> None:
+    """Oracle: 10 mm along x are 10 mm times the share of x in the view; the bodies' boxes are disjoint."""
+    robot = space_network().robot
+    nodes = robot.body.mesh.nodes
+    sheet, panes = open_sheet(robot, [nodes])
+    assert len(panes) == 2
+    boxes = []
+    for pane in panes:
+        places = pane.places(nodes)
+        assert (places.min(axis=0) > sheet.low).all()
+        assert (places.max(axis=0) < sheet.high).all()
+        boxes.append((places.min(axis=0), places.max(axis=0)))
+    (low, high), (other_low, other_high) = boxes
+    assert (high < other_low).any() or (other_high < low).any()
+    step = panes[1].places(np.array([[0.0, 0, 0], [0.01, 0, 0]]))
+    assert np.linalg.norm(step[1] - step[0]) == pytest.approx(10)
+
+
+def test_one_view_where_there_are_no_rules() -> None:
+    robot = space_network().robot
+    assert len(open_sheet(robot, [robot.body.mesh.nodes], ruled=False)[1]) == 1
+
+
+def test_the_ghost_is_there_only_where_the_body_moved() -> None:
+    """Oracle: the rest pose itself covers its ghost; a bent one leaves pixels of the ghost's fill."""
+    from hydrostat.plot.palette import GHOST_FILL
+
+    network = space_network()
+    robot, pose = network.robot, network.reached[0].pose
+    fill = tuple(int(GHOST_FILL[start : start + 2], 16) for start in (1, 3, 5))
+    counts = []
+    for shown in (pose, replace(pose, nodes=robot.body.mesh.nodes)):
+        drawn = plot.draw_pose(robot, shown)
+        drawn.canvas.draw()  # pyright: ignore[reportAttributeAccessIssue]
+        pixels = np.asarray(drawn.canvas.buffer_rgba())[..., :3]  # pyright: ignore[reportAttributeAccessIssue]
+        counts.append(int((pixels == fill).all(axis=2).sum()))
+    assert counts[0] > 200
+    assert counts[1] < 0.02 * counts[0]
+
+
+def test_a_robot_without_cables_or_markers() -> None:
+    bare = replace(space_network().robot.with_network((), ()), markers=(), poses={})
+    assert plot.inline_svg(plot.draw_rest(bare), name="it", label="").endswith("</svg>")
+
+
+def test_winches_far_away_are_on_the_picture() -> None:
+    robot = space_network().robot
+    far = replace(robot, winches=(*robot.winches, Winch(name="far", at=(0.11, 0.03, 0.03))))
+    drawn = plot.draw_network(far)
+    assert "far" in {text.get_text() for text in drawn.axes[0].texts}
+
+
+def test_the_report_of_a_body_in_space() -> None:
+    text = plot.report_text(space_network())
+    assert "tetrahedra" in text
+    assert "<animate" not in text
+    assert text.count("data:image/png;base64,") >= 10
