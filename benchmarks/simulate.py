@@ -32,7 +32,12 @@ ROBOTS = Path(__file__).parents[2] / "shared" / "robots"
 SIZES = {1_000: 9.45e-3, 2_000: 7.33e-3, 5_000: 5.19e-3, 10_000: 4.0e-3, 20_000: 3.11e-3}
 """About how many nodes a hand has at which spacing of its lattice [m]."""
 
-FINGER_TIPS = {0: (-101.011, -8.132, 7.0), 5: (-100.811, 3.302, 6.617), 10: (-98.458, 14.537, 6.458)}
+FINGER_TIPS = {
+    0: (-101.011, -8.132, 7.0),
+    5: (-100.811, 3.302, 6.617),
+    10: (-98.458, 14.537, 6.458),
+    20: (-87.670, 34.964, 6.955),
+}
 """Contraction [mm] and tip [mm] of the finger under gravity by SOFA 25.06: corotated elements, not Neo-Hookean ones."""
 
 
