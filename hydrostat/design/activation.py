@@ -8,7 +8,7 @@ from hydrostat.design.fibres import Fibres
 from hydrostat.design.network import Activation
 from hydrostat.design.options import DesignOptions
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import Assembly, Factorisation, NewtonOptions, NewtonResult, minimise
+from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import body_energies, round_off
 
@@ -31,8 +31,7 @@ class _Activation:
         self.robot, self.target, self.fibres, self.options = robot, target, fibres, options
         self.assembly = Assembly(
             [*body_energies(robot), fibres.energy()],
-            node_count=len(mesh.nodes),
-            dim=mesh.dim,
+            rest=mesh.nodes,
             control_count=len(fibres),
         )
         places = {marker.name: marker.at for marker in robot.markers}
@@ -73,7 +72,7 @@ class _Activation:
             for axis in range(dim):
                 dofs = self.anchors.stencils[marker] * dim + axis
                 rows[dofs, marker * dim + axis] = self.anchors.weights[marker]
-        adjoint = Factorisation(self.assembly.hessian(nodes, tensions)).solve(rows)
+        adjoint = self.assembly.stiffness(nodes, tensions).solve(rows)
         return -(self.assembly.control_derivative(nodes, tensions).T @ adjoint).T
 
     def _step(self, nodes: Nodes, tensions: Vector, goals: Points, rho: float) -> tuple[Nodes, Vector, bool]:

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import Assembly, Factorisation
+from hydrostat.mechanics import Assembly
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import body_energies
 
@@ -16,12 +16,12 @@ def wanted_directions(robot: Robot, pose: Pose) -> Float[np.ndarray, "elements d
     changes O by t times the strain of w along d; the best d is the eigenvector of the largest strain of w.
     """
     mesh = robot.body.mesh
-    assembly = Assembly(body_energies(robot), node_count=len(mesh.nodes), dim=mesh.dim, control_count=0)
+    assembly = Assembly(body_energies(robot), rest=mesh.nodes, control_count=0)
     places = {marker.name: marker.at for marker in robot.markers}
     anchors = locate(mesh, np.array([places[name] for name in pose.targets]))
     miss = anchors.positions(mesh.nodes) - np.array(list(pose.targets.values()), dtype=float)
     slope = anchors.matrix(len(mesh.nodes)).T @ miss
-    field = Factorisation(assembly.hessian(mesh.nodes, np.zeros(0))).solve(-slope.ravel()).reshape(mesh.nodes.shape)
+    field = assembly.stiffness(mesh.nodes, np.zeros(0)).solve(-slope.ravel()).reshape(mesh.nodes.shape)
     corners = mesh.nodes[mesh.elements]
     inverse = np.linalg.inv(corners[:, 1:] - corners[:, :1])
     moved = field[mesh.elements]

@@ -11,7 +11,6 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.mechanics import CableEnergy
 from hydrostat.robot import Point, Pose, Robot
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -74,9 +73,7 @@ class _State:
         self.errors = np.linalg.norm(offsets, axis=1)
         self.residual = np.concatenate([offsets.ravel(), search.effort * pose.contractions])
         self.objective = float(self.residual @ self.residual) / 2
-        self.cables: list[list[tuple[CableEnergy, float]]] = [[] for _ in pose.contractions]
-        for cable in search.simulation.cables:
-            self.cables[cable.control].append((cable, cable.stretch(pose.nodes, pose.contractions)))
+        self.stretches = search.simulation.cables.stretches(pose.nodes, pose.contractions)
 
     @cached_property
     def moves(self) -> Moves:
@@ -187,8 +184,10 @@ class _Search:
         solved = self.simulation.solve(goal, start=replace(state.pose, nodes=guess, contractions=goal), strict=False)
         if not _sound(solved):
             return None
-        idle = np.array([all(stretch <= 0 for _, stretch in own) for own in _State(self, solved).cables])
-        return _State(self, replace(solved, contractions=np.where(idle, np.minimum(goal, 0.0), goal)))
+        cables = self.simulation.cables
+        pulled = cables.winches[cables.stretches(solved.nodes, goal) > 0]
+        idle = (goal > 0) & ~np.isin(np.arange(len(goal)), pulled)
+        return _State(self, replace(solved, contractions=np.where(idle, 0.0, goal)) if idle.any() else solved)
 
     def _model(self, state: _State) -> _Model:
         """The problem linearised at a state; a cable cannot push, so it holds between slack and taut only.
@@ -199,17 +198,18 @@ class _Search:
         """
         let_out, let_go = np.zeros_like(self.low), np.zeros_like(self.low)
         take_in = np.full_like(self.low, np.inf)
-        for winch, cables in enumerate(state.cables):
-            for cable, stretch in cables:
-                tangent, margin = cable.law.tangent(stretch), cable.law.smoothing
-                if tangent == 0:
-                    take_in[winch] = min(take_in[winch], max(-stretch - margin, 0.0))
-                    continue
-                moved = state.moves[cable.stencils[0], :, winch]
-                rate = max(1.0 + float(np.sum(cable.length_gradient(state.pose.nodes) * moved)), 1e-6)
-                until = cable.law.tension(stretch) / tangent
-                if until / rate >= let_out[winch]:
-                    let_out[winch], let_go[winch] = until / rate, stretch - until + margin
+        cables, nodes = self.simulation.cables, state.pose.nodes
+        tangents, tensions = cables.law.tangent(state.stretches), cables.law.tension(state.stretches)
+        moved = state.moves.reshape(nodes.size, -1)[:, cables.winches]
+        rates = np.maximum(1.0 + np.einsum("dc,dc->c", cables.columns(nodes), moved), 1e-6)
+        for cable, (winch, stretch) in enumerate(zip(cables.winches, state.stretches, strict=True)):
+            margin = cables.law.smoothing[cable]
+            if tangents[cable] == 0:
+                take_in[winch] = min(take_in[winch], max(-stretch - margin, 0.0))
+                continue
+            until = tensions[cable] / tangents[cable]
+            if until / rates[cable] >= let_out[winch]:
+                let_out[winch], let_go[winch] = until / rates[cable], stretch - until + margin
         taut = let_out > 0
         return _Model(
             moves=state.moves,
@@ -222,8 +222,10 @@ class _Search:
     def _recruit(self, state: _State, model: _Model) -> _Model:
         """The model with slack winches that may join: as if taken in until the first of their cables pulls a little."""
         gaps = np.zeros_like(self.high)
-        for winch, cables in enumerate(state.cables):
-            own = [cable.law.smoothing / 2 - stretch for cable, stretch in cables]
+        cables = self.simulation.cables
+        missing = cables.law.smoothing / 2 - state.stretches
+        for winch in range(len(gaps)):
+            own = missing[cables.winches == winch]
             gaps[winch] = min(max(min(own, default=0.0), 0.0), self.high[winch] - state.pose.contractions[winch])
         joined = gaps > 0
         taut = self._solve(state, gaps, model.moves) if joined.any() else None

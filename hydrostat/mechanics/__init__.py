@@ -1,15 +1,19 @@
 """Physics on plain arrays: energies, their assembly, Newton. It knows no robot."""
 
-from hydrostat.mechanics.assembly import Assembly, nearest_semidefinite
+from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.cable import CableEnergy, TensionLaw
-from hydrostat.mechanics.energy import Energy
-from hydrostat.mechanics.factorisation import Factorisation
+from hydrostat.mechanics.energy import Energy, nearest_semidefinite
+from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
 from hydrostat.mechanics.fibre import FibreEnergy
 from hydrostat.mechanics.neo_hookean import NeoHookean
 from hydrostat.mechanics.newton import NewtonOptions, NewtonResult, Reason, RoundOff, minimise
 from hydrostat.mechanics.pin import PinEnergy
+from hydrostat.mechanics.stiffness import Stiffness
+from hydrostat.mechanics.warp import Warp
+from hydrostat.mechanics.weight import WeightEnergy
 
 __all__ = [
+    "Analysis",
     "Assembly",
     "CableEnergy",
     "Energy",
@@ -21,7 +25,11 @@ __all__ = [
     "PinEnergy",
     "Reason",
     "RoundOff",
+    "Stiffness",
     "TensionLaw",
+    "Warp",
+    "WeightEnergy",
+    "factorise",
     "minimise",
     "nearest_semidefinite",
 ]

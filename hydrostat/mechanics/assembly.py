@@ -1,29 +1,47 @@
 """`Assembly`: the sum of energies as one function of all nodes, with a sparse pattern made once."""
 
 from collections.abc import Sequence
+from copy import copy
+from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float
+from numba import njit
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics.energy import Energy, HessianBlocks
+from hydrostat.mechanics.energy import Energy
+from hydrostat.mechanics.factorisation import Analysis
+from hydrostat.mechanics.stiffness import Stiffness
 
 
 class Assembly:
     """Value, gradient and Hessian of a list of energies, with degrees of freedom node by node."""
 
-    def __init__(self, energies: Sequence[Energy], *, node_count: int, dim: int, control_count: int) -> None:
-        """Energies that act on `node_count` nodes and read `control_count` controls."""
+    def __init__(self, energies: Sequence[Energy], *, rest: Nodes, control_count: int) -> None:
+        """Energies of a body whose nodes are at `rest` [m] before it deforms; they read `control_count` controls.
+
+        Only the order of elimination depends on `rest`.
+        """
         self.energies = tuple(energies)
-        self.size = node_count * dim
-        self.shape = (node_count, dim)
+        self.shape = rest.shape
+        self.size = rest.size
         self.control_count = control_count
         self._dofs = [
-            (energy.stencils[:, :, None] * dim + np.arange(dim)).reshape(len(energy.stencils), -1)
+            (energy.stencils[:, :, None] * rest.shape[1] + np.arange(rest.shape[1])).reshape(len(energy.stencils), -1)
             for energy in self.energies
         ]
-        self._indptr, self._indices, self._slots = self._pattern()
+        self._rest = rest
+        self._pattern()
+        self._analysis = Analysis(self._indptr, self._indices, dim=rest.shape[1], points=rest)
+
+    def with_energies(self, energies: Sequence[Energy]) -> "Assembly":
+        """The same with other energies on the same stencils, such as those of the next time step; costs nothing."""
+        if [energy.stencils.shape for energy in energies] != [energy.stencils.shape for energy in self.energies]:
+            raise ValueError("the energies must have the stencils of those they replace")
+        other = copy(self)
+        other.energies = tuple(energies)
+        return other
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Total energy [J]; infinite where one of the energies is not defined."""
@@ -36,17 +54,50 @@ class Assembly:
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Float[np.ndarray, " dofs"]:
         """dE/dx [N], (nodes x dim,)."""
-        blocks = [energy.gradient(nodes, controls).ravel() for energy in self.energies]
-        return np.bincount(np.concatenate([dofs.ravel() for dofs in self._dofs]), np.concatenate(blocks), self.size)
-
-    def hessian(self, nodes: Nodes, controls: Vector, *, project: bool = False) -> csc_array:
-        """d2E/dx2 [N/m], sparse; with `project` every block is made positive semidefinite first (E6)."""
-        blocks = []
+        total = np.zeros(self.shape)
         for energy in self.energies:
-            block = energy.hessian(nodes, controls)
-            blocks.append((nearest_semidefinite(block) if project and not energy.convex else block).ravel())
-        data = np.bincount(self._slots, np.concatenate(blocks), len(self._indices))
+            _add_vectors(energy.stencils, energy.gradient(nodes, controls), total)
+        return total.ravel()
+
+    def hessian(self, nodes: Nodes, controls: Vector, *, lift: float = 0.0) -> csc_array:
+        """d2E/dx2 [N/m], sparse, less its part of low rank.
+
+        `lift` is the share, 0 to 1, of what is negative in the blocks that is taken out (E6).
+        """
+        data = np.zeros(len(self._indices))
+        for energy, slots in zip(self.energies, self._slots, strict=True):
+            if lift and not energy.convex:
+                blocks = energy.lifted_hessian(nodes, controls, lift)
+            else:
+                blocks = energy.hessian(nodes, controls)
+            _add_blocks(energy.stencils, slots, self._strides, blocks, data)
         return csc_array((data, self._indices, self._indptr), shape=(self.size, self.size))
+
+    def low_rank(
+        self, nodes: Nodes, controls: Vector
+    ) -> tuple[Float[np.ndarray, "dofs rank"], Float[np.ndarray, "rank rank"]]:
+        """G and D of the part G D G^T of d2E/dx2 that `hessian` leaves out."""
+        parts = [part for energy in self.energies if (part := energy.low_rank(nodes, controls)) is not None]
+        if not parts:
+            return np.zeros((self.size, 0)), np.zeros((0, 0))
+        if len(parts) == 1:
+            return parts[0]
+        ranks = np.cumsum([0, *(len(weights) for _, weights in parts)])
+        joint = np.zeros((ranks[-1], ranks[-1]))
+        for start, end, (_, weights) in zip(ranks, ranks[1:], parts, strict=False):
+            joint[start:end, start:end] = weights
+        return np.concatenate([columns for columns, _ in parts], axis=1), joint
+
+    def stiffness(self, nodes: Nodes, controls: Vector, *, lift: float = 0.0, shift: float = 0.0) -> Stiffness:
+        """The whole of d2E/dx2, ready to be solved with.
+
+        `lift` is as in `hessian`; `shift`, a share of the largest diagonal entry, is added to the diagonal.
+        """
+        matrix = self.hessian(nodes, controls, lift=lift)
+        if shift:
+            diagonal = matrix.diagonal()
+            matrix.setdiag(diagonal + shift * diagonal.max())
+        return Stiffness(self._analysis.factorise(matrix.data), *self.low_rank(nodes, controls))
 
     def control_derivative(self, nodes: Nodes, controls: Vector) -> csc_array:
         """d2E/dx da, sparse, (nodes x dim, controls)."""
@@ -61,22 +112,54 @@ class Assembly:
             return csc_array(shape)
         return csc_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
 
-    def _pattern(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Column pointers and row indices of the Hessian, and the slot of every block entry."""
-        keys = np.concatenate([(dofs[:, None, :] * self.size + dofs[:, :, None]).ravel() for dofs in self._dofs])
-        entries, slots = np.unique(keys, return_inverse=True)
-        columns, rows = np.divmod(entries, self.size)
-        indptr = np.searchsorted(columns, np.arange(self.size + 1))
-        return indptr.astype(np.int32), rows.astype(np.int32), slots
+    def _pattern(self) -> None:
+        """Columns and rows of the Hessian, and where each dim x dim block of each term goes."""
+        count, dim = self.shape
+        keys = [
+            (energy.stencils[:, None, :].astype(np.int64) * count + energy.stencils[:, :, None]).ravel()
+            for energy in self.energies
+        ]
+        diagonal = np.arange(count, dtype=np.int64) * (count + 1)
+        entries, places = np.unique(np.concatenate([*keys, diagonal]), return_inverse=True)
+        columns, rows = np.divmod(entries, count)
+        starts = np.searchsorted(columns, np.arange(count + 1))
+        heights = np.diff(starts)
+        self._strides = heights * dim
+        below = (rows[:, None] * dim + np.arange(dim)).astype(np.int32)
+        self._indices = np.concatenate(
+            [np.tile(below[starts[node] : starts[node + 1]].ravel(), dim) for node in range(count)]
+        )
+        self._indptr = np.concatenate([[0], np.cumsum(np.repeat(self._strides, dim))]).astype(np.int32)
+        first = starts[columns] * dim * dim + (np.arange(len(entries)) - starts[columns]) * dim
+        slots = np.split(first[places], np.cumsum([len(key) for key in keys]))
+        self._slots = [
+            slot.reshape(*energy.stencils.shape, energy.stencils.shape[1])
+            for slot, energy in zip(slots, self.energies, strict=False)
+        ]
 
 
-def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
-    """Each symmetric block with its negative eigenvalues set to zero."""
-    values, vectors = np.linalg.eigh(blocks)
-    bad = values[:, 0] < 0
-    if not bad.any():
-        return blocks
-    repaired = blocks.copy()
-    kept = np.maximum(values[bad], 0.0)
-    repaired[bad] = (vectors[bad] * kept[:, None, :]) @ np.swapaxes(vectors[bad], 1, 2)
-    return repaired
+@njit(cache=True)
+@no_type_check
+def _add_vectors(stencils, vectors, total):
+    """Add the vector of every corner of every term to its node."""
+    for term in range(stencils.shape[0]):
+        for corner in range(stencils.shape[1]):
+            node = stencils[term, corner]
+            for axis in range(total.shape[1]):
+                total[node, axis] += vectors[term, corner, axis]
+
+
+@njit(cache=True)
+@no_type_check
+def _add_blocks(stencils, slots, strides, blocks, data):
+    """Add every dim x dim block to the values of the sparse matrix."""
+    corners = stencils.shape[1]
+    dim = blocks.shape[1] // corners
+    for term in range(stencils.shape[0]):
+        for b in range(corners):
+            stride = strides[stencils[term, b]]
+            for a in range(corners):
+                start = slots[term, a, b]
+                for j in range(dim):
+                    for i in range(dim):
+                        data[start + j * stride + i] += blocks[term, a * dim + i, b * dim + j]

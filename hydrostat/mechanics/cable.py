@@ -1,142 +1,154 @@
-"""`CableEnergy`: one cable, taut or slack; and the tension law it follows."""
+"""`CableEnergy`: all cables of a robot, taut or slack; and the tension law they follow."""
 
+import math
 from dataclasses import dataclass
+from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
+from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class TensionLaw:
     """The unilateral spring, shifted so that a cable at rest has no tension (R25, E1, E2, E3).
 
     T(s) = 0 for s <= 0; k s^2 / (4 eps) for 0 <= s <= 2 eps; k (s - eps) above. Its integral is C2.
+    All is a row per cable.
 
     Attributes:
         stiffness: k [N/m], the thesis's 2K.
         smoothing: eps [m].
     """
 
-    stiffness: float
-    smoothing: float
+    stiffness: Vector
+    smoothing: Vector
 
-    def energy(self, stretch: float) -> float:
+    def energy(self, stretch: Vector) -> Vector:
         """Integral of the tension [J]."""
         k, eps = self.stiffness, self.smoothing
-        if stretch <= 0:
-            return 0.0
-        if stretch <= 2 * eps:
-            return k * stretch**3 / (12 * eps)
-        return 0.5 * k * (stretch - eps) ** 2 + k * eps**2 / 6
+        within = np.clip(stretch, 0.0, 2 * eps)
+        straight = 0.5 * (stretch - eps) ** 2 + eps**2 / 6
+        return k * np.where(stretch > 2 * eps, straight, within**3 / (12 * eps))
 
-    def tension(self, stretch: float) -> float:
+    def tension(self, stretch: Vector) -> Vector:
         """T [N] (R26)."""
         k, eps = self.stiffness, self.smoothing
-        if stretch <= 0:
-            return 0.0
-        return k * stretch**2 / (4 * eps) if stretch <= 2 * eps else k * (stretch - eps)
+        within = np.clip(stretch, 0.0, 2 * eps)
+        return k * np.where(stretch > 2 * eps, stretch - eps, within**2 / (4 * eps))
 
-    def tangent(self, stretch: float) -> float:
+    def tangent(self, stretch: Vector) -> Vector:
         """dT/ds [N/m]."""
+        return self.stiffness * np.clip(stretch / (2 * self.smoothing), 0.0, 1.0)
+
+    def stretch(self, tension: Vector) -> Vector:
+        """The stretch [m] at which a taut cable has this tension > 0 [N]."""
         k, eps = self.stiffness, self.smoothing
-        if stretch <= 0:
-            return 0.0
-        return k * stretch / (2 * eps) if stretch <= 2 * eps else k
+        share = np.maximum(tension, 0.0) / k
+        return np.where(share > eps, share + eps, 2 * np.sqrt(eps * share))
 
 
 class CableEnergy(Energy):
-    """U(s) of one frictionless cable, s = l(x) - l(X) + a - slack [m] (R23 to R27, E1, E11, E12).
+    """Sum of U(s) over frictionless cables, s = l(x) - l(X) + a - slack [m] (R23 to R27, E1, E11, E12).
 
-    Its points are y = W x + c: anchors in the body (rows of W sum to one, c = 0) or fixed in the world (W = 0).
-    Sheathed segments keep their rest length, so they are left out of l; the length of a segment is rounded off where
-    its two ends meet, so that it has a derivative there. U rises with s and l is convex in x, hence the energy is
-    convex.
+    A term is a segment of a cable that is not sheathed: a sheathed one keeps its rest length, so it is left out of l.
+    The span of a segment is d = sum of weights x nodes + offset: between two anchors in the body, or from a point fixed
+    in the world, which is all offset. The length of a segment is rounded off where its two ends meet, so that it has a
+    derivative there. U rises with s and l is convex in x, hence the energy is convex.
+
+    The Hessian of a cable is T' dl dl^T + T d2l. The first part couples all the nodes along a cable, so it is kept as
+    the low rank it has; the blocks hold the second one.
     """
 
     def __init__(
         self,
         nodes: Nodes,
         *,
-        stencil: Int[np.ndarray, " corners"],
-        weights: Float[np.ndarray, "points corners"],
+        stencils: Stencils,
+        weights: Float[np.ndarray, "terms corners"],
         offsets: Points,
-        bare: np.ndarray,
+        cables: Int[np.ndarray, " terms"],
         law: TensionLaw,
-        control: int,
-        slack: float = 0.0,
+        winches: Int[np.ndarray, " cables"],
+        slack: Vector,
     ) -> None:
-        """Cable on the rest shape `nodes`.
+        """Cables on the rest shape `nodes`.
 
         Args:
             nodes: rest positions [m].
-            stencil: the nodes it depends on, each once.
-            weights: W restricted to the stencil.
-            offsets: c [m].
-            bare: which segments are not sheathed, (points - 1,) booleans.
-            law: tension against stretch.
-            control: index of its winch's contraction.
-            slack: taken in before the cable begins to be taut [m].
+            stencils: nodes of each segment.
+            weights: signed: those of its end less those of its start.
+            offsets: what points fixed in the world add to each span [m].
+            cables: which cable a segment belongs to.
+            law: tension against stretch, of each cable.
+            winches: whose contraction each cable follows.
+            slack: of each cable, taken in before it begins to be taut [m].
         """
-        self.stencils = stencil[None, :]
-        self.controls = np.array([control])
-        self.control = control
+        self.stencils = np.ascontiguousarray(stencils)
+        self.weights, self.offsets = np.ascontiguousarray(weights), np.ascontiguousarray(offsets)
+        self.cables, self.winches = cables, winches
+        self.controls = winches[cables]
         self.law, self.slack = law, slack
-        index = np.flatnonzero(bare)
-        self._differences = weights[index + 1] - weights[index]
-        self._offsets = offsets[index + 1] - offsets[index]
-        self._pairs = np.einsum("sa,sb->sab", self._differences, self._differences).reshape(len(index), -1)
-        self._roundings = np.zeros(len(index))
-        self._roundings = np.maximum(_ROUNDING * self._segments(nodes)[1], np.finfo(float).tiny ** 0.5)
-        self.rest_length = self.length(nodes)
+        self._roundings = np.zeros(len(cables))
+        self._roundings = np.maximum(_ROUNDING * self._spans(nodes)[1], np.finfo(float).tiny ** 0.5)
+        self.rest_lengths = self.lengths(nodes)
 
-    def length(self, nodes: Nodes) -> float:
-        """Length of the segments that are not sheathed [m]."""
-        return float(self._segments(nodes)[1].sum())
+    def lengths(self, nodes: Nodes) -> Vector:
+        """Length of each cable without its sheathed segments [m]."""
+        return np.bincount(self.cables, self._spans(nodes)[1], len(self.winches))
 
-    def stretch(self, nodes: Nodes, controls: Vector) -> float:
-        """S [m]: how much longer the cable is than it should be; negative when slack."""
-        return self.length(nodes) - self.rest_length + float(controls[self.control]) - self.slack
+    def stretches(self, nodes: Nodes, controls: Vector) -> Vector:
+        """S [m]: how much longer each cable is than it should be; negative when slack."""
+        return self.lengths(nodes) - self.rest_lengths + controls[self.winches] - self.slack
 
-    def tension(self, nodes: Nodes, controls: Vector) -> float:
-        """T [N]."""
-        return self.law.tension(self.stretch(nodes, controls))
+    def tensions(self, nodes: Nodes, controls: Vector) -> Vector:
+        """T of each cable [N]."""
+        return self.law.tension(self.stretches(nodes, controls))
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        return self.law.energy(self.stretch(nodes, controls))
+        return float(self.law.energy(self.stretches(nodes, controls)).sum())
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self.tension(nodes, controls) * self.length_gradient(nodes)[None]
+        return self._pull(nodes, self.tensions(nodes, controls))
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        stretch = self.stretch(nodes, controls)
-        tension, tangent = self.law.tension(stretch), self.law.tangent(stretch)
-        gradient = self.length_gradient(nodes).ravel()
-        return (tangent * np.outer(gradient, gradient) + tension * self._length_hessian(nodes))[None]
+        spans, lengths = self._spans(nodes)
+        size = self.weights.shape[1] * nodes.shape[1]
+        blocks = np.empty((len(self.cables), size, size))
+        _bends(spans, lengths, self.weights, self.tensions(nodes, controls)[self.cables], blocks)
+        return blocks
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self.law.tangent(self.stretch(nodes, controls)) * self.length_gradient(nodes)[None]
+        return self._pull(nodes, self.law.tangent(self.stretches(nodes, controls)))
 
-    def _segments(self, nodes: Nodes) -> tuple[Points, Float[np.ndarray, " segments"]]:
-        spans = self._differences @ nodes[self.stencils[0]] + self._offsets
-        return spans, np.sqrt(np.einsum("sd,sd->s", spans, spans) + self._roundings**2)
+    def low_rank(
+        self, nodes: Nodes, controls: Vector
+    ) -> tuple[Float[np.ndarray, "dofs cables"], Float[np.ndarray, "cables cables"]]:
+        return self.columns(nodes), np.diag(self.law.tangent(self.stretches(nodes, controls)))
 
-    def length_gradient(self, nodes: Nodes) -> Float[np.ndarray, "corners dim"]:
-        """Dl/dx at the stencil's nodes."""
-        spans, lengths = self._segments(nodes)
-        return self._differences.T @ (spans / lengths[:, None])
+    def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
+        """dl/dx of each cable."""
+        columns = np.zeros((nodes.size, len(self.winches)))
+        _spread(self.stencils, self.cables, self.length_gradients(nodes), columns)
+        return columns
 
-    def _length_hessian(self, nodes: Nodes) -> Float[np.ndarray, "size size"]:
-        """Sum over segments of (I - u u^T) / length, spread to the nodes by the weights."""
-        spans, lengths = self._segments(nodes)
-        dim, corners = spans.shape[1], self._differences.shape[1]
-        lengths = lengths[:, None, None]
-        directions = spans / lengths[:, 0]
-        across = (np.eye(dim) - directions[:, :, None] * directions[:, None, :]) / lengths
-        blocks = self._pairs.T @ across.reshape(len(spans), -1)
-        return blocks.reshape(corners, corners, dim, dim).swapaxes(1, 2).reshape(corners * dim, corners * dim)
+    def length_gradients(self, nodes: Nodes) -> Blocks:
+        """Dl/dx of each segment at its stencil's nodes."""
+        return self._pull(nodes, np.ones(len(self.winches)))
+
+    def _pull(self, nodes: Nodes, forces: Vector) -> Blocks:
+        spans, lengths = self._spans(nodes)
+        directions = spans * (forces[self.cables] / lengths)[:, None]
+        return self.weights[:, :, None] * directions[:, None, :]
+
+    def _spans(self, nodes: Nodes) -> tuple[Points, Float[np.ndarray, " terms"]]:
+        spans = np.empty((len(self.cables), nodes.shape[1]))
+        lengths = np.empty(len(self.cables))
+        _measure(nodes, self.stencils, self.weights, self.offsets, self._roundings, spans, lengths)
+        return spans, lengths
 
 
 _ROUNDING = 1e-3
@@ -145,3 +157,48 @@ _ROUNDING = 1e-3
 A plain norm has a kink at d = 0, where a winch that pulls hard brings two via points together: the least energy lies in
 the kink, no gradient vanishes there, and Newton stops without a descent.
 """
+
+
+@njit(cache=True, error_model="numpy")
+@no_type_check
+def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
+    """Span and length of every segment."""
+    for term in range(stencils.shape[0]):
+        square = roundings[term] * roundings[term]
+        for axis in range(nodes.shape[1]):
+            span = offsets[term, axis]
+            for corner in range(stencils.shape[1]):
+                span += weights[term, corner] * nodes[stencils[term, corner], axis]
+            spans[term, axis] = span
+            square += span * span
+        lengths[term] = math.sqrt(square)
+
+
+@njit(cache=True, error_model="numpy")
+@no_type_check
+def _bends(spans, lengths, weights, tensions, blocks):
+    """T (I - u u^T) / length of every segment, spread to its nodes by the weights."""
+    corners, dim = weights.shape[1], spans.shape[1]
+    for term in range(spans.shape[0]):
+        scale = tensions[term] / lengths[term]
+        square = lengths[term] * lengths[term]
+        for i in range(dim):
+            for j in range(dim):
+                across = -spans[term, i] * spans[term, j] / square
+                if i == j:
+                    across += 1.0
+                across *= scale
+                for a in range(corners):
+                    for b in range(corners):
+                        blocks[term, a * dim + i, b * dim + j] = weights[term, a] * weights[term, b] * across
+
+
+@njit(cache=True)
+@no_type_check
+def _spread(stencils, cables, gradients, columns):
+    """Add up the gradients of the segments of each cable."""
+    dim = gradients.shape[2]
+    for term in range(stencils.shape[0]):
+        for corner in range(stencils.shape[1]):
+            for axis in range(dim):
+                columns[stencils[term, corner] * dim + axis, cables[term]] += gradients[term, corner, axis]

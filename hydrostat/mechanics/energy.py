@@ -40,8 +40,31 @@ class Energy(ABC):
 
     @abstractmethod
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim)."""
+        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), less what `low_rank` tells."""
+
+    def lifted_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+        """The Hessian blocks with this share, 0 to 1, of what is negative in them taken out (E6)."""
+        blocks = self.hessian(nodes, controls)
+        return blocks if self.convex else blocks + share * (nearest_semidefinite(blocks) - blocks)
+
+    def low_rank(
+        self, nodes: Nodes, controls: Vector
+    ) -> tuple[Float[np.ndarray, "dofs rank"], Float[np.ndarray, "rank rank"]] | None:
+        """G and D of a part G D G^T of d2E/dx2 that couples many nodes; D is positive semidefinite. None for most."""
+        return None
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         """d2E/dx da of each term, (terms, corners, dim), a being the term's own control."""
         raise NotImplementedError(f"{type(self).__name__} has no controls")
+
+
+def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
+    """Each symmetric block with its negative eigenvalues set to zero."""
+    values, vectors = np.linalg.eigh(blocks)
+    bad = values[:, 0] < 0
+    if not bad.any():
+        return blocks
+    repaired = blocks.copy()
+    kept = np.maximum(values[bad], 0.0)
+    repaired[bad] = (vectors[bad] * kept[:, None, :]) @ np.swapaxes(vectors[bad], 1, 2)
+    return repaired

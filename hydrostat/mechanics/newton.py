@@ -1,7 +1,7 @@
 """Newton's method with a safeguarded step: the statics solver."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import count
 
@@ -9,7 +9,10 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
-from hydrostat.mechanics.factorisation import Factorisation
+from hydrostat.mechanics.cable import CableEnergy
+from hydrostat.mechanics.stiffness import Stiffness
+from hydrostat.mechanics.tighten import Tightener, settle
+from hydrostat.mechanics.warp import Warp
 
 
 class Reason(StrEnum):
@@ -61,6 +64,8 @@ class NewtonResult:
         energy: total energy [J].
         iterations: steps taken.
         stable: whether the full Hessian there is positive definite: a minimum, no saddle.
+        buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
+        stiffness: the Hessian there, factorised.
     """
 
     nodes: Nodes
@@ -70,6 +75,8 @@ class NewtonResult:
     energy: float
     iterations: int
     stable: bool
+    buckled: bool
+    stiffness: Stiffness | None = field(repr=False)
 
     @property
     def converged(self) -> bool:
@@ -85,11 +92,14 @@ def minimise(
     force_scale: Callable[[Nodes], float],
     round_off: RoundOff,
     options: NewtonOptions,
+    warp: Warp | None = None,
+    stiffness: Stiffness | None = None,
 ) -> NewtonResult:
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
-    The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). The step is
-    halved until no element is inverted and the energy falls.
+    The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). Of a straight
+    step and one along arcs, each with its cables tightened or not, the one of least energy is taken; it is halved
+    until no element is inverted and the energy falls. A saddle is left along its lowest mode.
 
     Args:
         assembly: the energy.
@@ -98,106 +108,220 @@ def minimise(
         force_scale: largest applied force [N] at given nodes; `options.tolerance` is relative to it.
         round_off: forces and energies too small to be told apart.
         options: tolerance and limits.
+        warp: bends steps along arcs; only straight ones without it.
+        stiffness: the Hessian at `start` at other controls, such as those at which it is in equilibrium. The first step
+            then costs no factorisation: it is the prediction dx/da, bent and tightened.
     """
-    nodes = start
-    energy = assembly.value(nodes, controls)
-    if not np.isfinite(energy):
-        return NewtonResult(
-            nodes=start,
-            reason=Reason.BAD_START,
-            residual=np.inf,
-            allowed=0.0,
-            energy=np.inf,
-            iterations=0,
-            stable=False,
-        )
-    gradient = assembly.gradient(nodes, controls)
-    for iteration in count():
-        allowed = max(options.tolerance * force_scale(nodes), round_off.force)
-        residual = float(np.abs(gradient).max())
-        factor = Factorisation(assembly.hessian(nodes, controls))
-        if residual <= allowed:
-            reason = Reason.CONVERGED
-        elif iteration == options.iterations:
-            reason = Reason.ITERATION_LIMIT
-        else:
-            step = _descent(assembly, nodes, controls, gradient, factor)
-            found = None
-            if step is not None:
-                found = _line_search(assembly, nodes, controls, energy, gradient, step, round_off.energy, options)
-            if found is not None:
+    return _Descent(assembly, controls, force_scale, round_off, options, warp).run(start, stiffness)
+
+
+class _Descent:
+    """One minimisation; `run` is the loop, each method one part of it."""
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        controls: Vector,
+        force_scale: Callable[[Nodes], float],
+        round_off: RoundOff,
+        options: NewtonOptions,
+        warp: Warp | None,
+    ) -> None:
+        self.assembly, self.controls = assembly, controls
+        self.force_scale, self.noise, self.options, self.warp = force_scale, round_off, options, warp
+        self.cables = next((energy for energy in assembly.energies if isinstance(energy, CableEnergy)), None)
+        self.share = 0.0
+        self.saddles = 0
+
+    def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
+        """Newton from `start` to a reason to stop."""
+        assembly, controls = self.assembly, self.controls
+        nodes, energy = start, assembly.value(start, controls)
+        if not np.isfinite(energy):
+            return self._result(start, Reason.BAD_START, np.inf, 0.0, energy, 0, None)
+        gradient = assembly.gradient(nodes, controls)
+        for iteration in count():
+            allowed = max(self.options.tolerance * self.force_scale(nodes), self.noise.force)
+            residual = float(np.abs(gradient).max())
+            arrived = residual <= allowed
+            if arrived or iteration == self.options.iterations:
+                stiffness = assembly.stiffness(nodes, controls)
+                found = self._leave_saddle(nodes, energy, stiffness) if arrived else None
+                if found is None:
+                    reason = Reason.CONVERGED if arrived else Reason.ITERATION_LIMIT
+                    return self._result(nodes, reason, residual, allowed, energy, iteration, stiffness)
                 nodes, energy, gradient = found
                 continue
-            reason = Reason.NO_DESCENT
+            stiffness, known = self._reuse(nodes, known), None
+            if stiffness is None:
+                stiffness = self._definite(nodes)
+            found = None
+            if stiffness is not None:
+                found = self._search(nodes, energy, gradient, stiffness)
+            if found is None:
+                stiffness = assembly.stiffness(nodes, controls)
+                return self._result(nodes, Reason.NO_DESCENT, residual, allowed, energy, iteration, stiffness)
+            nodes, energy, gradient = found
+        raise AssertionError("count() never ends")
+
+    def _reuse(self, nodes: Nodes, known: Stiffness | None) -> Stiffness | None:
+        """What is known of the Hessian, with the cables as they are now; None if that is not definite."""
+        if known is None or known.singular:
+            return None
+        stiffness = known.with_weights(self.assembly.low_rank(nodes, self.controls)[1])
+        return stiffness if stiffness.definite else None
+
+    def _definite(self, nodes: Nodes) -> Stiffness | None:
+        """The Hessian, or a definite matrix in its place where it is not definite.
+
+        Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
+        drops the whole effect of compression, and Newton creeps for hundreds of steps. So only a share of what is
+        negative is taken out; the share falls from step to step as long as it suffices. None where nothing helps: the
+        Hessian is not finite, or 0.
+        """
+        self.share = self.share / 4 if self.share > _LEAST_SHARE else 0.0
+        while True:
+            stiffness = self.assembly.stiffness(nodes, self.controls, lift=self.share)
+            if stiffness.definite:
+                return stiffness
+            if self.share == 1.0:
+                break
+            self.share = min(4 * self.share, 1.0) if self.share else 1.0
+        for shift in _SHIFTS:
+            stiffness = self.assembly.stiffness(nodes, self.controls, lift=1.0, shift=shift)
+            if stiffness.definite:
+                return stiffness
+        return None
+
+    def _search(
+        self, nodes: Nodes, energy: float, gradient: Vector, stiffness: Stiffness
+    ) -> tuple[Nodes, float, Vector] | None:
+        """Next nodes, energy and gradient; None if no length of the step lowers the energy.
+
+        Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
+        """
+        step = self._step(nodes, gradient, stiffness)
+        slope = float(gradient @ step)
+        length = 1.0
+        trials = _Trials(self, nodes, step, stiffness)
+        for _ in range(self.options.halvings):
+            gain = -length * slope
+            if gain > self.noise.energy:
+                value, trial = trials.best(length, bend=gain > 1e3 * self.noise.energy)
+                if value <= energy - 1e-4 * gain:
+                    return trial, value, self.assembly.gradient(trial, self.controls)
+            else:
+                trial = nodes + length * step.reshape(nodes.shape)
+                value = self.assembly.value(trial, self.controls)
+                if value <= energy + 10 * self.noise.energy:
+                    after = self.assembly.gradient(trial, self.controls)
+                    if abs(after @ step) <= 0.9 * abs(slope):
+                        return trial, value, after
+            length *= 0.5
+        return None
+
+    def _step(self, nodes: Nodes, gradient: Vector, stiffness: Stiffness) -> Vector:
+        """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
+        if self.cables is not None and stiffness.body_definite and stiffness.columns.size:
+            stretches = self.cables.stretches(nodes, self.controls)
+            pulled = stiffness.columns @ self.cables.law.tension(stretches)
+            free = -stiffness.solve_body(gradient - pulled)
+            tensions = settle(self.cables.law, stretches + stiffness.columns.T @ free, stiffness.compliance)
+            if tensions is not None:
+                return free - stiffness.moves @ tensions
+        return -stiffness.solve(gradient)
+
+    def _leave_saddle(self, nodes: Nodes, energy: float, stiffness: Stiffness) -> tuple[Nodes, float, Vector] | None:
+        """A place of lower energy along the lowest mode; None at a minimum, or where none is found."""
+        if stiffness.definite or stiffness.singular or self.saddles == _SADDLES:
+            return None
+        mode = _lowest_mode(stiffness, nodes.size).reshape(nodes.shape)
+        size = float(np.ptp(nodes, axis=0).max())
+        for share in _LEAPS:
+            for sign in (1.0, -1.0):
+                trial = nodes + sign * share * size * mode
+                value = self.assembly.value(trial, self.controls)
+                if value < energy - 10 * self.noise.energy:
+                    self.saddles += 1
+                    return trial, value, self.assembly.gradient(trial, self.controls)
+        return None
+
+    def _result(
+        self,
+        nodes: Nodes,
+        reason: Reason,
+        residual: float,
+        allowed: float,
+        energy: float,
+        iterations: int,
+        stiffness: Stiffness | None,
+    ) -> NewtonResult:
         return NewtonResult(
             nodes=nodes,
             reason=reason,
             residual=residual,
             allowed=allowed,
             energy=energy,
-            iterations=iteration,
-            stable=factor.definite,
+            iterations=iterations,
+            stable=stiffness is not None and stiffness.definite,
+            buckled=self.saddles > 0,
+            stiffness=stiffness,
         )
-    raise AssertionError("count() never ends")
 
 
-def _descent(
-    assembly: Assembly, nodes: Nodes, controls: Vector, gradient: Vector, factor: Factorisation
-) -> Vector | None:
-    """Newton's direction, with a definite matrix in place of a Hessian that is not.
+class _Trials:
+    """Where one step may lead: straight or along arcs, with the cables tightened or as they come."""
 
-    Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
-    drops the whole effect of compression, and Newton creeps for hundreds of steps. So as little of it as needed is
-    mixed in. None where nothing makes it definite: it is not finite, or 0.
-    """
-    if factor.definite:
-        return -factor.solve(gradient)
-    full, projected = (assembly.hessian(nodes, controls, project=project) for project in (False, True))
-    for share in _SHARES:
-        factor = Factorisation(full + share * (projected - full))
-        if factor.definite:
-            return -factor.solve(gradient)
-    diagonal = projected.diagonal()
-    for shift in _SHIFTS:
-        projected.setdiag(diagonal + shift * diagonal.max())
-        factor = Factorisation(projected)
-        if factor.definite:
-            return -factor.solve(gradient)
-    return None
+    def __init__(self, descent: _Descent, nodes: Nodes, step: Vector, stiffness: Stiffness) -> None:
+        self.assembly, self.controls, self.warp = descent.assembly, descent.controls, descent.warp
+        self.nodes, self.step = nodes, step.reshape(nodes.shape)
+        self.tighten = None
+        if descent.cables is not None and stiffness.columns.size:
+            self.cables = descent.cables
+            self.stretches = descent.cables.stretches(nodes, self.controls)
+            self.pull = stiffness.columns.T @ step
+            self.tighten = Tightener(descent.cables, self.controls, stiffness)
+
+    def best(self, length: float, *, bend: bool) -> tuple[float, Nodes]:
+        """Energy and nodes of the best trial at this length of the step."""
+        step = length * self.step
+        places = [self.nodes + step]
+        if bend and self.warp is not None:
+            places.append(self.warp(self.nodes, step))
+        if self.tighten is not None:
+            promised = self.cables.law.tension(self.stretches + length * self.pull)
+            for place in tuple(places):
+                tightened = self.tighten(place, promised)
+                if tightened is not place:
+                    places.append(tightened)
+        values = [self.assembly.value(place, self.controls) for place in places]
+        least = int(np.argmin(values))
+        return values[least], places[least]
 
 
-_SHARES = (1 / 16, 1 / 4, 1.0)
-"""Parts of the projected Hessian to try."""
+def _lowest_mode(stiffness: Stiffness, size: int) -> Vector:
+    """A direction in which the energy falls, by inverse iteration from a fixed random one; its largest entry is 1."""
+    mode = np.random.default_rng(0).standard_normal(size)
+    best, lowest = mode, np.inf
+    for _ in range(_INVERSE_ITERATIONS):
+        moved = stiffness.solve(mode)
+        curvature = float(mode @ moved) / float(moved @ moved)
+        mode = moved / np.linalg.norm(moved)
+        if curvature < lowest:
+            best, lowest = mode, curvature
+    return best / np.abs(best).max()
+
+
+_LEAST_SHARE = 1 / 32
+"""Below this share of what is negative, try the full Hessian."""
 
 _SHIFTS = tuple(np.logspace(-10, 1, 12))
 """What is added to the diagonal of the projected Hessian, if even that is singular: fractions of its largest entry."""
 
+_SADDLES = 3
+"""So many saddles are left in one solve."""
 
-def _line_search(
-    assembly: Assembly,
-    nodes: Nodes,
-    controls: Vector,
-    energy: float,
-    gradient: Vector,
-    step: Vector,
-    noise: float,
-    options: NewtonOptions,
-) -> tuple[Nodes, float, Vector] | None:
-    """Next nodes, energy and gradient; None if no length of the step lowers the energy.
+_LEAPS = (1e-2, 1e-3, 1e-4, 1e-5)
+"""How far to go from a saddle: fractions of the size of the body."""
 
-    Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
-    """
-    slope = float(gradient @ step)
-    length = 1.0
-    for _ in range(options.halvings):
-        trial = nodes + length * step.reshape(nodes.shape)
-        value = assembly.value(trial, controls)
-        if -length * slope > noise:
-            if value <= energy + 1e-4 * length * slope:
-                return trial, value, assembly.gradient(trial, controls)
-        elif value <= energy + 10 * noise:
-            after = assembly.gradient(trial, controls)
-            if abs(after @ step) <= 0.9 * abs(slope):
-                return trial, value, after
-        length *= 0.5
-    return None
+_INVERSE_ITERATIONS = 8

@@ -21,6 +21,10 @@ class PinEnergy(Energy):
         """Pins that pull each anchor to its target [m] with its own stiffness [N/m]."""
         self.stencils = stencils
         self.weights, self.targets, self.stiffness = weights, targets, stiffness
+        pairs = stiffness[:, None, None] * weights[:, :, None] * weights[:, None, :]
+        dim = targets.shape[1]
+        blocks = np.einsum("tab,ij->taibj", pairs, np.eye(dim))
+        self._blocks = blocks.reshape(len(stencils), weights.shape[1] * dim, weights.shape[1] * dim)
 
     def _offsets(self, nodes: Nodes) -> Points:
         return np.einsum("tc,tcd->td", self.weights, nodes[self.stencils]) - self.targets
@@ -33,8 +37,4 @@ class PinEnergy(Energy):
         return self.weights[:, :, None] * forces[:, None, :]
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        terms, corners = self.weights.shape
-        dim = nodes.shape[1]
-        pairs = self.stiffness[:, None, None] * self.weights[:, :, None] * self.weights[:, None, :]
-        blocks = np.einsum("tab,ij->taibj", pairs, np.eye(dim))
-        return blocks.reshape(terms, corners * dim, corners * dim)
+        return self._blocks

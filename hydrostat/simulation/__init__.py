@@ -1,6 +1,6 @@
 """The one bridge between robots and mechanics: `Simulation`."""
 
-from hydrostat.simulation.build import body_energies, cable_energies, round_off
+from hydrostat.simulation.build import body_energies, cable_energy, round_off
 from hydrostat.simulation.pose_file import pose_facts, write_pose
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -10,7 +10,7 @@ __all__ = [
     "Simulation",
     "SolvedPose",
     "body_energies",
-    "cable_energies",
+    "cable_energy",
     "pose_facts",
     "round_off",
     "write_pose",

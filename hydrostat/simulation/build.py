@@ -3,19 +3,58 @@
 import numpy as np
 
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import CableEnergy, Energy, NeoHookean, PinEnergy, RoundOff, TensionLaw
+from hydrostat.mechanics import (
+    CableEnergy,
+    Energy,
+    NeoHookean,
+    PinEnergy,
+    RoundOff,
+    TensionLaw,
+    Warp,
+    WeightEnergy,
+)
 from hydrostat.robot import Cable, Mount, Robot
 
 
 def body_energies(robot: Robot) -> list[Energy]:
-    """The elastic body and the pins that hold it."""
-    return [_body(robot), _pins(robot)]
+    """The elastic body, the pins that hold it and its weight."""
+    energies: list[Energy] = [elastic_energy(robot), pin_energy(robot)]
+    if robot.gravity is not None:
+        energies.append(_weight(robot))
+    return energies
 
 
-def cable_energies(robot: Robot) -> list[CableEnergy]:
-    """One energy for each cable, in their order; the control is the index of its winch."""
+def cable_energy(robot: Robot) -> CableEnergy:
+    """All cables, in their order; the control of each is the index of its winch."""
     order = {winch.name: index for index, winch in enumerate(robot.winches)}
-    return [_cable(robot, cable, order[cable.winch]) for cable in robot.cables]
+    cables = robot.cables
+    segments = [_segments(robot, cable) for cable in cables]
+    corners, dim = 2 * robot.body.mesh.dim + 2, robot.body.mesh.dim
+    return CableEnergy(
+        robot.body.mesh.nodes,
+        stencils=np.concatenate([np.zeros((0, corners), dtype=np.int64), *(own[0] for own in segments)]),
+        weights=np.concatenate([np.zeros((0, corners)), *(own[1] for own in segments)]),
+        offsets=np.concatenate([np.zeros((0, dim)), *(own[2] for own in segments)]),
+        cables=np.repeat(np.arange(len(cables)), [len(own[0]) for own in segments]),
+        law=TensionLaw(
+            stiffness=np.array([cable.stiffness for cable in cables]),
+            smoothing=np.array([cable.smoothing for cable in cables]),
+        ),
+        winches=np.array([order[cable.winch] for cable in cables], dtype=np.int64),
+        slack=np.array([cable.slack for cable in cables]),
+    )
+
+
+def warp(robot: Robot, body: NeoHookean, pins: PinEnergy) -> Warp:
+    """Steps along arcs for the body of a robot."""
+    return Warp(
+        stencils=body.stencils,
+        shape_gradients=body.shape_gradients,
+        volumes=body.volumes,
+        rest=robot.body.mesh.nodes,
+        held=pins.stencils,
+        holds=pins.weights,
+    )
 
 
 def round_off(robot: Robot) -> RoundOff:
@@ -27,13 +66,24 @@ def round_off(robot: Robot) -> RoundOff:
     return RoundOff(force=1e-13 * scale / body.mesh.size + 2e-16 * springs, energy=1e-15 * scale)
 
 
-def _body(robot: Robot) -> NeoHookean:
+def node_masses(robot: Robot) -> np.ndarray:
+    """Mass of each node [kg], (nodes,): each element shares its own evenly among its corners."""
+    body = robot.body
+    masses = body.material.density * (body.thickness or 1.0) * body.mesh.volumes
+    elements = body.mesh.elements
+    shares = np.repeat(masses / elements.shape[1], elements.shape[1])
+    return np.bincount(elements.ravel(), shares, len(body.mesh.nodes))
+
+
+def elastic_energy(robot: Robot) -> NeoHookean:
+    """The elastic body."""
     body = robot.body
     mu, lame = body.material.lame
     return NeoHookean(body.mesh.nodes, body.mesh.elements, mu=mu, lame=lame, thickness=body.thickness or 1.0)
 
 
-def _pins(robot: Robot) -> PinEnergy:
+def pin_energy(robot: Robot) -> PinEnergy:
+    """The pins, each at the points that it holds."""
     nodes = robot.body.mesh.nodes
     anchors = [pin.anchors(robot.body.mesh) for pin in robot.pins]
     return PinEnergy(
@@ -49,23 +99,20 @@ def _pins(robot: Robot) -> PinEnergy:
     )
 
 
-def _cable(robot: Robot, cable: Cable, control: int) -> CableEnergy:
-    mesh = robot.body.mesh
+def _weight(robot: Robot) -> WeightEnergy:
+    return WeightEnergy(robot.body.mesh.nodes, node_masses(robot)[:, None] * np.array(robot.gravity))
+
+
+def _segments(robot: Robot, cable: Cable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Stencils, signed weights and offsets of the segments of a cable that are not sheathed."""
     points = np.array(cable.points)
-    fixed = np.zeros(len(points), dtype=bool)
+    fixed = np.zeros((len(points), 1), dtype=bool)
     fixed[0] = robot.winch(cable.winch).mount is Mount.WORLD
-    anchors = locate(mesh, points[~fixed])
-    stencil, places = np.unique(anchors.stencils, return_inverse=True)
-    rows = np.repeat(np.flatnonzero(~fixed), anchors.weights.shape[1])
-    weights = np.zeros((len(points), len(stencil)))
-    np.add.at(weights, (rows, places.ravel()), anchors.weights.ravel())
-    return CableEnergy(
-        mesh.nodes,
-        stencil=stencil,
-        weights=weights,
-        offsets=np.where(fixed[:, None], points, 0.0),
-        bare=cable.bare,
-        law=TensionLaw(stiffness=cable.stiffness, smoothing=cable.smoothing),
-        control=control,
-        slack=cable.slack,
+    anchors = locate(robot.body.mesh, points)
+    weights, offsets = np.where(fixed, 0.0, anchors.weights), np.where(fixed, points, 0.0)
+    start = np.flatnonzero(cable.bare)
+    return (
+        np.concatenate([anchors.stencils[start], anchors.stencils[start + 1]], axis=1),
+        np.concatenate([-weights[start], weights[start + 1]], axis=1),
+        offsets[start + 1] - offsets[start],
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -9,9 +10,9 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.mechanics import Assembly, Factorisation, NewtonOptions, NewtonResult, minimise
+from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Stiffness, minimise
 from hydrostat.robot import Robot
-from hydrostat.simulation.build import body_energies, cable_energies, round_off
+from hydrostat.simulation.build import body_energies, cable_energy, round_off, warp
 from hydrostat.simulation.solved_pose import SolvedPose
 
 Contractions = Mapping[str, float] | Vector
@@ -26,15 +27,13 @@ class Simulation:
         mesh = robot.body.mesh
         self.robot = robot
         self.options = options or NewtonOptions()
-        self.cables = cable_energies(robot)
-        self.assembly = Assembly(
-            [*body_energies(robot), *self.cables],
-            node_count=len(mesh.nodes),
-            dim=mesh.dim,
-            control_count=len(robot.winches),
-        )
+        self.cables = cable_energy(robot)
+        body, pins, *rest = body_energies(robot)
+        self.assembly = Assembly([body, pins, *rest, self.cables], rest=mesh.nodes, control_count=len(robot.winches))
         self.marker_anchors = _markers(robot)
+        self._warp = warp(robot, body, pins)
         self._round_off = round_off(robot)
+        self._last: tuple[SolvedPose, Stiffness] | None = None
 
     def contractions(self, given: Contractions) -> Vector:
         """Contractions as an array in winch order [m].
@@ -72,8 +71,10 @@ class Simulation:
             NotConvergedError: the solver stopped early; its text says why.
         """
         goal = self.contractions(contractions)
-        nodes = self.robot.body.mesh.nodes if start is None else self._predict(start, goal)
-        result = self._minimise(nodes, goal)
+        if start is None:
+            result = self._minimise(self.robot.body.mesh.nodes, goal, self._rest_stiffness)
+        else:
+            result = self._minimise(start.nodes, goal, self._known_stiffness(start))
         if not result.converged:
             result = self._in_steps(goal, result)
         if strict and not result.converged:
@@ -90,29 +91,30 @@ class Simulation:
         Raises:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
-        factor = Factorisation(self.assembly.hessian(pose.nodes, pose.contractions))
-        if factor.singular:
+        stiffness = self.stiffness(pose)
+        if stiffness.singular:
             raise NotConvergedError(
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
         right = self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
-        return -factor.solve(right).reshape(*pose.nodes.shape, -1)
+        return -stiffness.solve(right).reshape(*pose.nodes.shape, -1)
 
     def tensions(self, nodes: Nodes, contractions: Vector) -> Vector:
         """Tension of each cable [N]."""
-        return np.array([cable.tension(nodes, contractions) for cable in self.cables])
+        return self.cables.tensions(nodes, contractions)
 
-    def _predict(self, start: SolvedPose, goal: Vector) -> Nodes:
-        """First-order guess from a solved pose, where it inverts nothing and lowers the energy."""
-        step = goal - start.contractions
-        if not step.any():
-            return start.nodes
-        try:
-            guess = start.nodes + self.jacobian(start) @ step
-        except NotConvergedError:
-            return start.nodes
-        better = self.assembly.value(guess, goal) < self.assembly.value(start.nodes, goal)
-        return guess if better else start.nodes
+    def stiffness(self, pose: SolvedPose) -> Stiffness:
+        """The Hessian at a pose, factorised."""
+        return self._known_stiffness(pose) or self.assembly.stiffness(pose.nodes, pose.contractions)
+
+    @cached_property
+    def _rest_stiffness(self) -> Stiffness:
+        """The Hessian at rest."""
+        return self.assembly.stiffness(self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches)))
+
+    def _known_stiffness(self, pose: SolvedPose) -> Stiffness | None:
+        """The Hessian at a pose if it is at hand: that of the last one solved."""
+        return self._last[1] if self._last is not None and self._last[0] is pose else None
 
     def _in_steps(self, goal: Vector, failed: NewtonResult) -> NewtonResult:
         """From rest by smaller and smaller steps; the first failure if even those do not arrive."""
@@ -127,7 +129,7 @@ class Simulation:
                 return replace(result, iterations=iterations)
         return failed
 
-    def _minimise(self, nodes: Nodes, contractions: Vector) -> NewtonResult:
+    def _minimise(self, nodes: Nodes, contractions: Vector, stiffness: Stiffness | None = None) -> NewtonResult:
         return minimise(
             self.assembly,
             nodes,
@@ -135,18 +137,22 @@ class Simulation:
             force_scale=lambda nodes: float(self.tensions(nodes, contractions).max(initial=0.0)),
             round_off=self._round_off,
             options=self.options,
+            warp=self._warp,
+            stiffness=stiffness,
         )
 
     def _solved(self, contractions: Vector, result: NewtonResult) -> SolvedPose:
         positions = self.marker_anchors.positions(result.nodes)
-        return SolvedPose(
+        pose = SolvedPose(
             contractions=contractions,
             nodes=result.nodes,
             markers={marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)},
             tensions=self.tensions(result.nodes, contractions),
             energy=result.energy,
-            result=result,
+            result=replace(result, stiffness=None),
         )
+        self._last = None if result.stiffness is None else (pose, result.stiffness)
+        return pose
 
 
 def _markers(robot: Robot) -> Anchors:

@@ -8,11 +8,11 @@ from builders import box_mesh, strip_mesh
 
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.mechanics import CableEnergy, Energy, FibreEnergy, NeoHookean, PinEnergy, TensionLaw
+from hydrostat.mechanics import CableEnergy, Energy, FibreEnergy, NeoHookean, PinEnergy, TensionLaw, WeightEnergy
 
 SIZE = {2: (0.1, 0.05), 3: (0.1, 0.05, 0.05)}
 CONTROLS = 3
-LAW = TensionLaw(stiffness=4e3, smoothing=0.5e-3)
+LAW = TensionLaw(stiffness=np.array([4e3]), smoothing=np.array([0.5e-3]))
 
 
 @dataclass(frozen=True)
@@ -69,24 +69,23 @@ def cable(
     mesh = rough_mesh(dim, random)
     points = random.uniform(0.1, 0.9, (5, dim)) * SIZE[dim]
     anchors = locate(mesh, points)
-    weights = anchors.matrix(len(mesh.nodes)).toarray()
-    offsets = np.zeros_like(points)
+    weights, offsets = anchors.weights.copy(), np.zeros_like(points)
     if world:
         weights[0], offsets[0] = 0.0, -0.03
-    stencil = np.flatnonzero(weights.any(axis=0))
-    bare = np.array([segment not in sheathed for segment in range(4)])
+    bare = [segment for segment in range(4) if segment not in sheathed]
+    ends = np.add(bare, 1)
     energy = CableEnergy(
         mesh.nodes,
-        stencil=stencil,
-        weights=weights[:, stencil],
-        offsets=offsets,
-        bare=bare,
+        stencils=np.concatenate([anchors.stencils[bare], anchors.stencils[ends]], axis=1),
+        weights=np.concatenate([-weights[bare], weights[ends]], axis=1),
+        offsets=offsets[ends] - offsets[bare],
+        cables=np.zeros(len(bare), dtype=np.int64),
         law=LAW,
-        control=1,
-        slack=0.002,
+        winches=np.array([1]),
+        slack=np.array([0.002]),
     )
     nodes, controls = deform(mesh, random), random.uniform(0, 0.02, CONTROLS)
-    controls[1] += stretch - energy.stretch(nodes, controls)
+    controls[1] += stretch - float(energy.stretches(nodes, controls)[0])
     return State(energy, nodes, controls)
 
 
@@ -99,6 +98,12 @@ def pins(dim: int, random: np.random.Generator) -> State:
         targets=random.uniform(0, 0.1, (4, dim)),
         stiffness=np.array([1e2, 1e3, 1e4, 1e5]),
     )
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def weight(dim: int, random: np.random.Generator) -> State:
+    mesh = rough_mesh(dim, random)
+    energy = WeightEnergy(mesh.nodes, random.standard_normal(mesh.nodes.shape))
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
@@ -115,10 +120,11 @@ def element_fibres(dim: int, random: np.random.Generator) -> State:
     return State(energy, deform(mesh, random), random.uniform(0, 5, len(mesh.elements)))
 
 
-_EPS = LAW.smoothing
+_EPS = float(LAW.smoothing[0])
 ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "neo-hookean": neo_hookean,
     "pins": pins,
+    "weight": weight,
     "fibres on edges": edge_fibres,
     "fibres in elements": element_fibres,
     "slack cable": lambda dim, random: cable(dim, random, stretch=-0.01),

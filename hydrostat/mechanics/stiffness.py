@@ -1,0 +1,83 @@
+"""`Stiffness`: the Hessian of the energy, factorised."""
+
+from copy import copy
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.mechanics.factorisation import Factorisation
+
+Columns = Float[np.ndarray, "dofs rank"]
+Small = Float[np.ndarray, "rank rank"]
+
+
+class Stiffness:
+    """H = K + G D G^T, with K sparse and factorised, G of a few columns, D small and positive semidefinite.
+
+    A taut cable couples all the nodes along it. Kept apart, it neither fills the factors of K nor spoils their
+    conditioning: H^-1 = K^-1 - Z R (I + R^T M R)^-1 R^T Z^T with Z = K^-1 G, M = G^T Z, D = R R^T (Woodbury). By
+    Haynsworth's inertia formula H has as many negative eigenvalues as K less those of I + R^T M R.
+
+    Attributes:
+        definite: whether H is positive definite.
+        singular: whether K or H cannot be solved with.
+        columns: G.
+        moves: Z [m/N]: how the nodes move when a cable pulls by 1 N more.
+        compliance: M [m/N].
+    """
+
+    def __init__(self, factors: Factorisation, columns: Columns, weights: Small) -> None:
+        """Take the factors of K, and G and D."""
+        self._factors = factors
+        self.columns = columns
+        if not factors.singular:
+            self.moves = factors.solve(columns) if columns.size else columns
+            self.compliance = columns.T @ self.moves
+        self._weigh(weights)
+
+    def with_weights(self, weights: Small) -> "Stiffness":
+        """The same with another D, for next to nothing."""
+        other = copy(self)
+        other._weigh(weights)
+        return other
+
+    def _weigh(self, weights: Small) -> None:
+        self.weights = weights
+        self._root = None
+        self.singular, self.definite = self._factors.singular, self._factors.definite
+        if self.singular or not weights.any():
+            return
+        self._root = _square_root(weights)
+        inner = np.eye(self._root.shape[1]) + self._root.T @ self.compliance @ self._root
+        signs, self._axes = np.linalg.eigh(0.5 * (inner + inner.T))
+        self._inverse = 1.0 / signs
+        size = np.abs(signs)
+        self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
+        self.definite = not self.singular and self._factors.negative == int((signs < 0).sum())
+
+    @property
+    def body_definite(self) -> bool:
+        """Whether K alone is positive definite."""
+        return self._factors.definite
+
+    def solve_body(self, right: Float[np.ndarray, " dofs"]) -> Float[np.ndarray, " dofs"]:
+        """Solution of K x = right."""
+        return self._factors.solve(right)
+
+    def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
+        """Solution of H x = right, for one or several right-hand sides."""
+        first = self._factors.solve(right)
+        if self._root is None:
+            return first
+        turned = (self._root @ self._axes).T @ (self.columns.T @ first)
+        turned = (turned.T * self._inverse).T
+        return first - self.moves @ (self._root @ (self._axes @ turned))
+
+
+def _square_root(weights: Small) -> Small:
+    """R with R R^T = weights."""
+    diagonal = weights.diagonal()
+    if np.count_nonzero(weights) == np.count_nonzero(diagonal):
+        return np.diag(np.sqrt(diagonal))
+    values, vectors = np.linalg.eigh(weights)
+    return vectors * np.sqrt(np.maximum(values, 0.0))

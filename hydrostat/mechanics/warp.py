@@ -1,0 +1,141 @@
+"""`Warp`: a step that turns material instead of stretching it."""
+
+import math
+from typing import no_type_check
+
+import numpy as np
+from jaxtyping import Float
+from numba import njit
+
+from hydrostat.arrays import Nodes
+from hydrostat.mechanics.energy import Stencils
+from hydrostat.mechanics.factorisation import Analysis
+
+
+class Warp:
+    """Follows a step of Newton along arcs.
+
+    A straight step that turns a limb by an angle t lengthens it by 1/cos t, so far from equilibrium Newton on a slender
+    body creeps. Here the step's gradient in each element is split into a stretch S and a spin W; the element is turned by
+    exp(W) and stretched by I + S, and the nodes that fit these best follow from one scalar Laplacian for all axes, whose
+    factors never change (rotation-strain warping, Huang et al. 2011). To first order the step is the same.
+    """
+
+    def __init__(
+        self,
+        *,
+        stencils: Stencils,
+        shape_gradients: Float[np.ndarray, "elements corners dim"],
+        volumes: Float[np.ndarray, " elements"],
+        rest: Nodes,
+        held: Stencils,
+        holds: Float[np.ndarray, "points corners"],
+    ) -> None:
+        """Elements of the body, and points, by their stencils and weights, that go where the straight step takes them."""
+        count = len(rest)
+        spread = volumes[:, None, None] * (shape_gradients @ shape_gradients.swapaxes(1, 2))
+        self._held, self._holds = held, holds
+        self._grip = float(np.einsum("eaa->", spread)) / count
+        grips = self._grip * holds[:, :, None] * holds[:, None, :]
+        entries = [_entries(stencils, spread, count), _entries(held, grips, count)]
+        keys, places = np.unique(np.concatenate([keys for keys, _ in entries]), return_inverse=True)
+        data = np.bincount(places, np.concatenate([values for _, values in entries]))
+        columns, rows = np.divmod(keys, count)
+        indptr = np.searchsorted(columns, np.arange(count + 1)).astype(np.int32)
+        self._factors = Analysis(indptr, rows.astype(np.int32), dim=1, points=rest).factorise(data)
+        self._elements = stencils, np.ascontiguousarray(shape_gradients), volumes
+        self._axes = tuple(range(rest.shape[1]))
+
+    def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:
+        """Where the nodes go if each element follows its own spin and stretch [m]."""
+        right = np.zeros_like(nodes)
+        _turn(nodes, step, *self._elements, self._axes, right)
+        ends = np.einsum("pc,pcd->pd", self._holds, (nodes + step)[self._held])
+        np.add.at(right, self._held, self._grip * self._holds[:, :, None] * ends[:, None, :])
+        return self._factors.solve(right)
+
+
+def _entries(stencils: Stencils, blocks: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Keys, column x count + row, and values of the blocks of all stencils."""
+    keys = stencils[:, None, :].astype(np.int64) * count + stencils[:, :, None]
+    return keys.ravel(), blocks.ravel()
+
+
+@njit(cache=True, error_model="numpy")
+@no_type_check
+def _turn(nodes, step, stencils, gradients, volumes, axes, right):
+    """Sum of volume x (exp(W) (I + S) F) grad N over the elements, where dF F^-1 = S + W."""
+    F = np.empty((3, 3))
+    dF = np.empty((3, 3))
+    A = np.empty((3, 3))
+    R = np.empty((3, 3))
+    for element in range(stencils.shape[0]):
+        F[:] = 0.0
+        dF[:] = 0.0
+        F[2, 2] = 1.0 if len(axes) == 2 else 0.0
+        for corner in range(stencils.shape[1]):
+            node = stencils[element, corner]
+            for i in axes:
+                for j in axes:
+                    F[i, j] += nodes[node, i] * gradients[element, corner, j]
+                    dF[i, j] += step[node, i] * gradients[element, corner, j]
+        _divide(dF, F, A)
+        x, y, z = 0.5 * (A[2, 1] - A[1, 2]), 0.5 * (A[0, 2] - A[2, 0]), 0.5 * (A[1, 0] - A[0, 1])
+        _rotation(x, y, z, R)
+        for i in range(3):
+            for j in range(i + 1, 3):
+                A[i, j] = 0.5 * (A[i, j] + A[j, i])
+                A[j, i] = A[i, j]
+        # dF <- F + S F, then A <- R dF
+        for i in range(3):
+            for j in range(3):
+                dF[i, j] = F[i, j] + A[i, 0] * F[0, j] + A[i, 1] * F[1, j] + A[i, 2] * F[2, j]
+        for i in range(3):
+            for j in range(3):
+                A[i, j] = R[i, 0] * dF[0, j] + R[i, 1] * dF[1, j] + R[i, 2] * dF[2, j]
+        for corner in range(stencils.shape[1]):
+            node = stencils[element, corner]
+            for i in axes:
+                total = 0.0
+                for j in axes:
+                    total += A[i, j] * gradients[element, corner, j]
+                right[node, i] += volumes[element] * total
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+@no_type_check
+def _divide(top, F, quotient):
+    """Top F^-1 of 3 x 3 matrices."""
+    c00 = F[1, 1] * F[2, 2] - F[1, 2] * F[2, 1]
+    c01 = F[0, 2] * F[2, 1] - F[0, 1] * F[2, 2]
+    c02 = F[0, 1] * F[1, 2] - F[0, 2] * F[1, 1]
+    c10 = F[1, 2] * F[2, 0] - F[1, 0] * F[2, 2]
+    c11 = F[0, 0] * F[2, 2] - F[0, 2] * F[2, 0]
+    c12 = F[0, 2] * F[1, 0] - F[0, 0] * F[1, 2]
+    c20 = F[1, 0] * F[2, 1] - F[1, 1] * F[2, 0]
+    c21 = F[0, 1] * F[2, 0] - F[0, 0] * F[2, 1]
+    c22 = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
+    scale = 1.0 / (F[0, 0] * c00 + F[0, 1] * c10 + F[0, 2] * c20)
+    for i in range(3):
+        p, q, r = top[i, 0] * scale, top[i, 1] * scale, top[i, 2] * scale
+        quotient[i, 0] = p * c00 + q * c10 + r * c20
+        quotient[i, 1] = p * c01 + q * c11 + r * c21
+        quotient[i, 2] = p * c02 + q * c12 + r * c22
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+@no_type_check
+def _rotation(x, y, z, R):
+    """Rodrigues' formula for the rotation vector (x, y, z)."""
+    square = x * x + y * y + z * z
+    angle = math.sqrt(square)
+    if angle < 1e-4:
+        first, second = 1.0 - square / 6.0, 0.5 - square / 24.0
+    else:
+        first, second = math.sin(angle) / angle, (1.0 - math.cos(angle)) / square
+    R[0, 0] = 1.0 - second * (y * y + z * z)
+    R[1, 1] = 1.0 - second * (x * x + z * z)
+    R[2, 2] = 1.0 - second * (x * x + y * y)
+    R[0, 1], R[1, 0] = second * x * y - first * z, second * x * y + first * z
+    R[0, 2], R[2, 0] = second * x * z + first * y, second * x * z - first * y
+    R[1, 2], R[2, 1] = second * y * z - first * x, second * y * z + first * x
