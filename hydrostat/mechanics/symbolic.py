@@ -19,7 +19,7 @@ UPDATE = 0.8e-9
 RATE = 30e9
 RAMP = 12.0
 """A model of time [s]: of a front; of an entry of L; of an entry handed on to the parent; of an operation of a large
-front, whose rate is halved where a front has only RAMP columns. Fitted on one machine (docs/decisions/0007)."""
+front, whose rate is halved where a front has only RAMP columns. Set on one machine (docs/decisions/0007)."""
 
 
 class Tree(NamedTuple):
