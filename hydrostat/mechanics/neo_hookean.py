@@ -110,7 +110,7 @@ def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
 
 @njit(cache=True, error_model="numpy", inline="always")
 @no_type_check
-def _spatial_gradients(G, J, gradients, axes, spatial):
+def _spatial_gradients(G, J, gradients, spatial):
     """Gradients of the shape functions in the deformed shape, F^-T grad N, from F = I + G (which this overwrites)."""
     for i in range(3):
         G[i, i] += 1.0
@@ -142,7 +142,7 @@ def _gradient(displacements, stencils, gradients, volumes, mu, lame, axes, block
         rest = gradients[element]
         change = _displacement_gradient(displacements, stencils[element], rest, axes, G)
         kept[:] = G
-        _spatial_gradients(G, 1.0 + change, rest, axes, spatial)
+        _spatial_gradients(G, 1.0 + change, rest, spatial)
         pressure = lame * math.log1p(change)
         for corner in range(stencils.shape[1]):
             for i in axes:
@@ -161,7 +161,7 @@ def _hessian(displacements, stencils, gradients, volumes, mu, lame, axes, share,
     for element in range(stencils.shape[0]):
         rest = gradients[element]
         change = _displacement_gradient(displacements, stencils[element], rest, axes, G)
-        _spatial_gradients(G, 1.0 + change, rest, axes, spatial)
+        _spatial_gradients(G, 1.0 + change, rest, spatial)
         volume = volumes[element]
         straight = volume * lame
         crossed = volume * (mu - lame * math.log1p(change))

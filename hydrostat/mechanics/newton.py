@@ -97,9 +97,9 @@ def minimise(
 ) -> NewtonResult:
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
-    The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). Of a straight
-    step and one along arcs, each with its cables tightened or not, the one of least energy is taken; it is halved
-    until no element is inverted and the energy falls. A saddle is left along its lowest mode.
+    The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). Of a
+    straight step and one along arcs, each with its cables tightened or not, the one of least energy is taken; it is
+    halved until no element is inverted and the energy falls. A saddle is left along its lowest mode.
 
     Args:
         assembly: the energy.

@@ -4,7 +4,7 @@ import math
 from typing import no_type_check
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from numba import njit
 
 from hydrostat.arrays import Nodes
@@ -15,10 +15,11 @@ from hydrostat.mechanics.factorisation import Analysis
 class Warp:
     """Follows a step of Newton along arcs.
 
-    A straight step that turns a limb by an angle t lengthens it by 1/cos t, so far from equilibrium Newton on a slender
-    body creeps. Here the step's gradient in each element is split into a stretch S and a spin W; the element is turned by
-    exp(W) and stretched by I + S, and the nodes that fit these best follow from one scalar Laplacian for all axes, whose
-    factors never change (rotation-strain warping, Huang et al. 2011). To first order the step is the same.
+    A straight step that turns a limb by an angle t lengthens it by 1/cos t, so far from equilibrium Newton on a
+    slender body creeps. Here the step's gradient in each element is split into a stretch S and a spin W; the element
+    is turned by exp(W) and stretched by I + S, and the nodes that fit these best follow from one scalar Laplacian for
+    all axes, whose factors never change (rotation-strain warping, Huang et al. 2011). To first order the step is the
+    same.
     """
 
     def __init__(
@@ -28,10 +29,10 @@ class Warp:
         shape_gradients: Float[np.ndarray, "elements corners dim"],
         volumes: Float[np.ndarray, " elements"],
         rest: Nodes,
-        held: Stencils,
+        held: Int[np.ndarray, "points corners"],
         holds: Float[np.ndarray, "points corners"],
     ) -> None:
-        """Elements of the body, and points, by their stencils and weights, that go where the straight step takes them."""
+        """Elements of the body, and held points, by stencils and weights, that go where the straight step takes them."""
         count = len(rest)
         spread = volumes[:, None, None] * (shape_gradients @ shape_gradients.swapaxes(1, 2))
         self._held, self._holds = held, holds

@@ -6,18 +6,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.plot.camera import Camera
+from hydrostat.plot.camera import Camera, Spots
 from hydrostat.plot.felt import draw_felt, draw_ghost, draw_mesh, draw_pins
 from hydrostat.plot.palette import GHOST, GHOST_FILL, SEAM, mix
 from hydrostat.plot.places import Place, Places
 from hydrostat.plot.render import render
-from hydrostat.plot.sheet import MILLIMETRES, Sheet
+from hydrostat.plot.sheet import BODY, MILLIMETRES, Sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.surface import Surface
 from hydrostat.robot import Robot
 
 DPI = 200
 """Pixels of an image of a body to an inch."""
+
+MOST_PIXELS = 1.0e6
+"""Pixels of a larger image grow, so that no image takes long."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +85,8 @@ class SpacePane:
     def draw_ghost(self, sheet: Sheet) -> None:
         """The rest shape, as a faint shadow."""
         mesh = self.robot.body.mesh
-        image = render(self.camera.see(mesh.nodes), mesh.boundary, pixel=_pixel(sheet), shaded=False)
+        spots = self.camera.see(mesh.nodes)
+        image = render(spots, mesh.boundary, pixel=_pixel(sheet, spots), shaded=False)
         rings = [ring + self.shift for ring in image.rings()]
         sheet.area(rings, facecolor=GHOST_FILL, edgecolor=GHOST, linewidth=0.8, joinstyle="round", zorder=2)
 
@@ -91,8 +95,9 @@ class SpacePane:
     ) -> Surface:
         """The body with its nodes at `nodes` [m]; `pale` fades it, `mesh` and `pins` add these."""
         body = self.robot.body.mesh
+        spots = self.camera.see(nodes)
         image = render(
-            self.camera.see(nodes), body.boundary, pixel=_pixel(sheet), up=self.camera.axes[:, 2], pale=0.6 * pale,
+            spots, body.boundary, pixel=_pixel(sheet, spots), up=self.camera.axes[:, 2], pale=0.6 * pale,
             held=_held(self.robot) if pins else None, lines=_density(self.robot, sheet) if mesh else 0.0,
             point=sheet.scale,
         )  # fmt: skip
@@ -100,7 +105,7 @@ class SpacePane:
         left, right, low, high = image.extent
         sheet.axes.imshow(
             image.colours, extent=(left + x, right + x, low + y, high + y), origin="lower", aspect="auto", zorder=3,
-            interpolation="antialiased", clip_on=False,
+            interpolation="antialiased", clip_on=False, label=BODY,
         )  # fmt: skip
         rings = [ring + self.shift for ring in image.rings()]
         seam = mix(SEAM, "#ffffff", 0.6 * pale)
@@ -111,9 +116,9 @@ class SpacePane:
 Pane = FlatPane | SpacePane
 
 
-def _pixel(sheet: Sheet) -> float:
-    """Side of a pixel [mm]."""
-    return 72 / DPI * sheet.scale
+def _pixel(sheet: Sheet, spots: Spots) -> float:
+    """Side of a pixel [mm] of an image of spots [mm]."""
+    return max(72 / DPI * sheet.scale, float(np.sqrt(np.ptp(spots[:, :2], axis=0).prod() / MOST_PIXELS)))
 
 
 def _held(robot: Robot) -> Vector:

@@ -10,11 +10,13 @@ from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.palette import PAGE_COLOURS, PAPER
+from hydrostat.plot.sheet import BODY
 
 
 def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
@@ -42,7 +44,7 @@ def inline_svg(figure: Figure, *, name: str, label: str) -> str:
     import html
 
     buffer = io.StringIO()
-    with _settings(salt=name):
+    with _settings(salt=name), _sharp(figure):
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
@@ -61,6 +63,19 @@ def inline_svg(figure: Figure, *, name: str, label: str) -> str:
     head = f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" {box[0] if box else ""}'
     head += f' class="figure" role="img" aria-label="{html.escape(label)}">'
     return re.sub(r"<svg[^>]*>", lambda _: head, text, count=1).strip()
+
+
+@contextmanager
+def _sharp(figure: Figure) -> Iterator[None]:
+    """Images of bodies pixel by pixel, while an SVG is made; else they would be sampled anew, and coarser."""
+    images = [image for image in figure.findobj(AxesImage) if image.get_label() == BODY]
+    for image in images:
+        image.set_interpolation("none")
+    try:
+        yield
+    finally:
+        for image in images:
+            image.set_interpolation("antialiased")
 
 
 def _shorter(match: re.Match[str]) -> str:

@@ -19,6 +19,9 @@ MILLIMETRES = 1e3
 WIDTH = 6.4
 """Width of a picture [inch]."""
 
+BODY = "body"
+"""Label of an image of a body in space, by which it is known when the picture is written."""
+
 TALLEST = 1.15
 """Greatest height of a picture, as a multiple of its width."""
 

@@ -161,3 +161,20 @@ def test_the_report_of_a_body_in_space() -> None:
     assert "tetrahedra" in text
     assert "<animate" not in text
     assert text.count("data:image/png;base64,") >= 10
+
+
+def test_a_page_holds_the_body_pixel_by_pixel() -> None:
+    """Oracle: the image as it was rendered, once per view, in the order of the views."""
+    import base64
+    import io
+    import re
+
+    drawn = figure("draw_rest")
+    rendered = [image.get_array() for image in drawn.axes[0].images]
+    text = plot.inline_svg(drawn, name="it", label="")
+    held = re.findall(r'"data:image/png;base64,\s*([^"]+)"', text)
+    assert len(held) == len(rendered) == 2
+    for code, image in zip(held, rendered, strict=True):
+        with Image.open(io.BytesIO(base64.b64decode(code))) as picture:
+            assert picture.size == (image.shape[1], image.shape[0])  # pyright: ignore[reportOptionalMemberAccess]
+    assert all(image.get_interpolation() != "none" for image in drawn.axes[0].images)

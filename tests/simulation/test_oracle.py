@@ -7,7 +7,7 @@ with hydrostat. Its derivatives are automatic ones, dense and without a sparse p
 import math
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -73,6 +73,8 @@ CASES: dict[str, tuple[Callable[[], Robot], list[float]]] = {
     "strip": (lambda: strip_robot(columns=8, rows=2, slack=0.002, sheathed=((1, 3),)), [0.025, 0.006]),
     "bar": (bar_robot, [0.02]),
     "block": (block_robot, [0.012, 0.007]),
+    "heavy block": (lambda: replace(block_robot(), gravity=(2.0, -3.0, -9.0)), [0.012, 0.007]),
+    "heavy strip": (lambda: replace(strip_robot(columns=6, rows=2), gravity=(1.0, -9.0)), [0.012, 0.02]),
 }
 
 
@@ -240,6 +242,12 @@ def test_nodes_tensions_and_jacobian_are_those_of_jax(name: str) -> None:
     assert nodes < 1e-8
     assert tensions < 1e-7
     assert jacobian < 1e-6
+
+
+def test_gravity_is_seen() -> None:
+    """The check can fail: the heavy block hangs lower than the weightless one, by far more than is allowed."""
+    heavy, light = oracle("heavy block"), oracle("block")
+    assert np.abs(heavy.nodes - light.nodes).max() > 1e-3 * CASES["block"][0]().body.mesh.size
 
 
 @pytest.mark.parametrize("name", CASES)
