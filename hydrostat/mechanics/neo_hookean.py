@@ -155,9 +155,10 @@ def _gradient(displacements, stencils, gradients, volumes, mu, lame, axes, block
 @njit(cache=True, error_model="numpy")
 @no_type_check
 def _hessian(displacements, stencils, gradients, volumes, mu, lame, axes, share, blocks):
-    G = np.empty((3, 3))
-    spatial = np.empty((4, 3))
+    G, V, stretches, vectors = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    spatial, local = np.empty((4, 3)), np.empty((4, 3))
     dim = len(axes)
+    column = np.empty(stencils.shape[1] * dim)
     for element in range(stencils.shape[0]):
         rest = gradients[element]
         change = _displacement_gradient(displacements, stencils[element], rest, axes, G)
@@ -180,71 +181,136 @@ def _hessian(displacements, stencils, gradients, volumes, mu, lame, axes, share,
                         block[a * dim + i, b * dim + j] = entry
                         block[b * dim + j, a * dim + i] = entry
         if share > 0.0:
-            _lift(G, 1.0 + change, rest, share * volume, mu, lame, axes, block)
+            _lift(G, 1.0 + change, rest, share * volume, mu, lame, axes, block, V, stretches, vectors, local, column)
 
 
 @njit(cache=True, error_model="numpy")
 @no_type_check
-def _lift(F, J, gradients, weight, mu, lame, axes, block):
+def _lift(F, J, gradients, weight, mu, lame, axes, block, V, stretches, vectors, local, column):
     """Take the negative eigenvalues, times a weight, out of one element's Hessian block.
 
     The eigenvectors of d2Psi/dF2 are known from the singular value decomposition F = U diag(s) V^T (Smith, de Goes and
-    Kim 2019): three that stretch, and for each pair of axes a twist and a flip.
+    Kim 2019): three that stretch, and for each pair of axes a twist and a flip. The last five arguments are room to
+    work in.
     """
-    dim = len(axes)
-    squares, V = np.linalg.eigh(F.T @ F)
-    s = np.sqrt(np.maximum(squares, 1e-300))
-    U = F @ V
+    dim, corners = len(axes), gradients.shape[0]
     for i in range(3):
         for j in range(3):
-            U[i, j] /= s[j]
-    first = (lame * math.log(J) - mu) / J
-    second = (lame - lame * math.log(J) + mu) / (J * J)
-    stretches = np.empty((3, 3))
+            stretches[i, j] = F[0, i] * F[0, j] + F[1, i] * F[1, j] + F[2, i] * F[2, j]
+    _eigen(stretches, V)
+    s0 = math.sqrt(max(stretches[0, 0], 1e-300))
+    s1 = math.sqrt(max(stretches[1, 1], 1e-300))
+    s2 = math.sqrt(max(stretches[2, 2], 1e-300))
+    s = (s0, s1, s2)
+    out = -1
+    if dim == 2:  # the axis out of the plane does not take part
+        for k in range(3):
+            if abs(V[2, k]) > 0.5:
+                out = k
+    log_j = math.log(J)
+    first = (lame * log_j - mu) / J
+    second = lame - lame * log_j + mu
     for i in range(3):
         for j in range(3):
-            stretches[i, j] = second * J / s[i] * J / s[j]
-            if i == j:
-                stretches[i, j] += mu
-            else:
-                stretches[i, j] += first * s[3 - i - j]
-    if dim == 2:
-        # The axis out of the plane does not take part: its singular value is 1 and its vector (0, 0, 1).
+            stretches[i, j] = mu + second / (s[i] * s[i]) if i == j else second / (s[i] * s[j]) + first * s[3 - i - j]
+    if out >= 0:
+        for j in range(3):
+            stretches[out, j] = 0.0
+            stretches[j, out] = 0.0
+    # local[a, k] = V_k . grad N_a, and U_k = F V_k / s_k in the place of V from here on
+    for a in range(corners):
+        for k in range(3):
+            local[a, k] = gradients[a, 0] * V[0, k] + gradients[a, 1] * V[1, k] + gradients[a, 2] * V[2, k]
+    for k in range(3):
+        x, y, z = V[0, k], V[1, k], V[2, k]
         for i in range(3):
-            if abs(V[2, i]) > 0.5:
-                for j in range(3):
-                    stretches[i, j] = 0.0
-                    stretches[j, i] = 0.0
-    values, vectors = np.linalg.eigh(stretches)
-    corners = gradients.shape[0]
-    mode = np.empty((3, 3))
-    column = np.empty(corners * dim)
-    for index in range(9):
-        mode[:] = 0.0
-        if index < 3:
-            value = values[index]
-            for k in range(3):
-                for i in range(3):
-                    for j in range(3):
-                        mode[i, j] += vectors[k, index] * U[i, k] * V[j, k]
-        else:
-            k = index % 3
-            p, q = (k + 1) % 3, (k + 2) % 3
-            sign = 1.0 if index < 6 else -1.0
-            if dim == 2 and abs(V[2, k]) < 0.5:
-                continue
+            V[i, k] = (F[i, 0] * x + F[i, 1] * y + F[i, 2] * z) / s[k]
+    for k in range(3):
+        if out >= 0 and k != out:
+            continue
+        p, q = (k + 1) % 3, (k + 2) % 3
+        for sign in (1.0, -1.0):
             value = mu - sign * first * s[k]
-            for i in range(3):
-                for j in range(3):
-                    mode[i, j] = (U[i, p] * V[j, q] + sign * U[i, q] * V[j, p]) * math.sqrt(0.5)
+            if value >= 0.0:
+                continue
+            for a in range(corners):
+                for i in axes:
+                    column[a * dim + i] = V[i, p] * local[a, q] + sign * V[i, q] * local[a, p]
+            _add_square(block, -0.5 * weight * value, column)
+    if _positive(stretches, out):
+        return
+    _eigen(stretches, vectors)
+    for k in range(3):
+        value = stretches[k, k]
         if value >= 0.0:
             continue
         for a in range(corners):
             for i in axes:
-                total = 0.0
-                for j in axes:
-                    total += mode[i, j] * gradients[a, j]
-                column[a * dim + i] = total
-        for row in range(corners * dim):
-            for other in range(corners * dim):
-                block[row, other] -= weight * value * column[row] * column[other]
+                column[a * dim + i] = (
+                    vectors[0, k] * V[i, 0] * local[a, 0]
+                    + vectors[1, k] * V[i, 1] * local[a, 1]
+                    + vectors[2, k] * V[i, 2] * local[a, 2]
+                )
+        _add_square(block, -weight * value, column)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+@no_type_check
+def _positive(A, out):
+    """Whether a symmetric 3 x 3 matrix, less its axis `out`, is positive definite, by its leading minors."""
+    if out >= 0:
+        p, q = (out + 1) % 3, (out + 2) % 3
+        return A[p, p] > 0.0 and A[p, p] * A[q, q] > A[p, q] * A[p, q]
+    minor = A[0, 0] * A[1, 1] - A[0, 1] * A[0, 1]
+    whole = (
+        A[2, 2] * minor - A[0, 0] * A[1, 2] * A[1, 2] - A[1, 1] * A[0, 2] * A[0, 2] + 2.0 * A[0, 1] * A[0, 2] * A[1, 2]
+    )
+    return A[0, 0] > 0.0 and minor > 0.0 and whole > 0.0
+
+
+@njit(cache=True, error_model="numpy")
+@no_type_check
+def _add_square(block, scale, column):
+    """Block += scale column column^T."""
+    for row in range(column.shape[0]):
+        factor = scale * column[row]
+        for other in range(column.shape[0]):
+            block[row, other] += factor * column[other]
+
+
+@njit(cache=True, error_model="numpy")
+@no_type_check
+def _eigen(A, V):
+    """Make a symmetric 3 x 3 matrix diagonal by Jacobi's rotations; the columns of V are its eigenvectors."""
+    for i in range(3):
+        for j in range(3):
+            V[i, j] = 1.0 if i == j else 0.0
+    size = abs(A[0, 0]) + abs(A[1, 1]) + abs(A[2, 2])
+    for _ in range(12):
+        if abs(A[0, 1]) + abs(A[0, 2]) + abs(A[1, 2]) <= 1e-15 * size:
+            return
+        for p in range(2):
+            for q in range(p + 1, 3):
+                if A[p, q] == 0.0:
+                    continue
+                tilt = 0.5 * (A[q, q] - A[p, p]) / A[p, q]
+                t = 1.0 / (abs(tilt) + math.sqrt(tilt * tilt + 1.0))
+                if tilt < 0.0:
+                    t = -t
+                c = 1.0 / math.sqrt(t * t + 1.0)
+                sine = t * c
+                r = 3 - p - q
+                turn = t * A[p, q]
+                A[p, p] -= turn
+                A[q, q] += turn
+                A[p, q] = 0.0
+                A[q, p] = 0.0
+                x, y = A[r, p], A[r, q]
+                A[r, p] = c * x - sine * y
+                A[r, q] = sine * x + c * y
+                A[p, r] = A[r, p]
+                A[q, r] = A[r, q]
+                for i in range(3):
+                    x, y = V[i, p], V[i, q]
+                    V[i, p] = c * x - sine * y
+                    V[i, q] = sine * x + c * y

@@ -32,7 +32,7 @@ class Warp:
         held: Int[np.ndarray, "points corners"],
         holds: Float[np.ndarray, "points corners"],
     ) -> None:
-        """Elements of the body, and held points, by stencils and weights, that go where the straight step takes them."""
+        """Elements of the body; and held points, by stencils and weights, that go where the straight step leads."""
         count = len(rest)
         spread = volumes[:, None, None] * (shape_gradients @ shape_gradients.swapaxes(1, 2))
         self._held, self._holds = held, holds
