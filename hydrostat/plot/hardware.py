@@ -67,9 +67,7 @@ def draw_cables(
     for index, (cable, run) in enumerate(zip(robot.cables, runs, strict=True)):
         colour = colours[index] if colours is not None else by_winch[cable.winch]
         for start, end in cable.sheathed:
-            pipe, faded = run.points[start : end + 1], _faded(colour, float(run.fades[start : end + 1].mean()))
-            sheet.curve(pipe, color=mix(faded, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=8.2)
-            sheet.curve(pipe, color=mix(faded, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=8.3)
+            _draw_sheath(sheet, run.points[start : end + 1], colour, width, float(run.fades[start : end + 1].mean()))
         for part, fade in run.parts:
             _draw_part(sheet, part, colour, width, fade)
         _draw_beads(sheet, run, colour)
@@ -147,16 +145,24 @@ def _along(run: Places, share: float) -> Place:
 
 
 def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str, fade: float) -> None:
-    """Flange, drum and axle; a winch outside the body sits on a square plate."""
+    """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath labels and markers."""
     size, light, colour = spool_size(winch, sheet.scale), _faded(LIGHT, fade), _faded(colour, fade)
+    order = 19.0 if fade == 0 else 9.5
     if winch.mount is Mount.WORLD:
         sheet.curve(
             centre[None], linestyle="none", marker="s", markersize=1.5 * size, color=light,
-            markeredgecolor=_faded(DARK, fade), markeredgewidth=0.9, zorder=19,
+            markeredgecolor=_faded(DARK, fade), markeredgewidth=0.9, zorder=order,
         )  # fmt: skip
-    sheet.dots(centre[None], size, color=colour, markeredgecolor=light, markeredgewidth=1.0, zorder=20)
-    sheet.dots(centre[None], 0.58 * size, color=mix(colour, light, 0.75), markeredgecolor="none", zorder=20.1)
-    sheet.dots(centre[None], 0.2 * size, color=colour, markeredgecolor="none", zorder=20.2)
+    sheet.dots(centre[None], size, color=colour, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
+    sheet.dots(centre[None], 0.58 * size, color=mix(colour, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
+    sheet.dots(centre[None], 0.2 * size, color=colour, markeredgecolor="none", zorder=order + 1.2)
+
+
+def _draw_sheath(sheet: Sheet, pipe: Places, colour: str, width: float, fade: float) -> None:
+    """A pale pipe around a piece of a cable, beneath all cables where the body covers it."""
+    wall, order = _faded(colour, fade), 6.0 if fade > 0 else 8.2
+    sheet.curve(pipe, color=mix(wall, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order)
+    sheet.curve(pipe, color=mix(wall, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1)
 
 
 def _draw_part(sheet: Sheet, part: Places, colour: str, width: float, fade: float) -> None:

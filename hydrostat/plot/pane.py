@@ -110,7 +110,8 @@ class SpacePane:
         rings = [ring + self.shift for ring in image.rings()]
         seam = mix(SEAM, "#ffffff", 0.6 * pale)
         sheet.area(rings, facecolor="none", edgecolor=seam, linewidth=0.9, joinstyle="round", zorder=3.1)
-        return Surface(rings, (self.camera, self.shift, image, MILLIMETRES * body.size))
+        thickness = MILLIMETRES * float(np.ptp(body.nodes, axis=0).min())
+        return Surface(rings, (self.camera, self.shift, image, thickness))
 
 
 Pane = FlatPane | SpacePane

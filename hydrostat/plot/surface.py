@@ -38,8 +38,8 @@ class Surface:
 
     Attributes:
         rings: its silhouette [mm], the outer ring first.
-        sight: camera, shift on the sheet [mm], image and size of the body [mm]; None for a flat body, which hides
-            nothing.
+        sight: camera, shift on the sheet [mm], image and shortest side of the body [mm]; None for a flat body, which
+            hides nothing.
     """
 
     rings: list[Places]
@@ -49,10 +49,10 @@ class Surface:
         """How far things at points [m] fade behind the body: 0 in front of it, towards 1 behind it."""
         if self.sight is None:
             return np.zeros(len(points))
-        camera, _, image, size = self.sight
-        depths = image.covers(camera.see(points)) / size
-        levels = np.ceil(LEVELS * (1 - np.exp(-4 * depths))) / LEVELS
-        return np.where(depths > 0.006, 0.26 + 0.42 * levels, 0.0)
+        camera, _, image, thickness = self.sight
+        depths = image.covers(camera.see(points))
+        levels = np.ceil(LEVELS * (1 - np.exp(-3 * depths / thickness))) / LEVELS
+        return np.where(depths > max(0.02 * thickness, image.pixel), 0.26 + 0.42 * levels, 0.0)
 
     def run(self, points: Points) -> Run:
         """A cable through points [m]."""

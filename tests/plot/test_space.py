@@ -104,6 +104,18 @@ def test_a_wire_in_front_is_drawn_over_one_behind() -> None:
     assert max(solid) > max(rest)
 
 
+def test_a_sheath_inside_the_body_does_not_hide_its_cable() -> None:
+    """Oracle: the sheathed cable runs inside all the way, so all of its pipe lies beneath all of its line."""
+    from hydrostat.plot.palette import LIGHT
+
+    robot = space_network().robot
+    lines = plot.draw_network(robot).axes[0].lines
+    pipes = [line.get_zorder() for line in lines if line.get_linewidth() > 5.5 and len(line.get_xdata()) == 2]  # pyright: ignore
+    cables = [line.get_zorder() for line in lines if len(line.get_xdata()) > 40 and line.get_color() != LIGHT]  # pyright: ignore
+    assert pipes
+    assert max(pipes) < min(cables)
+
+
 def test_two_views_to_one_scale_that_do_not_meet() -> None:
     """Oracle: 10 mm along x are 10 mm times the share of x in the view; the bodies' boxes are disjoint."""
     robot = space_network().robot
