@@ -145,7 +145,7 @@ def _along(run: Places, share: float) -> Place:
 
 
 def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str, fade: float) -> None:
-    """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath labels and markers."""
+    """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath markers."""
     size, light, colour = spool_size(winch, sheet.scale), _faded(LIGHT, fade), _faded(colour, fade)
     order = 19.0 if fade == 0 else 9.5
     if winch.mount is Mount.WORLD:
