@@ -28,8 +28,10 @@ class Assembly:
         self.size = rest.size
         self.control_count = control_count
         self._dofs = [
-            (energy.stencils[:, :, None] * rest.shape[1] + np.arange(rest.shape[1])).reshape(len(energy.stencils), -1)
-            for energy in self.energies
+            (stencils[:, :, None] * rest.shape[1] + np.arange(rest.shape[1])).reshape(
+                len(stencils), stencils.shape[1] * rest.shape[1]
+            )
+            for stencils in (energy.stencils for energy in self.energies)
         ]
         self._rest = rest
         self._pattern()
@@ -152,7 +154,7 @@ def _add_vectors(stencils, vectors, total):
 @njit(cache=True)
 @no_type_check
 def _add_blocks(stencils, slots, strides, blocks, data):
-    """Add every dim x dim block to the values of the sparse matrix."""
+    """Add every dim x dim block of symmetric blocks to the values of the sparse matrix."""
     corners = stencils.shape[1]
     dim = blocks.shape[1] // corners
     for term in range(stencils.shape[0]):
@@ -162,4 +164,4 @@ def _add_blocks(stencils, slots, strides, blocks, data):
                 start = slots[term, a, b]
                 for j in range(dim):
                     for i in range(dim):
-                        data[start + j * stride + i] += blocks[term, a * dim + i, b * dim + j]
+                        data[start + j * stride + i] += blocks[term, b * dim + j, a * dim + i]

@@ -98,7 +98,7 @@ class CableEnergy(Energy):
 
     def lengths(self, nodes: Nodes) -> Vector:
         """Length of each cable without its sheathed segments [m]."""
-        return np.bincount(self.cables, self._spans(nodes)[1], len(self.winches))
+        return np.bincount(self.cables, self._spans(nodes)[1], len(self.winches)).astype(float)
 
     def stretches(self, nodes: Nodes, controls: Vector) -> Vector:
         """S [m]: how much longer each cable is than it should be; negative when slack."""

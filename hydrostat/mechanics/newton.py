@@ -140,6 +140,7 @@ class _Descent:
         if not np.isfinite(energy):
             return self._result(start, Reason.BAD_START, np.inf, 0.0, energy, 0, None)
         gradient = assembly.gradient(nodes, controls)
+        last = None
         for iteration in count():
             allowed = max(self.options.tolerance * self.force_scale(nodes), self.noise.force)
             residual = float(np.abs(gradient).max())
@@ -152,16 +153,18 @@ class _Descent:
                     return self._result(nodes, reason, residual, allowed, energy, iteration, stiffness)
                 nodes, energy, gradient = found
                 continue
-            stiffness, known = self._reuse(nodes, known), None
-            if stiffness is None:
-                stiffness = self._definite(nodes)
             found = None
-            if stiffness is not None:
-                found = self._search(nodes, energy, gradient, stiffness)
+            if last is not None and residual < _NEAR * self.force_scale(nodes):
+                found = self._chord(nodes, energy, gradient, last)
+            if found is None:
+                last, known = self._reuse(nodes, known) or self._definite(nodes), None
+                if last is not None:
+                    found = self._search(nodes, energy, gradient, last)
             if found is None:
                 stiffness = assembly.stiffness(nodes, controls)
                 return self._result(nodes, Reason.NO_DESCENT, residual, allowed, energy, iteration, stiffness)
             nodes, energy, gradient = found
+            last = last if self.share == 0.0 else None
         raise AssertionError("count() never ends")
 
     def _reuse(self, nodes: Nodes, known: Stiffness | None) -> Stiffness | None:
@@ -207,11 +210,11 @@ class _Descent:
         for _ in range(self.options.halvings):
             gain = -length * slope
             if gain > self.noise.energy:
-                value, trial = trials.best(length, bend=gain > 1e3 * self.noise.energy)
+                value, trial = trials.best(length)
                 if value <= energy - 1e-4 * gain:
                     return trial, value, self.assembly.gradient(trial, self.controls)
             else:
-                trial = nodes + length * step.reshape(nodes.shape)
+                trial = trials.plain(length)
                 value = self.assembly.value(trial, self.controls)
                 if value <= energy + 10 * self.noise.energy:
                     after = self.assembly.gradient(trial, self.controls)
@@ -219,6 +222,21 @@ class _Descent:
                         return trial, value, after
             length *= 0.5
         return None
+
+    def bend(self, nodes: Nodes, step: Nodes) -> Nodes:
+        """Where a step leads, along arcs if that is known."""
+        return nodes + step if self.warp is None else self.warp(nodes, step)
+
+    def _chord(
+        self, nodes: Nodes, energy: float, gradient: Vector, last: Stiffness
+    ) -> tuple[Nodes, float, Vector] | None:
+        """One more step with the factors of the last one; None if it does not pay."""
+        trial = self.bend(nodes, -last.solve(gradient).reshape(nodes.shape))
+        value = self.assembly.value(trial, self.controls)
+        if not value <= energy + 10 * self.noise.energy:
+            return None
+        after = self.assembly.gradient(trial, self.controls)
+        return (trial, value, after) if np.abs(after).max() < _PAYS * np.abs(gradient).max() else None
 
     def _step(self, nodes: Nodes, gradient: Vector, stiffness: Stiffness) -> Vector:
         """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
@@ -273,7 +291,8 @@ class _Trials:
     """Where one step may lead: straight or along arcs, with the cables tightened or as they come."""
 
     def __init__(self, descent: _Descent, nodes: Nodes, step: Vector, stiffness: Stiffness) -> None:
-        self.assembly, self.controls, self.warp = descent.assembly, descent.controls, descent.warp
+        self.assembly, self.controls = descent.assembly, descent.controls
+        self.bend, self.noise = descent.bend, descent.noise.energy
         self.nodes, self.step = nodes, step.reshape(nodes.shape)
         self.tighten = None
         if descent.cables is not None and stiffness.columns.size:
@@ -282,12 +301,13 @@ class _Trials:
             self.pull = stiffness.columns.T @ step
             self.tighten = Tightener(descent.cables, self.controls, stiffness)
 
-    def best(self, length: float, *, bend: bool) -> tuple[float, Nodes]:
-        """Energy and nodes of the best trial at this length of the step."""
-        step = length * self.step
-        places = [self.nodes + step]
-        if bend and self.warp is not None:
-            places.append(self.warp(self.nodes, step))
+    def plain(self, length: float) -> Nodes:
+        """Where this length of the step leads, along arcs if that is known."""
+        return self.bend(self.nodes, length * self.step)
+
+    def best(self, length: float) -> tuple[float, Nodes]:
+        """Energy and nodes of the best trial at this length of the step; of equals the one along arcs."""
+        places = [self.plain(length), self.nodes + length * self.step]
         if self.tighten is not None:
             promised = self.cables.law.tension(self.stretches + length * self.pull)
             for place in tuple(places):
@@ -296,6 +316,8 @@ class _Trials:
                     places.append(tightened)
         values = [self.assembly.value(place, self.controls) for place in places]
         least = int(np.argmin(values))
+        if not values[least] < values[0] - self.noise:
+            least = 0
         return values[least], places[least]
 
 
@@ -311,6 +333,12 @@ def _lowest_mode(stiffness: Stiffness, size: int) -> Vector:
             best, lowest = mode, curvature
     return best / np.abs(best).max()
 
+
+_NEAR = 1e-5
+"""With less than this share of the largest applied force left over, the factors of the last step may serve again."""
+
+_PAYS = 0.2
+"""A step with old factors costs a fifth of one with new ones; it has to bring the residual down this far."""
 
 _LEAST_SHARE = 1 / 32
 """Below this share of what is negative, try the full Hessian."""

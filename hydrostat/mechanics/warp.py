@@ -35,9 +35,7 @@ class Warp:
         """Elements of the body; and held points, by stencils and weights, that go where the straight step leads."""
         count = len(rest)
         spread = volumes[:, None, None] * (shape_gradients @ shape_gradients.swapaxes(1, 2))
-        self._held, self._holds = held, holds
-        self._grip = float(np.einsum("eaa->", spread)) / count
-        grips = self._grip * holds[:, :, None] * holds[:, None, :]
+        grips = float(np.einsum("eaa->", spread)) / count * holds[:, :, None] * holds[:, None, :]
         entries = [_entries(stencils, spread, count), _entries(held, grips, count)]
         keys, places = np.unique(np.concatenate([keys for keys, _ in entries]), return_inverse=True)
         data = np.bincount(places, np.concatenate([values for _, values in entries]))
@@ -51,9 +49,7 @@ class Warp:
         """Where the nodes go if each element follows its own spin and stretch [m]."""
         right = np.zeros_like(nodes)
         _turn(nodes, step, *self._elements, self._axes, right)
-        ends = np.einsum("pc,pcd->pd", self._holds, (nodes + step)[self._held])
-        np.add.at(right, self._held, self._grip * self._holds[:, :, None] * ends[:, None, :])
-        return self._factors.solve(right)
+        return nodes + (step + self._factors.solve(right))
 
 
 def _entries(stencils: Stencils, blocks: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -65,48 +61,72 @@ def _entries(stencils: Stencils, blocks: np.ndarray, count: int) -> tuple[np.nda
 @njit(cache=True, error_model="numpy")
 @no_type_check
 def _turn(nodes, step, stencils, gradients, volumes, axes, right):
-    """Sum of volume x (exp(W) (I + S) F) grad N over the elements, where dF F^-1 = S + W."""
+    """Sum of volume x (exp(W) (I + S) F - F - dF) grad N over the elements, where dF F^-1 = S + W.
+
+    The difference is of second order; it is taken as ((exp W - I - W) + (exp W - I) S) F, so nothing cancels.
+    """
     F = np.empty((3, 3))
-    dF = np.empty((3, 3))
     A = np.empty((3, 3))
-    R = np.empty((3, 3))
+    bent = np.empty((3, 3))
     for element in range(stencils.shape[0]):
         F[:] = 0.0
-        dF[:] = 0.0
+        A[:] = 0.0
         F[2, 2] = 1.0 if len(axes) == 2 else 0.0
         for corner in range(stencils.shape[1]):
             node = stencils[element, corner]
             for i in axes:
                 for j in axes:
                     F[i, j] += nodes[node, i] * gradients[element, corner, j]
-                    dF[i, j] += step[node, i] * gradients[element, corner, j]
-        _divide(dF, F, A)
+                    A[i, j] += step[node, i] * gradients[element, corner, j]
+        _divide(A, F)
         x, y, z = 0.5 * (A[2, 1] - A[1, 2]), 0.5 * (A[0, 2] - A[2, 0]), 0.5 * (A[1, 0] - A[0, 1])
-        _rotation(x, y, z, R)
         for i in range(3):
             for j in range(i + 1, 3):
                 A[i, j] = 0.5 * (A[i, j] + A[j, i])
                 A[j, i] = A[i, j]
-        # dF <- F + S F, then A <- R dF
-        for i in range(3):
-            for j in range(3):
-                dF[i, j] = F[i, j] + A[i, 0] * F[0, j] + A[i, 1] * F[1, j] + A[i, 2] * F[2, j]
-        for i in range(3):
-            for j in range(3):
-                A[i, j] = R[i, 0] * dF[0, j] + R[i, 1] * dF[1, j] + R[i, 2] * dF[2, j]
+        _bend(x, y, z, A, bent)
         for corner in range(stencils.shape[1]):
             node = stencils[element, corner]
+            p = q = r = 0.0
+            for j in axes:
+                slope = volumes[element] * gradients[element, corner, j]
+                p += F[0, j] * slope
+                q += F[1, j] * slope
+                r += F[2, j] * slope
             for i in axes:
-                total = 0.0
-                for j in axes:
-                    total += A[i, j] * gradients[element, corner, j]
-                right[node, i] += volumes[element] * total
+                right[node, i] += bent[i, 0] * p + bent[i, 1] * q + bent[i, 2] * r
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy")
 @no_type_check
-def _divide(top, F, quotient):
-    """Top F^-1 of 3 x 3 matrices."""
+def _bend(x, y, z, S, bent):
+    """(exp W - I - W) + (exp W - I) S, W the cross product with (x, y, z), by Rodrigues' formula."""
+    square = x * x + y * y + z * z
+    angle = math.sqrt(square)
+    if angle < 1e-3:
+        first, second = -square / 6.0, 0.5 - square / 24.0
+    else:
+        first, second = math.sin(angle) / angle - 1.0, (1.0 - math.cos(angle)) / square
+    bent[0, 0], bent[1, 1], bent[2, 2] = -second * (y * y + z * z), -second * (x * x + z * z), -second * (x * x + y * y)
+    bent[0, 1], bent[1, 0] = second * x * y - first * z, second * x * y + first * z
+    bent[0, 2], bent[2, 0] = second * x * z + first * y, second * x * z - first * y
+    bent[1, 2], bent[2, 1] = second * y * z - first * x, second * y * z + first * x
+    for i in range(3):
+        a, b, c = bent[i, 0], bent[i, 1], bent[i, 2]
+        if i == 0:
+            b, c = b - z, c + y
+        elif i == 1:
+            a, c = a + z, c - x
+        else:
+            a, b = a - y, b + x
+        for j in range(3):
+            bent[i, j] += a * S[0, j] + b * S[1, j] + c * S[2, j]
+
+
+@njit(cache=True, error_model="numpy")
+@no_type_check
+def _divide(top, F):
+    """Top <- top F^-1, of 3 x 3 matrices."""
     c00 = F[1, 1] * F[2, 2] - F[1, 2] * F[2, 1]
     c01 = F[0, 2] * F[2, 1] - F[0, 1] * F[2, 2]
     c02 = F[0, 1] * F[1, 2] - F[0, 2] * F[1, 1]
@@ -119,24 +139,6 @@ def _divide(top, F, quotient):
     scale = 1.0 / (F[0, 0] * c00 + F[0, 1] * c10 + F[0, 2] * c20)
     for i in range(3):
         p, q, r = top[i, 0] * scale, top[i, 1] * scale, top[i, 2] * scale
-        quotient[i, 0] = p * c00 + q * c10 + r * c20
-        quotient[i, 1] = p * c01 + q * c11 + r * c21
-        quotient[i, 2] = p * c02 + q * c12 + r * c22
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-@no_type_check
-def _rotation(x, y, z, R):
-    """Rodrigues' formula for the rotation vector (x, y, z)."""
-    square = x * x + y * y + z * z
-    angle = math.sqrt(square)
-    if angle < 1e-4:
-        first, second = 1.0 - square / 6.0, 0.5 - square / 24.0
-    else:
-        first, second = math.sin(angle) / angle, (1.0 - math.cos(angle)) / square
-    R[0, 0] = 1.0 - second * (y * y + z * z)
-    R[1, 1] = 1.0 - second * (x * x + z * z)
-    R[2, 2] = 1.0 - second * (x * x + y * y)
-    R[0, 1], R[1, 0] = second * x * y - first * z, second * x * y + first * z
-    R[0, 2], R[2, 0] = second * x * z + first * y, second * x * z - first * y
-    R[1, 2], R[2, 1] = second * y * z - first * x, second * y * z + first * x
+        top[i, 0] = p * c00 + q * c10 + r * c20
+        top[i, 1] = p * c01 + q * c11 + r * c21
+        top[i, 2] = p * c02 + q * c12 + r * c22

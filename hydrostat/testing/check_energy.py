@@ -18,7 +18,10 @@ def check_energy(
     The oracle is central differences: of the value for the gradient, of the gradient for the Hessian and for the
     control derivative. Each is tried at several steps and judged by the best, for a wrong derivative agrees at none.
     Further: shapes, symmetry, terms that depend on nothing but their stencil and their control, a value that is never
-    NaN, and the claim of `convex`.
+    NaN, a lifted Hessian that is semidefinite and only lifts, and the claim of `convex`.
+
+    A term of an energy with a part of low rank may depend on the nodes of other terms through it. So there the whole
+    Hessian is compared, the blocks of all terms and G D G^T, with the derivative of the whole gradient.
 
     Args:
         energy: what to check.
@@ -37,6 +40,8 @@ def check_energy(
     check.gradient()
     check.hessian()
     check.control_gradient()
+    check.low_rank()
+    check.lift()
     check.convexity()
 
 
@@ -66,6 +71,14 @@ class _EnergyCheck:
         energy, (terms, corners), dim = self.energy, self.energy.stencils.shape, self.nodes.shape[1]
         self._shape("gradient", energy.gradient(self.nodes, self.controls), (terms, corners, dim))
         self._shape("hessian", energy.hessian(self.nodes, self.controls), (terms, corners * dim, corners * dim))
+        for share in (0.0, 1.0):
+            lifted = energy.lifted_hessian(self.nodes, self.controls, share)
+            self._shape("lift", lifted, (terms, corners * dim, corners * dim))
+        if (part := energy.low_rank(self.nodes, self.controls)) is not None:
+            columns, weights = part
+            rank = columns.shape[-1]
+            self._shape("low rank", columns, (self.nodes.size, rank))
+            self._shape("low rank", weights, (rank, rank))
         if energy.controls is not None:
             self._shape("controls", energy.controls, (terms,))
             derivative = energy.control_gradient(self.nodes, self.controls)
@@ -87,7 +100,10 @@ class _EnergyCheck:
         blocks = self.energy.gradient(self.nodes, self.controls)
         total = np.zeros(self.nodes.shape)
         np.add.at(total, self.energy.stencils, blocks)
-        stiffness = float(np.abs(self.energy.hessian(self.nodes, self.controls)).max())
+        stiffness = float(np.abs(self.energy.hessian(self.nodes, self.controls)).max(initial=0.0))
+        if (part := self.energy.low_rank(self.nodes, self.controls)) is not None:
+            columns, weights = part
+            stiffness += float(np.abs(np.einsum("dr,rs,ds->d", columns, weights, columns)).max(initial=0.0))
         rounding = 64 * np.finfo(float).eps * abs(self.energy.value(self.nodes, self.controls))
 
         def error(step: float) -> np.ndarray:
@@ -106,17 +122,25 @@ class _EnergyCheck:
         self._judge("gradient", "[node, axis] is not the derivative of the value", worst, index)
 
     def hessian(self) -> None:
-        """Each Hessian block is symmetric and the derivative of its gradient block, which depends on no other node."""
+        """Each block is symmetric; the Hessian is the derivative of the gradient."""
         hessian = self.energy.hessian(self.nodes, self.controls)
         blocks = self.energy.gradient(self.nodes, self.controls)
-        terms, size, dim = *hessian.shape[:2], self.nodes.shape[1]
         forces = np.abs(blocks).max(axis=(1, 2), initial=0.0) / self.size
         scales = np.maximum(np.abs(hessian).max(axis=(1, 2), initial=0.0), forces)
         scales = np.maximum(scales, 1e-9 * scales.max(initial=0.0))
         scales[scales == 0.0] = 1.0
         skew = np.abs(hessian - np.swapaxes(hessian, 1, 2)) / scales[:, None, None]
-        self._judge("hessian", "[term, row, column] is not symmetric", skew.max(), _place(skew))
-        dofs = (self.energy.stencils[:, :, None] * dim + np.arange(dim)).reshape(terms, size)
+        self._judge("hessian", "[term, row, column] is not symmetric", skew.max(initial=0.0), _place(skew))
+        part = self.energy.low_rank(self.nodes, self.controls)
+        if part is None:
+            self._hessian_of_terms(hessian, scales)
+        else:
+            self._hessian_of_all(hessian, *part)
+
+    def _hessian_of_terms(self, hessian: np.ndarray, scales: np.ndarray) -> None:
+        """Each block is the derivative of its gradient block, which depends on no node outside its stencil."""
+        terms, size = hessian.shape[:2]
+        dim, dofs = self.nodes.shape[1], self._dofs()
         expected = np.zeros((terms, size, len(self.variables)))
         for column in range(size):
             place = np.searchsorted(self.variables, dofs[:, column])
@@ -137,6 +161,26 @@ class _EnergyCheck:
             )
         column = int(np.flatnonzero(dofs[term] == variable)[0]) if variable in dofs[term] else 0
         self._judge("hessian", "[term, row, column] is not the derivative of the gradient", worst, (term, row, column))
+
+    def _hessian_of_all(self, hessian: np.ndarray, columns: np.ndarray, weights: np.ndarray) -> None:
+        """The sum of all blocks and the part of low rank are the derivative of the summed gradient."""
+        dofs = self._dofs()
+        expected = columns @ weights @ columns.T
+        np.add.at(expected, (dofs[:, :, None], dofs[:, None, :]), hessian)
+        forces = self._total(self._gradient(self.point))
+        scale = max(_largest(expected), _largest(forces) / self.size) or 1.0
+
+        def total(point: np.ndarray) -> np.ndarray:
+            return self._total(self._gradient(point))
+
+        def error(step: float) -> np.ndarray:
+            found = central_differences(total, self.point, self.variables, step)
+            return np.abs(found - expected[:, self.variables]) / scale
+
+        worst, (row, place) = self._best(error, self.size)
+        index = (row, int(self.variables[place]))
+        message = "[row, column] of the whole, with the part of low rank, is not the derivative of the gradient"
+        self._judge("hessian", message, worst, index)
 
     def control_gradient(self) -> None:
         """The control derivative is that of the gradient, and terms depend on no control but their own."""
@@ -160,6 +204,48 @@ class _EnergyCheck:
 
         worst, index = self._best(error, natural)
         self._judge("control gradient", "[term, corner, axis, control] is not the derivative", worst, index)
+
+    def low_rank(self) -> None:
+        """D of the part of low rank is symmetric and positive semidefinite, and both are finite, wherever they are."""
+        for nodes in self._states():
+            if not np.isfinite(self.energy.value(nodes, self.controls)):
+                continue
+            part = self.energy.low_rank(nodes, self.controls)
+            if part is None:
+                continue
+            columns, weights = part
+            if not (np.isfinite(columns).all() and np.isfinite(weights).all()):
+                raise ConformanceError("low rank", "it is not finite at some positions where the value is")
+            scale = _largest(weights) or 1.0
+            skew = np.abs(weights - weights.T)
+            if _largest(skew) > 1e-9 * scale:
+                error = _largest(skew) / scale
+                raise ConformanceError("low rank", "D is not symmetric", index=_place(skew), relative_error=error)
+            negative = -float(np.linalg.eigvalsh(weights).min(initial=0.0)) / scale
+            if negative > 1e-9:
+                raise ConformanceError("low rank", "D has a negative eigenvalue", relative_error=negative)
+
+    def lift(self) -> None:
+        """The lifted Hessian is the Hessian at share 0, semidefinite at 1, linear between; and it only lifts."""
+        for nodes in self._states():
+            if not np.isfinite(self.energy.value(nodes, self.controls)):
+                continue
+            none, half, whole = (self.energy.lifted_hessian(nodes, self.controls, share) for share in (0.0, 0.5, 1.0))
+            plain = self.energy.hessian(nodes, self.controls)
+            scales = np.maximum(np.abs(plain).max(axis=(1, 2), initial=0.0), np.finfo(float).tiny)
+            change = whole - plain
+            for message, size in (
+                ("at share 0 it is not the Hessian of this term", np.abs(none - plain).max(axis=(1, 2), initial=0.0)),
+                ("at share 1 this term has a negative eigenvalue", -_least_eigenvalues(whole)),
+                ("it lowers an eigenvalue of this term", -_least_eigenvalues(change)),
+                (
+                    "at share 1/2 this term is not half lifted",
+                    np.abs(half - plain - 0.5 * change).max(axis=(1, 2), initial=0.0),
+                ),
+            ):
+                errors = np.nan_to_num(size / scales, nan=np.inf)
+                if (worst := float(errors.max(initial=0.0))) > 1e-9:
+                    raise ConformanceError("lift", message, index=_place(errors), relative_error=worst)
 
     def convexity(self) -> None:
         """An energy that says it is convex has no block with a negative eigenvalue."""
@@ -189,6 +275,15 @@ class _EnergyCheck:
     def _gradient(self, point: np.ndarray) -> np.ndarray:
         return self.energy.gradient(point.reshape(self.nodes.shape), self.controls).ravel()
 
+    def _dofs(self) -> np.ndarray:
+        """Degrees of freedom of each term, in the order of its blocks."""
+        stencils, dim = self.energy.stencils, self.nodes.shape[1]
+        return (stencils[:, :, None] * dim + np.arange(dim)).reshape(len(stencils), stencils.shape[1] * dim)
+
+    def _total(self, blocks: np.ndarray) -> np.ndarray:
+        """The sum of the gradient blocks of all terms, (dofs,)."""
+        return np.bincount(self._dofs().ravel(), blocks, self.nodes.size)
+
     def _best(self, error: Callable[[float], np.ndarray], scale: float) -> tuple[float, tuple[int, ...]]:
         """Largest entry, and its place, of the error at the step where that is smallest."""
         best: tuple[float, tuple[int, ...]] | None = None
@@ -213,6 +308,10 @@ class _EnergyCheck:
 
 def _largest(array: np.ndarray) -> float:
     return float(np.nanmax(np.abs(array), initial=0.0))
+
+
+def _least_eigenvalues(blocks: np.ndarray) -> np.ndarray:
+    return np.linalg.eigvalsh(blocks)[:, 0]
 
 
 def _place(array: np.ndarray) -> tuple[int, ...]:

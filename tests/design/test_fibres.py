@@ -64,7 +64,7 @@ def test_wanted_directions_are_the_best_of_all_angles() -> None:
     for row, angle in enumerate(angles):
         fibres = element_fibres(mesh, turned(count, angle))
         assembly = Assembly(
-            [*body_energies(robot), fibres.energy()], node_count=len(mesh.nodes), dim=2, control_count=count
+            [*body_energies(robot), fibres.energy()], rest=mesh.nodes, control_count=count
         )
         for fibre in range(3, count, 5):
             tensions = np.zeros(count)

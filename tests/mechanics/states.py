@@ -89,6 +89,26 @@ def cable(
     return State(energy, nodes, controls)
 
 
+def cables(dim: int, random: np.random.Generator) -> State:
+    """Four cables of different laws: slack, in the cubic zone, and two taut ones on the same winch."""
+    mesh = rough_mesh(dim, random)
+    owners = np.array([0, 0, 1, 2, 2, 2, 3])
+    ends = [locate(mesh, random.uniform(0.1, 0.9, (len(owners), dim)) * SIZE[dim]) for _ in range(2)]
+    law = TensionLaw(stiffness=np.array([4e3, 1e3, 2e3, 8e3]), smoothing=np.array([0.5e-3, 2e-3, 1e-3, 0.1e-3]))
+    arguments = {
+        "stencils": np.concatenate([ends[0].stencils, ends[1].stencils], axis=1),
+        "weights": np.concatenate([-ends[0].weights, ends[1].weights], axis=1),
+        "offsets": np.zeros((len(owners), dim)),
+        "cables": owners,
+        "law": law,
+        "winches": np.array([0, 2, 1, 1]),
+    }
+    nodes, controls = deform(mesh, random), random.uniform(0, 0.02, CONTROLS)
+    stretches = CableEnergy(mesh.nodes, slack=np.zeros(4), **arguments).stretches(nodes, controls)
+    wanted = np.array([-0.01, 1.2 * 2e-3, 0.01, 0.02])
+    return State(CableEnergy(mesh.nodes, slack=stretches - wanted, **arguments), nodes, controls)
+
+
 def pins(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     anchors = locate(mesh, random.uniform(0.1, 0.9, (4, dim)) * SIZE[dim])
@@ -133,6 +153,7 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "taut cable": lambda dim, random: cable(dim, random, stretch=0.02),
     "cable from the world": lambda dim, random: cable(dim, random, stretch=0.02, world=True),
     "sheathed cable": lambda dim, random: cable(dim, random, stretch=0.02, sheathed=(1, 2)),
+    "four cables": cables,
     "sheathed at the winch": lambda dim, random: cable(dim, random, stretch=1.2 * _EPS, sheathed=(0,), world=True),
 }
 """Makers of a state, by name: dimension and random numbers in."""

@@ -5,7 +5,7 @@ import pytest
 from states import CONTROLS, LAW, deform, rough_mesh
 
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import Assembly, CableEnergy, NeoHookean, PinEnergy, nearest_semidefinite
+from hydrostat.mechanics import Assembly, CableEnergy, NeoHookean, PinEnergy, WeightEnergy, nearest_semidefinite
 
 
 def energies(dim: int, seed: int) -> tuple[Assembly, np.ndarray, np.ndarray]:
@@ -19,19 +19,20 @@ def energies(dim: int, seed: int) -> tuple[Assembly, np.ndarray, np.ndarray]:
         ),
     ]
     for control in (2, 0):
-        stencil = np.sort(random.choice(len(mesh.nodes), 5, replace=False))
+        stencils = np.array([random.choice(len(mesh.nodes), 5, replace=False) for _ in range(2)])
         parts.append(
             CableEnergy(
                 mesh.nodes,
-                stencil=stencil,
-                weights=random.dirichlet(np.ones(5), 4),
-                offsets=np.zeros((4, dim)),
-                bare=np.array([True, False, True]),
+                stencils=stencils,
+                weights=random.dirichlet(np.ones(5), 2) - random.dirichlet(np.ones(5), 2),
+                offsets=np.zeros((2, dim)),
+                cables=np.array([0, 0]),
                 law=LAW,
-                control=control,
+                winches=np.array([control]),
+                slack=np.zeros(1),
             )
         )
-    assembly = Assembly(parts, node_count=len(mesh.nodes), dim=dim, control_count=CONTROLS)
+    assembly = Assembly(parts, rest=mesh.nodes, control_count=CONTROLS)
     return assembly, deform(mesh, random), np.array([0.05, 0.0, 0.05])
 
 
@@ -65,6 +66,11 @@ def test_the_sum_is_that_of_plain_loops(dim: int, seed: int) -> None:
     assert assembly.gradient(nodes, controls) == pytest.approx(gradient, abs=1e-12 * np.abs(gradient).max())
     assert found.toarray() == pytest.approx(hessian, abs=1e-12 * np.abs(hessian).max())
     assert found.has_sorted_indices
+    columns, weights = assembly.low_rank(nodes, controls)
+    parts = [energy.low_rank(nodes, controls) for energy in assembly.energies[2:]]
+    expected = sum(own @ small @ own.T for own, small in parts)
+    assert np.linalg.matrix_rank(expected) == 2
+    assert columns @ weights @ columns.T == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
     derivative = assembly.control_derivative(nodes, controls).toarray()
     assert derivative == pytest.approx(mixed, abs=1e-12 * np.abs(mixed).max())
     assert mixed[:, [0, 2]].any(axis=0).all()
@@ -77,16 +83,47 @@ def test_the_projected_sum_has_no_negative_eigenvalue(dim: int) -> None:
     assembly, nodes, controls = energies(dim, 0)
     nodes = nodes * 0.4
     before = np.linalg.eigvalsh(assembly.hessian(nodes, controls).toarray())
-    after = np.linalg.eigvalsh(assembly.hessian(nodes, controls, project=True).toarray())
+    after = np.linalg.eigvalsh(assembly.hessian(nodes, controls, lift=1.0).toarray())
     assert before[0] < -1e-3 * before[-1]
     assert after[0] > -1e-12 * after[-1]
 
 
 def test_without_controls_the_control_derivative_is_empty() -> None:
     assembly, nodes, controls = energies(2, 0)
-    bare = Assembly(assembly.energies[:2], node_count=len(nodes), dim=2, control_count=CONTROLS)
+    bare = Assembly(assembly.energies[:2], rest=nodes, control_count=CONTROLS)
     assert bare.control_derivative(nodes, controls).shape == (nodes.size, CONTROLS)
     assert bare.control_derivative(nodes, controls).nnz == 0
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("shift", [0.0, 0.3])
+def test_the_stiffness_solves_with_the_whole_hessian(dim: int, shift: float) -> None:
+    """Oracle: a dense solve with blocks, part of low rank and shift, a fraction of the largest diagonal entry."""
+    assembly, nodes, controls = energies(dim, 0)
+    columns, weights = assembly.low_rank(nodes, controls)
+    matrix = assembly.hessian(nodes, controls, lift=0.5).toarray()
+    matrix += shift * matrix.diagonal().max() * np.eye(len(matrix)) + columns @ weights @ columns.T
+    right = np.random.default_rng(0).standard_normal(nodes.size)
+    found = assembly.stiffness(nodes, controls, lift=0.5, shift=shift)
+    expected = np.linalg.solve(matrix, right)
+    assert found.solve(right) == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
+    assert found.definite == bool(np.linalg.eigvalsh(matrix)[0] > 0)
+
+
+def test_other_energies_on_the_same_stencils() -> None:
+    """Oracle: an assembly made afresh. Those on other stencils are refused, and the first assembly stays as it is."""
+    assembly, nodes, controls = energies(2, 0)
+    body, pins, *cables = assembly.energies
+    assert isinstance(body, NeoHookean)
+    stiffer = NeoHookean(nodes, body.stencils, mu=3e3, lame=5e3)
+    before = assembly.hessian(nodes, controls).toarray()
+    found = assembly.with_energies([stiffer, pins, *cables])
+    fresh = Assembly([stiffer, pins, *cables], rest=nodes, control_count=CONTROLS)
+    assert found.value(nodes, controls) == fresh.value(nodes, controls)
+    assert (found.hessian(nodes, controls).toarray() == fresh.hessian(nodes, controls).toarray()).all()
+    assert (assembly.hessian(nodes, controls).toarray() == before).all()
+    with pytest.raises(ValueError, match="stencils"):
+        assembly.with_energies([WeightEnergy(nodes, nodes), pins, *cables])
 
 
 def test_the_value_is_infinite_where_one_energy_is() -> None:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from states import deform, element_fibres, neo_hookean, pins, rough_mesh
+from states import LAW, cables, deform, element_fibres, neo_hookean, pins, rough_mesh
 
-from hydrostat.mechanics import CableEnergy, FibreEnergy, NeoHookean, PinEnergy, TensionLaw
+from hydrostat.mechanics import CableEnergy, FibreEnergy, NeoHookean, PinEnergy
 from hydrostat.mechanics.energy import Energy
 from hydrostat.testing import ConformanceError, check_energy
 
@@ -85,6 +85,99 @@ class ControlOfAnother(FibreEnergy):
         self.controls = np.arange(len(self.stencils))[::-1].copy()
 
 
+class CableWithoutBend(CableEnergy):
+    """T' dl dl^T alone."""
+
+    def hessian(self, nodes, controls):
+        return 0.0 * super().hessian(nodes, controls)
+
+
+class CableWithoutLowRank(CableEnergy):
+    """T d2l alone: it says that it couples no more than the nodes of a segment."""
+
+    def low_rank(self, nodes, controls):
+        return None
+
+
+class CableOfAnotherTangent(CableEnergy):
+    """D is right for three cables of four."""
+
+    def low_rank(self, nodes, controls):
+        columns, weights = super().low_rank(nodes, controls)
+        weights[1, 1] *= 1.001
+        return columns, weights
+
+
+class CableOfSwappedColumns(CableEnergy):
+    def low_rank(self, nodes, controls):
+        columns, weights = super().low_rank(nodes, controls)
+        return columns[:, ::-1].copy(), weights
+
+
+class LowRankNegative(CableEnergy):
+    """The sum is right, but what is negative in the blocks has been moved into the part of low rank."""
+
+    def low_rank(self, nodes, controls):
+        columns, weights = super().low_rank(nodes, controls)
+        weights = np.block([[weights, np.zeros((4, 2))], [np.zeros((2, 4)), np.diag([1.0, -1.0])]])
+        return np.concatenate([columns, columns[:, :1], columns[:, :1]], axis=1), weights
+
+
+class LowRankNotSymmetric(CableEnergy):
+    """Skew between two columns that are alike: the sum is right."""
+
+    def low_rank(self, nodes, controls):
+        columns, weights = super().low_rank(nodes, controls)
+        weights = np.block([[weights, np.zeros((4, 2))], [np.zeros((2, 4)), np.array([[1.0, 0.5], [-0.5, 1.0]])]])
+        return np.concatenate([columns, np.zeros((nodes.size, 2))], axis=1), weights
+
+
+class LowRankOfWrongShape(CableEnergy):
+    def low_rank(self, nodes, controls):
+        columns, weights = super().low_rank(nodes, controls)
+        return columns, weights[:, :3]
+
+
+class CableControlForgotten(CableEnergy):
+    """The last segment says that it does not follow its winch."""
+
+    def control_gradient(self, nodes, controls):
+        blocks = super().control_gradient(nodes, controls)
+        blocks[-1] = 0.0
+        return blocks
+
+
+class LiftsNothing(NeoHookean):
+    def lifted_hessian(self, nodes, controls, share):
+        return super().lifted_hessian(nodes, controls, 0.0)
+
+
+class LiftsAtZero(NeoHookean):
+    def lifted_hessian(self, nodes, controls, share):
+        return super().lifted_hessian(nodes, controls, max(share, 0.01))
+
+    def hessian(self, nodes, controls):
+        return super().lifted_hessian(nodes, controls, 0.0)
+
+
+class LiftsBySquare(NeoHookean):
+    def lifted_hessian(self, nodes, controls, share):
+        return super().lifted_hessian(nodes, controls, share**2)
+
+
+class LiftsTooLittle(NeoHookean):
+    def lifted_hessian(self, nodes, controls, share):
+        return super().lifted_hessian(nodes, controls, 0.99 * share)
+
+
+class LiftThatLowers(NeoHookean):
+    """It leaves every block definite, but takes from what was positive."""
+
+    def lifted_hessian(self, nodes, controls, share):
+        whole, none = (super(LiftThatLowers, self).lifted_hessian(nodes, controls, part) for part in (1.0, 0.0))
+        return (1 - share) * none + share * 0.99 * whole
+
+
 class GradientFlat(PinEnergy):
     def gradient(self, nodes, controls):
         return super().gradient(nodes, controls).reshape(len(self.stencils), -1)
@@ -103,8 +196,21 @@ BROKEN = [
     (TermReadsAnotherNode, "gradient"),
     (ControlDerivativeNegative, "control gradient"),
     (ControlOfAnother, "control gradient"),
+    (CableWithoutBend, "hessian"),
+    (CableWithoutLowRank, "hessian"),
+    (CableOfAnotherTangent, "hessian"),
+    (CableOfSwappedColumns, "hessian"),
+    (LowRankNegative, "low rank"),
+    (LowRankNotSymmetric, "low rank"),
+    (LowRankOfWrongShape, "low rank"),
+    (CableControlForgotten, "control gradient"),
+    (LiftsNothing, "lift"),
+    (LiftsAtZero, "lift"),
+    (LiftsBySquare, "lift"),
+    (LiftsTooLittle, "lift"),
+    (LiftThatLowers, "lift"),
 ]
-MAKERS = {NeoHookean: neo_hookean, PinEnergy: pins, FibreEnergy: element_fibres}
+MAKERS = {NeoHookean: neo_hookean, PinEnergy: pins, FibreEnergy: element_fibres, CableEnergy: cables}
 
 
 @pytest.mark.parametrize(("broken", "check"), BROKEN)
@@ -152,18 +258,20 @@ def test_a_cable_that_forgets_a_node_is_found() -> None:
 
     class Forgetful(CableEnergy):
         def value(self, nodes, controls):
-            return super().value(nodes, controls) + self.law.energy(float(np.linalg.norm(nodes[0] - nodes[-1])))
+            length = np.linalg.norm(nodes[0] - nodes[-1])
+            return super().value(nodes, controls) + float(self.law.energy(length[None])[0])
 
     random = np.random.default_rng(0)
     mesh = rough_mesh(2, random)
     energy = Forgetful(
         mesh.nodes,
-        stencil=np.array([1, 3]),
-        weights=np.eye(2),
-        offsets=np.zeros((2, 2)),
-        bare=np.array([True]),
-        law=TensionLaw(stiffness=4e3, smoothing=0.5e-3),
-        control=0,
+        stencils=np.array([[1, 3]]),
+        weights=np.array([[-1.0, 1.0]]),
+        offsets=np.zeros((1, 2)),
+        cables=np.array([0]),
+        law=LAW,
+        winches=np.array([0]),
+        slack=np.zeros(1),
     )
     with pytest.raises(ConformanceError, match="stencil") as caught:
         check_energy(energy, deform(mesh, random), np.array([0.02]))

@@ -134,8 +134,7 @@ def test_a_block_under_an_end_load_takes_its_closed_form(dim: int, traction: flo
     springs = 1e9 * left_areas
     assembly = Assembly(
         [body(mesh), Load(right, forces), Rollers(left, 0, springs), *rollers],
-        node_count=len(mesh.nodes),
-        dim=dim,
+        rest=mesh.nodes,
         control_count=0,
     )
     result = minimise(

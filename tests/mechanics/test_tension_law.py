@@ -6,7 +6,23 @@ import pytest
 from hydrostat.mechanics import TensionLaw
 
 K, EPS = 4e3, 0.5e-3
-LAW = TensionLaw(stiffness=K, smoothing=EPS)
+LAWS = TensionLaw(stiffness=np.array([K]), smoothing=np.array([EPS]))
+
+
+class LAW:
+    """One cable, in numbers."""
+
+    @staticmethod
+    def energy(stretch: float) -> float:
+        return float(LAWS.energy(np.array([stretch]))[0])
+
+    @staticmethod
+    def tension(stretch: float) -> float:
+        return float(LAWS.tension(np.array([stretch]))[0])
+
+    @staticmethod
+    def tangent(stretch: float) -> float:
+        return float(LAWS.tangent(np.array([stretch]))[0])
 
 
 def test_a_cable_at_rest_has_neither_tension_nor_energy_nor_stiffness() -> None:
@@ -48,3 +64,24 @@ def test_the_stiffness_is_that_of_the_taut_cable() -> None:
         else:
             thesis = half * a**2 + half * EPS**2 / 3
         assert LAW.energy(float(stretch)) == pytest.approx(thesis, rel=1e-12, abs=1e-18)
+
+
+def test_each_cable_follows_its_own_law() -> None:
+    """Oracle: the same cables one by one."""
+    random = np.random.default_rng(0)
+    stiffness, smoothing = random.uniform(1e2, 1e4, 60), random.uniform(1e-4, 1e-2, 60)
+    stretch = smoothing * random.uniform(-1, 4, 60)
+    laws = TensionLaw(stiffness=stiffness, smoothing=smoothing)
+    for name in ("energy", "tension", "tangent"):
+        together = getattr(laws, name)(stretch)
+        for k, eps, s, found in zip(stiffness, smoothing, stretch, together, strict=True):
+            alone = TensionLaw(stiffness=np.array([k]), smoothing=np.array([eps]))
+            assert getattr(alone, name)(np.array([s]))[0] == pytest.approx(found, rel=1e-14)
+
+
+def test_the_stretch_of_a_tension_is_the_inverse_of_the_law() -> None:
+    """In the cubic zone, at its end and beyond."""
+    random = np.random.default_rng(1)
+    laws = TensionLaw(stiffness=random.uniform(1e2, 1e4, 60), smoothing=random.uniform(1e-4, 1e-2, 60))
+    stretch = laws.smoothing * np.concatenate([random.uniform(1e-3, 6, 59), [2.0]])
+    assert laws.stretch(laws.tension(stretch)) == pytest.approx(stretch, rel=1e-12)

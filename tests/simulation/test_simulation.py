@@ -89,7 +89,7 @@ def test_a_sheathed_run_exerts_nothing_inside() -> None:
     """E11. Statics of each via point: T times the directions of its bare segments, nothing where all is sheathed."""
     simulation = Simulation(strip_robot(columns=20, rows=5, sheathed=((1, 4),)))
     pose = simulation.solve(PULL)
-    cable, robot = simulation.cables[0], simulation.robot
+    cables, robot = simulation.cables, simulation.robot
     route = robot.cables[0]
     points = np.array([_anchor(robot, np.array(point), pose.nodes) for point in route.points])
     expected = np.zeros_like(points)
@@ -100,7 +100,8 @@ def test_a_sheathed_run_exerts_nothing_inside() -> None:
         expected[segment + 1] -= pose.tensions[0] * direction
     assert not expected[2:4].any()
     forces = np.zeros_like(pose.nodes)
-    forces[cable.stencils[0]] = -cable.gradient(pose.nodes, pose.contractions)[0]
+    own = cables.cables == 0
+    np.add.at(forces, cables.stencils[own], -cables.gradient(pose.nodes, pose.contractions)[own])
     spread = np.zeros_like(forces)
     for point, force in zip(route.points, expected, strict=True):
         for node, weight in _weights(robot, np.array(point)):
@@ -117,8 +118,8 @@ def _weights(robot: Robot, point: np.ndarray) -> list[tuple[int, float]]:
 def test_a_sheathed_cable_of_rest_length_does_not_feel_its_run() -> None:
     """Its length changes only by the bare segments."""
     simulation = Simulation(strip_robot(sheathed=((1, 4),)))
-    cable, nodes = simulation.cables[0], simulation.robot.body.mesh.nodes
-    assert cable.length(nodes) == pytest.approx(3 * 0.03)
+    nodes = simulation.robot.body.mesh.nodes
+    assert simulation.cables.lengths(nodes) == pytest.approx([3 * 0.03, 6 * 0.03])
     assert simulation.robot.cables[0].length == pytest.approx(6 * 0.03)
 
 
