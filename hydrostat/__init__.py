@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
     from hydrostat.mechanics import NewtonOptions
     from hydrostat.robot import Cable, Marker, Material, Pin, Pose, Robot, Winch, load_robot, save_robot
-    from hydrostat.simulation import Simulation, SolvedPose
+    from hydrostat.simulation import Motion, Profile, Simulation, SolvedPose, StepOptions
 
 __version__ = "0.1.0"
 
@@ -31,16 +31,19 @@ __all__ = [
     "InverseOptions",
     "Marker",
     "Material",
+    "Motion",
     "Network",
     "NewtonOptions",
     "NotConvergedError",
     "PatternOptions",
     "Pin",
     "Pose",
+    "Profile",
     "ReachedPose",
     "Robot",
     "Simulation",
     "SolvedPose",
+    "StepOptions",
     "Winch",
     "__version__",
     "design_cables",
@@ -58,16 +61,19 @@ _HOMES = {
     "InverseOptions": "ik",
     "Marker": "robot",
     "Material": "robot",
+    "Motion": "simulation",
     "Network": "design",
     "NewtonOptions": "mechanics",
     "NotConvergedError": "errors",
     "PatternOptions": "fabrication",
     "Pin": "robot",
     "Pose": "robot",
+    "Profile": "simulation",
     "ReachedPose": "ik",
     "Robot": "robot",
     "Simulation": "simulation",
     "SolvedPose": "simulation",
+    "StepOptions": "simulation",
     "Winch": "robot",
     "design_cables": "design",
     "export_kit": "fabrication",

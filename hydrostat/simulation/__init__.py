@@ -1,17 +1,26 @@
 """The one bridge between robots and mechanics: `Simulation`."""
 
 from hydrostat.simulation.build import body_energies, cable_energy, round_off
+from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
+from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.pose_file import pose_facts, write_pose
+from hydrostat.simulation.profile import Profile, read_profile
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
 __all__ = [
     "Contractions",
+    "Dynamics",
+    "Motion",
+    "PinShifts",
+    "Profile",
     "Simulation",
     "SolvedPose",
+    "StepOptions",
     "body_energies",
     "cable_energy",
     "pose_facts",
+    "read_profile",
     "round_off",
     "write_pose",
 ]

@@ -1,8 +1,9 @@
 """`Simulation`: the physics of one robot."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
+from math import ceil
 
 import numpy as np
 from jaxtyping import Float
@@ -13,6 +14,9 @@ from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Stiffness, minimise
 from hydrostat.robot import Robot
 from hydrostat.simulation.build import body_energies, cable_energy, round_off, warp
+from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
+from hydrostat.simulation.motion import Motion
+from hydrostat.simulation.profile import Profile
 from hydrostat.simulation.solved_pose import SolvedPose
 
 Contractions = Mapping[str, float] | Vector
@@ -98,6 +102,76 @@ class Simulation:
             )
         right = self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
         return -stiffness.solve(right).reshape(*pose.nodes.shape, -1)
+
+    def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
+        """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
+
+        Args:
+            pose: where the nodes are, and the contractions there.
+            velocities: of the nodes [m/s]; none if left out.
+        """
+        if pose is None:
+            return self.dynamics.still(self.robot.body.mesh.nodes, self.contractions({}), velocities)
+        return self.dynamics.still(pose.nodes, pose.contractions, velocities)
+
+    def step(
+        self,
+        motion: Motion,
+        contractions: Contractions,
+        dt: float,
+        *,
+        options: StepOptions | None = None,
+        pin_shifts: PinShifts | None = None,
+    ) -> Motion:
+        """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
+
+        Args:
+            motion: where it begins.
+            contractions: at the end of the step [m].
+            dt: length of the step [s].
+            options: scheme, drag, and how often a step that fails is cut in two.
+            pin_shifts: how far pins are from where they were at rest, at the end of the step [m].
+
+        Raises:
+            InputError: arguments that do not fit the robot.
+            NotConvergedError: not even the smallest steps converged; its text says why.
+        """
+        goal = self.contractions(contractions)
+        return self.dynamics.step(motion, goal, dt, options or StepOptions(), pin_shifts or {})
+
+    def play(
+        self,
+        profile: Profile,
+        seconds: float,
+        dt: float,
+        *,
+        start: Motion | None = None,
+        options: StepOptions | None = None,
+    ) -> Iterator[Motion]:
+        """The motion under contractions in time: its start, then each step as it is found.
+
+        Args:
+            profile: the contractions; its time is that of the motion.
+            seconds: how long.
+            dt: longest step [s]; the steps are even, and the last ends in time.
+            start: where it begins; at rest if left out.
+            options: as for `step`.
+
+        Raises:
+            InputError, NotConvergedError: as for `step`.
+        """
+        motion = start or self.still()
+        begin, steps = motion.time, max(1, ceil(seconds / dt - 1e-9))
+        yield motion
+        for step in range(1, steps + 1):
+            goal = profile.at(begin + seconds * step / steps)
+            motion = self.step(motion, goal, begin + seconds * step / steps - motion.time, options=options)
+            yield motion
+
+    @cached_property
+    def dynamics(self) -> Dynamics:
+        """Steps in time; their sparse pattern is made here, once."""
+        return Dynamics(self.robot, self.assembly, self.cables, self.marker_anchors, self.options)
 
     def tensions(self, nodes: Nodes, contractions: Vector) -> Vector:
         """Tension of each cable [N]."""

@@ -1,0 +1,33 @@
+"""`TimeScheme`: how a step in time is made of minimisations."""
+
+from dataclasses import dataclass
+from math import sqrt
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimeScheme:
+    """A diagonally implicit Runge-Kutta method whose last stage is its end.
+
+    Stage i of a step h of y' = f(y) solves y_i = b_i + h a_ii f(y_i), b_i = y_n + h sum over j < i of a_ij f(y_j). With
+    forces that have a potential each stage is a minimisation, like a step of implicit Euler; and as the end of the
+    step is itself minimised, no element is inverted there.
+
+    Attributes:
+        table: rows a_i0 ... a_ii.
+        order: of convergence with the step.
+    """
+
+    table: tuple[tuple[float, ...], ...]
+    order: int
+
+
+_G = 1 - 1 / sqrt(2)
+
+SCHEMES = MappingProxyType(
+    {
+        "euler": TimeScheme(table=((1.0,),), order=1),
+        "sdirk2": TimeScheme(table=((_G,), (1 - _G, _G)), order=2),
+    }
+)
+"""By name: implicit Euler, and the L-stable method of two stages (Alexander 1977)."""

@@ -1,0 +1,274 @@
+"""`Dynamics`: how a robot moves in time."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.geometry.anchors import Anchors
+from hydrostat.mechanics import (
+    Assembly,
+    CableEnergy,
+    Energy,
+    NewtonOptions,
+    NewtonResult,
+    PinEnergy,
+    RoundOff,
+    Stiffness,
+    minimise,
+)
+from hydrostat.mechanics.inertia import InertiaEnergy
+from hydrostat.mechanics.time_scheme import SCHEMES
+from hydrostat.mechanics.viscous import Memory, Metrics
+from hydrostat.robot import Robot
+from hydrostat.simulation.build import elastic_energy, node_masses, round_off
+from hydrostat.simulation.motion import Motion
+
+PinShifts = Mapping[int, Vector]
+"""How far pins have been moved from where they were at rest [m], by their number; the others stay where they are."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepOptions:
+    """How a step in time is made.
+
+    Attributes:
+        scheme: a name in `SCHEMES`.
+        drag: force against the motion, per mass and velocity [1/s]; 0 for none.
+        halvings: so often is a step cut in two if its minimisation fails.
+
+    Raises:
+        InputError: an unknown scheme, or a negative drag.
+    """
+
+    scheme: str = "sdirk2"
+    drag: float = 0.0
+    halvings: int = 5
+
+    def __post_init__(self) -> None:
+        if self.scheme not in SCHEMES:
+            raise InputError(f'there is no scheme "{self.scheme}"; there are: {", ".join(SCHEMES)}')
+        if not (np.isfinite(self.drag) and self.drag >= 0):
+            raise InputError(f"drag must be finite and not negative, not {self.drag:g}")
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """What changes in time, or its rate of change."""
+
+    nodes: Nodes
+    velocities: Nodes
+    metrics: Metrics
+
+    def plus(self, step: float, rate: "_State") -> "_State":
+        return _State(
+            self.nodes + step * rate.nodes,
+            self.velocities + step * rate.velocities,
+            self.metrics + step * rate.metrics,
+        )
+
+
+class Dynamics:
+    """Steps in time as minimisations, from a state of motion to the next (E4, E5)."""
+
+    def __init__(
+        self, robot: Robot, statics: Assembly, cables: CableEnergy, markers: Anchors, options: NewtonOptions
+    ) -> None:
+        """The robot's physics at rest, where its markers are, and how far Newton goes."""
+        mesh, material = robot.body.mesh, robot.body.material
+        self.robot, self.masses = robot, node_masses(robot)
+        self._statics, self._cables, self._markers, self._options = statics, cables, markers, options
+        branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
+        branches += [(material.viscosity, 0.0)] if material.viscosity else []
+        viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
+        self.memory = Memory(mesh.nodes, elastic_energy(robot), viscosities=viscosities, times=times)
+        self._pin_of = np.repeat(np.arange(len(robot.pins)), [len(pin.anchors(mesh).stencils) for pin in robot.pins])
+        self._weight = float((self.masses[:, None] * np.abs(robot.gravity or 0.0)).max())
+        self._round_off = round_off(robot)
+        rest = self.still(mesh.nodes, np.zeros(len(robot.winches)), None)
+        self._assembly = Assembly(
+            self._energies(_State(rest.nodes, rest.velocities, rest.metrics), 1.0, 0.0, rest.pin_shifts),
+            rest=mesh.nodes,
+            control_count=len(robot.winches),
+        )
+        self._last: tuple[Motion, float, Stiffness] | None = None
+
+    def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None) -> Motion:
+        """A motion that begins at `nodes`, with all viscous branches settled there."""
+        still = np.zeros_like(nodes)
+        state = _State(nodes, still if velocities is None else velocities, self.memory.settled(nodes))
+        shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
+        return self._motion(0.0, contractions, shifts, state, still, None)
+
+    def step(
+        self, motion: Motion, contractions: Vector, dt: float, options: StepOptions, pin_shifts: PinShifts
+    ) -> Motion:
+        """The motion after `dt` [s], while contractions and pins go evenly to where they shall be.
+
+        Raises:
+            InputError: a step that is not above 0, or a pin that is not there.
+            NotConvergedError: not even the smallest steps converged; its text says why.
+        """
+        if not (np.isfinite(dt) and dt > 0):
+            raise InputError(f"the time step must be above 0 s, not {dt:g}")
+        shifts = self._shifts(motion, pin_shifts)
+        result, iterations = None, 0
+        for halvings in range(options.halvings + 1):
+            at, parts = motion, 2**halvings
+            for part in range(1, parts + 1):
+                share = part / parts
+                goal = (1 - share) * motion.contractions + share * contractions
+                places = (1 - share) * motion.pin_shifts + share * shifts
+                at, result = self._advance(at, goal, places, dt / parts, options)
+                iterations += result.iterations
+                if not result.converged:
+                    break
+            if result is not None and result.converged:
+                return self._counted(at, motion.time + dt, iterations)
+        assert result is not None
+        raise NotConvergedError(
+            f"no step found at {motion.time:.4g} s, not even one of {dt / 2**options.halvings:.2g} s: {result.reason} "
+            f"(force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
+            result,
+        )
+
+    def _advance(
+        self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
+    ) -> tuple[Motion, NewtonResult]:
+        """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
+        begin = _State(motion.nodes, motion.velocities, motion.metrics)
+        end, rates, acceleration, iterations = begin, [], motion.accelerations, 0
+        last = self._last if self._last is not None and self._last[0] is motion else None
+        known = None
+        for *weights, diagonal in SCHEMES[options.scheme].table:
+            base, step = begin, diagonal * dt
+            for weight, rate in zip(weights, rates, strict=True):
+                base = base.plus(weight * dt, rate)
+            base = replace(base, metrics=self.memory.sound(base.metrics, end.metrics))
+            if last is not None and last[1] == step:
+                known, last = last[2], None
+            share = sum(weights) + diagonal
+            controls = (1 - share) * motion.contractions + share * goal
+            energies = self._energies(base, step, options.drag, (1 - share) * motion.pin_shifts + share * shifts)
+            result = self._minimise(energies, controls, base, end.nodes, acceleration, step, known)
+            iterations += result.iterations
+            if not result.converged:
+                return motion, replace(result, iterations=iterations)
+            known = result.stiffness
+            velocities = (result.nodes - base.nodes) / step
+            end = _State(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
+            acceleration = (velocities - base.velocities) / step
+            rates.append(_State(velocities, acceleration, (end.metrics - base.metrics) / step))
+        counted = replace(result, iterations=iterations, stiffness=None)
+        arrived = self._motion(motion.time + dt, goal, shifts, end, acceleration, counted)
+        self._last = None if known is None else (arrived, step, known)
+        return arrived, counted
+
+    def _energies(self, base: _State, step: float, drag: float, shifts: Points) -> list[Energy]:
+        """Those of statics with the pins where they are, inertia, and the viscous branches if there are any."""
+        energies = list(self._statics.energies)
+        for index, energy in enumerate(energies):
+            if isinstance(energy, PinEnergy) and shifts.any():
+                energies[index] = PinEnergy(
+                    stencils=energy.stencils,
+                    weights=energy.weights,
+                    targets=energy.targets + shifts[self._pin_of],
+                    stiffness=energy.stiffness,
+                )
+        braked = 1 + drag * step
+        energies.append(InertiaEnergy(base.nodes + step / braked * base.velocities, self.masses * (braked / step**2)))
+        if len(self.memory):
+            energies.append(self.memory.energy(base.metrics, step))
+        return energies
+
+    def _minimise(
+        self,
+        energies: list[Energy],
+        controls: Vector,
+        base: _State,
+        before: Nodes,
+        acceleration: Nodes,
+        step: float,
+        known: Stiffness | None,
+    ) -> NewtonResult:
+        """One stage, from whichever guess has the least energy."""
+        assembly = self._assembly.with_energies(energies)
+        inertia = next(energy for energy in energies if isinstance(energy, InertiaEnergy))
+        flown = base.nodes + step * base.velocities
+        guesses = [flown + step**2 * acceleration, flown, before]
+        values = [assembly.value(guess, controls) for guess in guesses]
+        start = guesses[int(np.argmin(values))]
+
+        def force_scale(nodes: Nodes) -> float:
+            tension = float(self._cables.tensions(nodes, controls).max(initial=0.0))
+            return max(tension, self._weight, float(np.abs(inertia.gradient(nodes, controls)).max()))
+
+        return minimise(
+            assembly,
+            start,
+            controls,
+            force_scale=force_scale,
+            round_off=self._noise(step),
+            options=self._options,
+            stiffness=known,
+        )
+
+    def _noise(self, step: float) -> RoundOff:
+        """What rounding hides in a step, viscous forces included."""
+        if not len(self.memory):
+            return self._round_off
+        body = self.robot.body
+        scale = 2 * self.memory.modulus(step) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+        return RoundOff(
+            force=self._round_off.force + 1e-13 * scale / body.mesh.size,
+            energy=self._round_off.energy + 1e-15 * scale,
+        )
+
+    def _shifts(self, motion: Motion, given: PinShifts) -> Points:
+        shifts = motion.pin_shifts.copy()
+        for index, shift in given.items():
+            if not 0 <= index < len(shifts):
+                raise InputError(f"there is no pin {index}; there are {len(shifts)}, counted from 0")
+            if np.shape(shift) != shifts[index].shape or not np.isfinite(shift).all():
+                raise InputError(f"the shift of pin {index} must be {shifts.shape[1]} finite numbers [m]")
+            shifts[index] = shift
+        return shifts
+
+    def _motion(
+        self,
+        time: float,
+        contractions: Vector,
+        shifts: Points,
+        state: _State,
+        accelerations: Nodes,
+        result: NewtonResult | None,
+    ) -> Motion:
+        nodes = state.nodes
+        energies = self._energies(state, 1.0, 0.0, shifts)[: len(self._statics.energies)]
+        places = self._markers.positions(nodes)
+        return Motion(
+            time=time,
+            contractions=contractions,
+            pin_shifts=shifts,
+            nodes=nodes,
+            velocities=state.velocities,
+            accelerations=accelerations,
+            metrics=state.metrics,
+            markers={marker.name: place for marker, place in zip(self.robot.markers, places, strict=True)},
+            tensions=self._cables.tensions(nodes, contractions),
+            kinetic=float(0.5 * self.masses @ (state.velocities**2).sum(axis=1)),
+            potential=sum(energy.value(nodes, contractions) for energy in energies)
+            + self.memory.stored(state.metrics, nodes),
+            result=result,
+        )
+
+    def _counted(self, motion: Motion, time: float, iterations: int) -> Motion:
+        """The same motion with the iterations of all tries, at the very time."""
+        assert motion.result is not None
+        counted = replace(motion, time=time, result=replace(motion.result, iterations=iterations))
+        if self._last is not None and self._last[0] is motion:
+            self._last = counted, *self._last[1:]
+        return counted

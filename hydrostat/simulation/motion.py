@@ -1,0 +1,46 @@
+"""`Motion`: a robot at one instant of its motion."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.mechanics import NewtonResult
+from hydrostat.mechanics.viscous import Metrics
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Motion:
+    """All that the next step depends on, and what is to be seen at this instant.
+
+    Attributes:
+        time: since the beginning [s].
+        contractions: cable taken in by each winch [m], in winch order.
+        pin_shifts: how far each pin has been moved [m], in pin order.
+        nodes: positions of the nodes [m].
+        velocities: of the nodes [m/s].
+        accelerations: of the nodes [m/s^2].
+        metrics: of the viscous branches in each element; none for an elastic body.
+        markers: position of each marker [m].
+        tensions: of each cable [N], in cable order.
+        kinetic: energy of the motion [J].
+        potential: energy of body, cables, pins, weight and branches [J].
+        result: how the last minimisation of the step ended; its energy is that of the step, its iterations are of all.
+    """
+
+    time: float
+    contractions: Vector
+    pin_shifts: Points
+    nodes: Nodes
+    velocities: Nodes
+    accelerations: Nodes
+    metrics: Metrics
+    markers: Mapping[str, Vector]
+    tensions: Vector
+    kinetic: float
+    potential: float
+    result: NewtonResult | None = None
+
+    @property
+    def energy(self) -> float:
+        """Kinetic and potential energy [J]."""
+        return self.kinetic + self.potential
