@@ -101,6 +101,13 @@ class Assembly:
             matrix.setdiag(diagonal + shift * diagonal.max())
         return Stiffness(self._analysis.factorise(matrix.data), *self.low_rank(nodes, controls))
 
+    def hessian_product(
+        self, nodes: Nodes, controls: Vector, columns: Float[np.ndarray, "dofs columns"]
+    ) -> Float[np.ndarray, "dofs columns"]:
+        """d2E/dx2 times some columns."""
+        vectors, weights = self.low_rank(nodes, controls)
+        return self.hessian(nodes, controls) @ columns + vectors @ (weights @ (vectors.T @ columns))
+
     def control_derivative(self, nodes: Nodes, controls: Vector) -> csc_array:
         """d2E/dx da, sparse, (nodes x dim, controls)."""
         rows, columns, data = [], [], []

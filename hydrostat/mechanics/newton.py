@@ -65,7 +65,8 @@ class NewtonResult:
         iterations: steps taken.
         stable: whether the full Hessian there is positive definite: a minimum, no saddle.
         buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
-        stiffness: the Hessian there, factorised.
+        stiffness: the Hessian there, factorised, or at the last step, which began with less than 1e-5 of the applied force
+            left over.
     """
 
     nodes: Nodes
@@ -97,9 +98,9 @@ def minimise(
 ) -> NewtonResult:
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
-    The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). Of a
-    straight step and one along arcs, each with its cables tightened or not, the one of least energy is taken; it is
-    halved until no element is inverted and the energy falls. A saddle is left along its lowest mode.
+    The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). The
+    step follows arcs and ends with its cables tightened; it is halved until no element is inverted and the energy
+    falls. A saddle is left along its lowest mode.
 
     Args:
         assembly: the energy.
@@ -140,13 +141,14 @@ class _Descent:
         if not np.isfinite(energy):
             return self._result(start, Reason.BAD_START, np.inf, 0.0, energy, 0, None)
         gradient = assembly.gradient(nodes, controls)
-        last = None
+        last, last_near = None, False
         for iteration in count():
             allowed = max(self.options.tolerance * self.force_scale(nodes), self.noise.force)
             residual = float(np.abs(gradient).max())
             arrived = residual <= allowed
+            near = residual < _NEAR * self.force_scale(nodes)
             if arrived or iteration == self.options.iterations:
-                stiffness = assembly.stiffness(nodes, controls)
+                stiffness = last if arrived and last_near else assembly.stiffness(nodes, controls)
                 found = self._leave_saddle(nodes, energy, stiffness) if arrived else None
                 if found is None:
                     reason = Reason.CONVERGED if arrived else Reason.ITERATION_LIMIT
@@ -154,17 +156,18 @@ class _Descent:
                 nodes, energy, gradient = found
                 continue
             found = None
-            if last is not None and residual < _NEAR * self.force_scale(nodes):
+            if last is not None and near:
                 found = self._chord(nodes, energy, gradient, last)
             if found is None:
-                last, known = self._reuse(nodes, known) or self._definite(nodes), None
+                last, known, last_near = self._reuse(nodes, known) or self._definite(nodes), None, near
                 if last is not None:
                     found = self._search(nodes, energy, gradient, last)
             if found is None:
                 stiffness = assembly.stiffness(nodes, controls)
                 return self._result(nodes, Reason.NO_DESCENT, residual, allowed, energy, iteration, stiffness)
             nodes, energy, gradient = found
-            last = last if self.share == 0.0 else None
+            if self.share > 0.0:
+                last, last_near = None, False
         raise AssertionError("count() never ends")
 
     def _reuse(self, nodes: Nodes, known: Stiffness | None) -> Stiffness | None:
@@ -288,7 +291,7 @@ class _Descent:
 
 
 class _Trials:
-    """Where one step may lead: straight or along arcs, with the cables tightened or as they come."""
+    """Where one step may lead: along arcs, with the cables tightened or as they come."""
 
     def __init__(self, descent: _Descent, nodes: Nodes, step: Vector, stiffness: Stiffness) -> None:
         self.assembly, self.controls = descent.assembly, descent.controls
@@ -306,19 +309,16 @@ class _Trials:
         return self.bend(self.nodes, length * self.step)
 
     def best(self, length: float) -> tuple[float, Nodes]:
-        """Energy and nodes of the best trial at this length of the step; of equals the one along arcs."""
-        places = [self.plain(length), self.nodes + length * self.step]
+        """Energy and nodes at this length of the step, with the cables tightened if that is better."""
+        place = self.plain(length)
+        value = self.assembly.value(place, self.controls)
         if self.tighten is not None:
-            promised = self.cables.law.tension(self.stretches + length * self.pull)
-            for place in tuple(places):
-                tightened = self.tighten(place, promised)
-                if tightened is not place:
-                    places.append(tightened)
-        values = [self.assembly.value(place, self.controls) for place in places]
-        least = int(np.argmin(values))
-        if not values[least] < values[0] - self.noise:
-            least = 0
-        return values[least], places[least]
+            tightened = self.tighten(place, self.cables.law.tension(self.stretches + length * self.pull))
+            if tightened is not place:
+                lower = self.assembly.value(tightened, self.controls)
+                if lower < value - self.noise:
+                    return lower, tightened
+        return value, place
 
 
 def _lowest_mode(stiffness: Stiffness, size: int) -> Vector:

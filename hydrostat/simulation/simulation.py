@@ -100,8 +100,14 @@ class Simulation:
             raise NotConvergedError(
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
-        right = self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
-        return -stiffness.solve(right).reshape(*pose.nodes.shape, -1)
+        right = -self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
+        moves = stiffness.solve(right)
+        for _ in range(_REFINEMENTS):  # the factors may be those of a state close by
+            missing = right - self.assembly.hessian_product(pose.nodes, pose.contractions, moves)
+            if np.abs(missing).max(initial=0.0) <= 1e-11 * np.abs(right).max(initial=0.0):
+                break
+            moves += stiffness.solve(missing)
+        return moves.reshape(*pose.nodes.shape, -1)
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
@@ -178,7 +184,7 @@ class Simulation:
         return self.cables.tensions(nodes, contractions)
 
     def stiffness(self, pose: SolvedPose) -> Stiffness:
-        """The Hessian at a pose, factorised."""
+        """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
         return self._known_stiffness(pose) or self.assembly.stiffness(pose.nodes, pose.contractions)
 
     @cached_property
@@ -227,6 +233,9 @@ class Simulation:
         )
         self._last = None if result.stiffness is None else (pose, result.stiffness)
         return pose
+
+
+_REFINEMENTS = 3
 
 
 def _markers(robot: Robot) -> Anchors:
