@@ -44,6 +44,10 @@ class TensionLaw:
         """dT/ds [N/m]."""
         return self.stiffness * np.clip(stretch / (2 * self.smoothing), 0.0, 1.0)
 
+    def tangents(self, stretch: Vector) -> Float[np.ndarray, "cables cables"]:
+        """dT/ds of each cable along the stretch of each [N/m]."""
+        return np.diag(self.tangent(stretch))
+
     def stretch(self, tension: Vector) -> Vector:
         """The stretch [m] at which a taut cable has this tension > 0 [N]."""
         k, eps = self.stiffness, self.smoothing
@@ -92,8 +96,8 @@ class CableEnergy(Energy):
         self.cables, self.winches = cables, winches
         self.controls = winches[cables]
         self.law, self.slack = law, slack
-        self._roundings = np.zeros(len(cables))
-        self._roundings = np.maximum(_ROUNDING * self._spans(nodes)[1], np.finfo(float).tiny ** 0.5)
+        self.roundings = np.zeros(len(cables))
+        self.roundings = np.maximum(_ROUNDING * self._spans(nodes)[1], np.finfo(float).tiny ** 0.5)
         self.rest_lengths = self.lengths(nodes)
 
     def lengths(self, nodes: Nodes) -> Vector:
@@ -112,13 +116,14 @@ class CableEnergy(Energy):
         return float(self.law.energy(self.stretches(nodes, controls)).sum())
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self._pull(nodes, self.tensions(nodes, controls))
+        return self._pull(nodes, self.law.tension(self.stretches(nodes, controls)))
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         spans, lengths = self._spans(nodes)
+        tensions = self.law.tension(self.stretches(nodes, controls))
         size = self.weights.shape[1] * nodes.shape[1]
         blocks = np.empty((len(self.cables), size, size))
-        _bends(spans, lengths, self.weights, self.tensions(nodes, controls)[self.cables], blocks)
+        _bends(spans, lengths, self.weights, tensions[self.cables], blocks)
         return blocks
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
@@ -127,7 +132,7 @@ class CableEnergy(Energy):
     def low_rank(
         self, nodes: Nodes, controls: Vector
     ) -> tuple[Float[np.ndarray, "dofs cables"], Float[np.ndarray, "cables cables"]]:
-        return self.columns(nodes), np.diag(self.law.tangent(self.stretches(nodes, controls)))
+        return self.columns(nodes), self.law.tangents(self.stretches(nodes, controls))
 
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
         """dl/dx of each cable."""
@@ -147,7 +152,7 @@ class CableEnergy(Energy):
     def _spans(self, nodes: Nodes) -> tuple[Points, Float[np.ndarray, " terms"]]:
         spans = np.empty((len(self.cables), nodes.shape[1]))
         lengths = np.empty(len(self.cables))
-        _measure(nodes, self.stencils, self.weights, self.offsets, self._roundings, spans, lengths)
+        _measure(nodes, self.stencils, self.weights, self.offsets, self.roundings, spans, lengths)
         return spans, lengths
 
 

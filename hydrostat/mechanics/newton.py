@@ -337,8 +337,8 @@ def _lowest_mode(stiffness: Stiffness, size: int) -> Vector:
 _NEAR = 1e-5
 """With less than this share of the largest applied force left over, the factors of the last step may serve again."""
 
-_PAYS = 0.2
-"""A step with old factors costs a fifth of one with new ones; it has to bring the residual down this far."""
+_PAYS = 0.1
+"""A step with old factors has to bring the residual down this far, or new ones are made."""
 
 _LEAST_SHARE = 1 / 32
 """Below this share of what is negative, try the full Hessian."""
