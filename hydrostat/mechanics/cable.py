@@ -44,10 +44,6 @@ class TensionLaw:
         """dT/ds [N/m]."""
         return self.stiffness * np.clip(stretch / (2 * self.smoothing), 0.0, 1.0)
 
-    def tangents(self, stretch: Vector) -> Float[np.ndarray, "cables cables"]:
-        """dT/ds of each cable along the stretch of each [N/m]."""
-        return np.diag(self.tangent(stretch))
-
     def stretch(self, tension: Vector) -> Vector:
         """The stretch [m] at which a taut cable has this tension > 0 [N]."""
         k, eps = self.stiffness, self.smoothing
@@ -116,15 +112,10 @@ class CableEnergy(Energy):
         return float(self.law.energy(self.stretches(nodes, controls)).sum())
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self._pull(nodes, self.law.tension(self.stretches(nodes, controls)))
+        return self._pull(nodes, self.tensions(nodes, controls))
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        spans, lengths = self._spans(nodes)
-        tensions = self.law.tension(self.stretches(nodes, controls))
-        size = self.weights.shape[1] * nodes.shape[1]
-        blocks = np.empty((len(self.cables), size, size))
-        _bends(spans, lengths, self.weights, tensions[self.cables], blocks)
-        return blocks
+        return self.bends(nodes, self.tensions(nodes, controls))
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.law.tangent(self.stretches(nodes, controls)))
@@ -132,7 +123,7 @@ class CableEnergy(Energy):
     def low_rank(
         self, nodes: Nodes, controls: Vector
     ) -> tuple[Float[np.ndarray, "dofs cables"], Float[np.ndarray, "cables cables"]]:
-        return self.columns(nodes), self.law.tangents(self.stretches(nodes, controls))
+        return self.columns(nodes), np.diag(self.law.tangent(self.stretches(nodes, controls)))
 
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
         """dl/dx of each cable."""
@@ -143,6 +134,14 @@ class CableEnergy(Energy):
     def length_gradients(self, nodes: Nodes) -> Blocks:
         """Dl/dx of each segment at its stencil's nodes."""
         return self._pull(nodes, np.ones(len(self.winches)))
+
+    def bends(self, nodes: Nodes, tensions: Vector) -> HessianBlocks:
+        """T d2l/dx2 of each segment under the tension of its cable [N/m]."""
+        spans, lengths = self._spans(nodes)
+        size = self.weights.shape[1] * nodes.shape[1]
+        blocks = np.empty((len(self.cables), size, size))
+        _bends(spans, lengths, self.weights, tensions[self.cables], blocks)
+        return blocks
 
     def _pull(self, nodes: Nodes, forces: Vector) -> Blocks:
         spans, lengths = self._spans(nodes)

@@ -50,7 +50,8 @@ class Stiffness:
         self._root = _square_root(weights)
         inner = np.eye(self._root.shape[1]) + self._root.T @ self.compliance @ self._root
         signs, self._axes = np.linalg.eigh(0.5 * (inner + inner.T))
-        self._inverse = 1.0 / signs
+        with np.errstate(divide="ignore"):
+            self._inverse = 1.0 / signs
         size = np.abs(signs)
         self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
         self.definite = not self.singular and self._factors.negative == int((signs < 0).sum())

@@ -166,9 +166,10 @@ def test_a_solve_that_stops_early_raises_or_says_why() -> None:
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_the_predicted_start_gives_the_same_equilibrium_sooner(name: str) -> None:
+    """From a pose 2 % away; oracle: the pose found from rest."""
     simulation = Simulation(ROBOTS[name]())
     from_rest = simulation.solve(PULL)
-    near = simulation.solve(0.9 * PULL)
+    near = simulation.solve(0.98 * PULL)
     predicted = simulation.solve(PULL, start=near)
     assert np.abs(predicted.nodes - from_rest.nodes).max() < 1e-8 * simulation.robot.body.mesh.size
     assert predicted.result.iterations < from_rest.result.iterations
