@@ -1,6 +1,7 @@
 """`Anchors`: points stuck to the material of a mesh."""
 
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -13,8 +14,11 @@ from hydrostat.geometry.mesh import Mesh
 _HAIR = 1e-9
 """A point this little outside counts as inside, in heights of its element."""
 
-_AT_ONCE = 500_000
-"""Pairs of point and element tried together."""
+_MARGIN = 1e-6
+"""How much the box around an element is widened, in its longest side: far more than a hair and rounding."""
+
+_AT_ONCE = 100_000
+"""Pairs of point and element that are tried one by one; more are looked for in a tree."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +54,8 @@ class Anchors:
 def locate(mesh: Mesh, points: Points) -> Anchors:
     """Stick points to the rest shape of a mesh.
 
-    A point outside is stuck to the nearest place of the body; `distances` says how far that was.
+    A point inside is held by the element in which it lies deepest, by its least weight; of several by the first. A
+    point outside is stuck to the nearest place of the body; `distances` says how far that was.
 
     Raises:
         InputError: the points are not finite or have another dimension than the mesh.
@@ -58,16 +63,22 @@ def locate(mesh: Mesh, points: Points) -> Anchors:
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != mesh.dim or not np.isfinite(points).all():
         raise InputError(f"points on a mesh of dimension {mesh.dim} must be finite, (points, {mesh.dim})")
-    held = np.zeros(len(points), dtype=np.int64)
-    weights = np.zeros((len(points), mesh.dim + 1))
+    held, weights = _holders(mesh, points)
     distances = np.zeros(len(points))
-    inverses = np.linalg.inv(np.swapaxes(_spans(mesh.nodes[mesh.elements]), 1, 2))
-    for part in np.array_split(np.arange(len(points)), 1 + len(points) * len(mesh.elements) // _AT_ONCE):
-        held[part], weights[part] = _holders(mesh, inverses, points[part])
-    for outside in np.flatnonzero(weights.min(axis=1) < -_HAIR):
+    for outside in np.flatnonzero(held < 0):
         held[outside], weights[outside], distances[outside] = _nearest(mesh, points[outside])
     weights = np.clip(weights, 0.0, None)
     return Anchors(mesh.elements[held], weights / weights.sum(axis=1, keepdims=True), distances)
+
+
+def anchor_nodes(mesh: Mesh, chosen: Int[np.ndarray, " points"]) -> Anchors:
+    """Anchors at nodes of a mesh, given by number: each held by the first element that has it, with weight one."""
+    first = np.full(len(mesh.nodes), len(mesh.elements))
+    np.minimum.at(first, mesh.elements, np.arange(len(mesh.elements))[:, None])
+    if (first[chosen] == len(mesh.elements)).any():  # a node of no element is a point like any other
+        return locate(mesh, mesh.nodes[chosen])
+    stencils = mesh.elements[first[chosen]]
+    return Anchors(stencils, (stencils == chosen[:, None]).astype(float), np.zeros(len(chosen)))
 
 
 def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndarray, "simplices sides dim"]:
@@ -75,15 +86,40 @@ def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndar
     return corners[:, 1:] - corners[:, :1]
 
 
-def _holders(
-    mesh: Mesh, inverses: Float[np.ndarray, "elements dim dim"], points: Points
-) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"]]:
-    """The element in which each point lies deepest, and its barycentric weights there (negative outside)."""
-    offsets = points[:, None] - mesh.nodes[mesh.elements[:, 0]]
-    local = np.einsum("eij,pej->pei", inverses, offsets)
-    weights = np.concatenate([1.0 - local.sum(axis=2, keepdims=True), local], axis=2)
-    deepest = np.argmax(weights.min(axis=2), axis=1)
-    return deepest, weights[np.arange(len(points)), deepest]
+def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"]]:
+    """The element in which each point lies deepest, and its barycentric weights there; -1 and 0 where it is in none."""
+    corners = mesh.nodes[mesh.elements]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    margin = _MARGIN * (high - low).max(axis=1, keepdims=True)
+    asked, elements = _in_boxes(low - margin, high + margin, points)
+    inverses = np.linalg.inv(np.swapaxes(_spans(corners), 1, 2))
+    local = np.einsum("pij,pj->pi", inverses[elements], points[asked] - corners[elements, 0])
+    weights = np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1)
+    depth = weights.min(axis=1)
+    order = np.lexsort((elements, -depth, asked))
+    order = order[depth[order] >= -_HAIR]
+    found, first = np.unique(asked[order], return_index=True)
+    held, shares = np.full(len(points), -1), np.zeros((len(points), mesh.dim + 1))
+    held[found], shares[found] = elements[order[first]], weights[order[first]]
+    return held, shares
+
+
+def _in_boxes(
+    low: Float[np.ndarray, "elements dim"], high: Float[np.ndarray, "elements dim"], points: Points
+) -> tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]:
+    """Every pair of a point and an element in whose box it lies."""
+    if len(points) * len(low) <= _AT_ONCE:
+        asked, elements = np.divmod(np.arange(len(points) * len(low)), max(len(low), 1))
+    else:
+        # Imported here, for it takes longer than what it saves on few points.
+        from scipy.spatial import KDTree
+
+        middle, reach = 0.5 * (low + high), 0.5 * (high - low).max(axis=1)
+        near = KDTree(points).query_ball_point(middle, np.nextafter(reach, np.inf), p=np.inf)
+        elements = np.repeat(np.arange(len(low)), [len(some) for some in near])
+        asked = np.fromiter(chain.from_iterable(near), np.int64, len(elements))
+    inside = ((points[asked] >= low[elements]) & (points[asked] <= high[elements])).all(axis=1)
+    return asked[inside], elements[inside]
 
 
 def _nearest(mesh: Mesh, point: Float[np.ndarray, " dim"]) -> tuple[int, Float[np.ndarray, " corners"], float]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry.anchors import Anchors, anchor_nodes, locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot.checks import check_not_negative, check_point, check_positive
 from hydrostat.robot.point import Point
@@ -48,11 +48,12 @@ class Pin:
         Raises:
             InputError: the pin lies outside the body and holds nothing.
         """
-        held = mesh.nodes[self.holds(mesh)]
-        if len(held) == 0:
+        held = np.flatnonzero(self.holds(mesh))
+        if len(held) > 0:
+            anchors = anchor_nodes(mesh, held)
+        else:
             middle = self.at if self.box is None else np.mean(self.box, axis=0)
-            held = np.array([middle], dtype=float)
-        anchors = locate(mesh, held)
+            anchors = locate(mesh, np.array([middle], dtype=float))
         if not anchors.inside.all():
             raise InputError("the pin lies outside the body and holds no node; move it, or widen its radius or box")
         return anchors

@@ -5,10 +5,12 @@ import pytest
 from builders import box_mesh
 from geometry.shapes import SHAPES, outline
 from scipy.optimize import nnls
+from scipy.spatial import Delaunay
 from shapely import Polygon, distance, points, union_all
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, locate, triangulate
+from hydrostat.geometry.anchors import anchor_nodes
 
 
 @cache
@@ -88,3 +90,95 @@ def test_refused(asked: np.ndarray) -> None:
     """Oracle: one line that says what is allowed."""
     with pytest.raises(InputError, match=r"must be finite, \(points, 2\)"):
         locate(flat_mesh(), asked)
+
+
+def large_mesh(dim: int) -> Mesh:
+    """Enough elements for the search by a tree, of very different sizes: many tiny ones, a few as large as the body."""
+    random = np.random.default_rng(dim)
+    spread = np.concatenate([random.uniform(size=(400, dim)), 0.05 * random.uniform(size=(1600, dim)) ** 3])
+    elements = Delaunay(spread).simplices.astype(np.int64)
+    spans = spread[elements[:, 1:]] - spread[elements[:, :1]]
+    turned = np.linalg.det(spans) < 0
+    elements[turned, :2] = elements[turned, 1::-1]
+    heights = 1.0 / np.linalg.norm(np.linalg.inv(spans), axis=1).max(axis=1)
+    return Mesh(spread, elements[heights > 1e-3 * np.ptp(spread[elements], axis=1).max(axis=1)])
+
+
+def depths(mesh: Mesh, point: np.ndarray) -> np.ndarray:
+    """Least barycentric weight of a point in every element, by solving for the weights: sum one, place the point."""
+    corners = mesh.nodes[mesh.elements]
+    system = np.concatenate([np.swapaxes(corners, 1, 2), np.ones((len(corners), 1, mesh.dim + 1))], axis=1)
+    return np.linalg.solve(system, np.append(point, 1.0)[:, None])[..., 0].min(axis=1)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_the_deepest_of_all_elements(dim: int) -> None:
+    """Oracle: every element tried, for points at random, on nodes, in the middle of edges and facets, and outside."""
+    mesh = large_mesh(dim)
+    random = np.random.default_rng(5)
+    some = mesh.elements[random.integers(0, len(mesh.elements), 30)]
+    asked = np.concatenate(
+        [
+            random.uniform(-0.2, 1.2, (30, dim)),
+            random.uniform(0.0, 0.05, (30, dim)),
+            mesh.nodes[some[:, 0]],
+            mesh.nodes[some[:, :2]].mean(axis=1),
+            mesh.nodes[some[:, :dim]].mean(axis=1),
+        ]
+    )
+    assert len(asked) * len(mesh.elements) > 400_000
+    together = locate(mesh, asked)
+    number = {tuple(element): index for index, element in enumerate(mesh.elements)}
+    for index, point in enumerate(asked):
+        depth = depths(mesh, point)
+        assert together.inside[index] == (depth.max() >= -1e-9)
+        if together.inside[index]:
+            held = number[tuple(together.stencils[index])]
+            assert depth[held] == pytest.approx(depth.max(), rel=0, abs=1e-9)
+            assert together.weights[index] @ mesh.nodes[together.stencils[index]] == pytest.approx(point, abs=1e-9)
+            if np.partition(depth, -2)[-2] < depth.max() - 1e-9:
+                assert held == np.argmax(depth)
+    assert 0.5 < together.inside.mean() < 1.0
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_many_points_are_as_few(dim: int) -> None:
+    """Oracle: the same points asked one by one, to the last bit; the tree serves the many only."""
+    mesh = large_mesh(dim)
+    random = np.random.default_rng(6)
+    asked = np.concatenate(
+        [random.uniform(-0.2, 1.2, (50, dim)), mesh.nodes[::50], mesh.nodes[mesh.elements[::300]].mean(1)]
+    )
+    together = locate(mesh, asked)
+    alone = [locate(mesh, point[None]) for point in asked]
+    assert np.array_equal(together.stencils, np.concatenate([one.stencils for one in alone]))
+    assert np.array_equal(together.weights, np.concatenate([one.weights for one in alone]))
+    assert np.array_equal(together.distances, np.concatenate([one.distances for one in alone]))
+
+
+def test_of_two_equally_deep_the_first() -> None:
+    """Oracle: a square of two triangles, in numbers that do not round; their common edge, in both orders."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    two = np.array([[0, 1, 2], [0, 2, 3]])
+    for elements in (two, two[::-1]):
+        assert np.array_equal(locate(Mesh(corners, elements), np.array([[0.5, 0.5]])).stencils, elements[:1])
+
+
+@pytest.mark.parametrize("mesh", [flat_mesh(), large_mesh(3)], ids=["flat", "solid"])
+def test_nodes_by_number(mesh: Mesh) -> None:
+    """Oracle: the nodes themselves, to the last bit, each in the first element that has it."""
+    chosen = np.unique(mesh.elements)[::3]
+    anchors = anchor_nodes(mesh, chosen)
+    assert np.array_equal(anchors.positions(mesh.nodes), mesh.nodes[chosen])
+    assert anchors.inside.all()
+    for node, stencil in zip(chosen, anchors.stencils, strict=True):
+        assert np.array_equal(stencil, mesh.elements[np.flatnonzero((mesh.elements == node).any(axis=1))[0]])
+
+
+def test_a_node_of_no_element() -> None:
+    """Oracle: `locate`, for such a node is a point like any other."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.25, 0.25], [2.0, 0.0]])
+    mesh = Mesh(corners, np.array([[0, 1, 2]]))
+    anchors = anchor_nodes(mesh, np.array([1, 3, 4]))
+    assert np.allclose(anchors.weights, [[0, 1, 0], [0.5, 0.25, 0.25], [0, 1, 0]])
+    assert np.array_equal(anchors.distances, [0, 0, 1])
