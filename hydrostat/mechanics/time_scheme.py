@@ -23,11 +23,20 @@ class TimeScheme:
 
 
 _G = 1 - 1 / sqrt(2)
+_H = 0.43586652150845899942
 
 SCHEMES = MappingProxyType(
     {
         "euler": TimeScheme(table=((1.0,),), order=1),
         "sdirk2": TimeScheme(table=((_G,), (1 - _G, _G)), order=2),
+        "sdirk3": TimeScheme(
+            table=(
+                (_H,),
+                ((1 - _H) / 2, _H),
+                (-1.5 * _H**2 + 4 * _H - 0.25, 1.5 * _H**2 - 5 * _H + 1.25, _H),
+            ),
+            order=3,
+        ),
     }
 )
-"""By name: implicit Euler, and the L-stable method of two stages (Alexander 1977)."""
+"""By name: implicit Euler, and the L-stable methods of two and three stages (Alexander 1977)."""

@@ -65,8 +65,8 @@ class Memory:
 
     Each branch stores mu/2 (tr(A C) - dim - ln det(A C)), C = F^T F, in a metric A that follows the body:
     dA/dt = (C^-1 - A) / tau, so its stress is S = mu (A - C^-1), and it loses energy whenever A differs from C^-1. With
-    eta = mu tau and tau to 0 there is a bare dashpot: S = eta C^-1 dC/dt C^-1, which is the stress of a Newtonian fluid,
-    2 eta D / J. None of it changes when the body turns.
+    eta = mu tau and tau to 0 there is a bare dashpot: S = eta C^-1 dC/dt C^-1, or as a stress in the deformed shape
+    2 eta D / J, that of a Newtonian fluid. None of it changes when the body turns.
 
     In an implicit step h from A_n the end value of A is linear in C^-1, so that S derives from a potential:
     S = eta / (tau + h) (A_n - C^-1). That of all branches together is one `ViscousEnergy` of their mean metric.
@@ -97,7 +97,7 @@ class Memory:
 
     def sound(self, metrics: Metrics, last: Metrics) -> Metrics:
         """Metrics that are positive definite: the last ones in elements where an extrapolation is not."""
-        bad = np.isnan(roots(metrics.reshape(-1, *metrics.shape[2:]))).any(axis=(1, 2)).reshape(metrics.shape[:2])
+        bad = np.isnan(roots(metrics.reshape(-1, *metrics.shape[2:]))[:, -1, -1]).reshape(metrics.shape[:2])
         return np.where(bad[:, :, None, None], last, metrics) if bad.any() else metrics
 
     def modulus(self, step: float) -> float:

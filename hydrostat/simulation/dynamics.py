@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
@@ -17,7 +16,6 @@ from hydrostat.mechanics import (
     NewtonResult,
     PinEnergy,
     RoundOff,
-    Stiffness,
     minimise,
 )
 from hydrostat.mechanics.inertia import InertiaEnergy
@@ -77,7 +75,13 @@ class Dynamics:
     def __init__(
         self, robot: Robot, statics: Assembly, cables: CableEnergy, markers: Anchors, options: NewtonOptions
     ) -> None:
-        """The robot's physics at rest, where its markers are, and how far Newton goes."""
+        """The robot's physics at rest, where its markers are, and how far Newton goes.
+
+        Raises:
+            InputError: a cable has friction.
+        """
+        if any(cable.friction for cable in robot.cables):
+            raise InputError("cables with friction cannot be moved in time yet; set their friction to 0")
         mesh, material = robot.body.mesh, robot.body.material
         self.robot, self.masses = robot, node_masses(robot)
         self._statics, self._cables, self._markers, self._options = statics, cables, markers, options
@@ -94,7 +98,6 @@ class Dynamics:
             rest=mesh.nodes,
             control_count=len(robot.winches),
         )
-        self._last: tuple[Motion, float, Stiffness] | None = None
 
     def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None) -> Motion:
         """A motion that begins at `nodes`, with all viscous branches settled there."""
@@ -127,7 +130,7 @@ class Dynamics:
                 if not result.converged:
                     break
             if result is not None and result.converged:
-                return self._counted(at, motion.time + dt, iterations)
+                return replace(at, time=motion.time + dt, result=replace(result, iterations=iterations))
         assert result is not None
         raise NotConvergedError(
             f"no step found at {motion.time:.4g} s, not even one of {dt / 2**options.halvings:.2g} s: {result.reason} "
@@ -140,35 +143,30 @@ class Dynamics:
     ) -> tuple[Motion, NewtonResult]:
         """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
         begin = _State(motion.nodes, motion.velocities, motion.metrics)
-        end, rates, acceleration, iterations = begin, [], motion.accelerations, 0
-        last = self._last if self._last is not None and self._last[0] is motion else None
-        known = None
+        end, rates, acceleration = begin, [], motion.accelerations
+        result, iterations = None, 0
         for *weights, diagonal in SCHEMES[options.scheme].table:
             base, step = begin, diagonal * dt
             for weight, rate in zip(weights, rates, strict=True):
                 base = base.plus(weight * dt, rate)
             base = replace(base, metrics=self.memory.sound(base.metrics, end.metrics))
-            if last is not None and last[1] == step:
-                known, last = last[2], None
             share = sum(weights) + diagonal
             controls = (1 - share) * motion.contractions + share * goal
             energies = self._energies(base, step, options.drag, (1 - share) * motion.pin_shifts + share * shifts)
-            result = self._minimise(energies, controls, base, end.nodes, acceleration, step, known)
+            result = self._minimise(energies, controls, base, end.nodes, acceleration, step)
             iterations += result.iterations
             if not result.converged:
                 return motion, replace(result, iterations=iterations)
-            known = result.stiffness
             velocities = (result.nodes - base.nodes) / step
             end = _State(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
             acceleration = (velocities - base.velocities) / step
             rates.append(_State(velocities, acceleration, (end.metrics - base.metrics) / step))
+        assert result is not None
         counted = replace(result, iterations=iterations, stiffness=None)
-        arrived = self._motion(motion.time + dt, goal, shifts, end, acceleration, counted)
-        self._last = None if known is None else (arrived, step, known)
-        return arrived, counted
+        return self._motion(motion.time + dt, goal, shifts, end, acceleration, counted), counted
 
-    def _energies(self, base: _State, step: float, drag: float, shifts: Points) -> list[Energy]:
-        """Those of statics with the pins where they are, inertia, and the viscous branches if there are any."""
+    def _at_rest(self, shifts: Points) -> list[Energy]:
+        """The energies of statics, with the pins where they are."""
         energies = list(self._statics.energies)
         for index, energy in enumerate(energies):
             if isinstance(energy, PinEnergy) and shifts.any():
@@ -178,6 +176,11 @@ class Dynamics:
                     targets=energy.targets + shifts[self._pin_of],
                     stiffness=energy.stiffness,
                 )
+        return energies
+
+    def _energies(self, base: _State, step: float, drag: float, shifts: Points) -> list[Energy]:
+        """Those of statics, inertia, and the viscous branches if there are any."""
+        energies = self._at_rest(shifts)
         braked = 1 + drag * step
         energies.append(InertiaEnergy(base.nodes + step / braked * base.velocities, self.masses * (braked / step**2)))
         if len(self.memory):
@@ -192,7 +195,6 @@ class Dynamics:
         before: Nodes,
         acceleration: Nodes,
         step: float,
-        known: Stiffness | None,
     ) -> NewtonResult:
         """One stage, from whichever guess has the least energy."""
         assembly = self._assembly.with_energies(energies)
@@ -213,7 +215,6 @@ class Dynamics:
             force_scale=force_scale,
             round_off=self._noise(step),
             options=self._options,
-            stiffness=known,
         )
 
     def _noise(self, step: float) -> RoundOff:
@@ -247,7 +248,6 @@ class Dynamics:
         result: NewtonResult | None,
     ) -> Motion:
         nodes = state.nodes
-        energies = self._energies(state, 1.0, 0.0, shifts)[: len(self._statics.energies)]
         places = self._markers.positions(nodes)
         return Motion(
             time=time,
@@ -260,15 +260,7 @@ class Dynamics:
             markers={marker.name: place for marker, place in zip(self.robot.markers, places, strict=True)},
             tensions=self._cables.tensions(nodes, contractions),
             kinetic=float(0.5 * self.masses @ (state.velocities**2).sum(axis=1)),
-            potential=sum(energy.value(nodes, contractions) for energy in energies)
+            potential=sum(energy.value(nodes, contractions) for energy in self._at_rest(shifts))
             + self.memory.stored(state.metrics, nodes),
             result=result,
         )
-
-    def _counted(self, motion: Motion, time: float, iterations: int) -> Motion:
-        """The same motion with the iterations of all tries, at the very time."""
-        assert motion.result is not None
-        counted = replace(motion, time=time, result=replace(motion.result, iterations=iterations))
-        if self._last is not None and self._last[0] is motion:
-            self._last = counted, *self._last[1:]
-        return counted

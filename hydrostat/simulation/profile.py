@@ -1,7 +1,6 @@
 """`Profile`: contractions in time."""
 
 import csv
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
@@ -88,7 +87,7 @@ def read_profile(path: Path, robot: Robot) -> Profile:
         raise InputError(f"{path}: {error}") from None
 
 
-def _numbers(path: Path, number: int, head: list[str], row: list[str]) -> Mapping[str, float] | dict[str, float]:
+def _numbers(path: Path, number: int, head: list[str], row: list[str]) -> dict[str, float]:
     try:
         return {name: float(cell) for name, cell in zip(head, row, strict=True)}
     except ValueError:
