@@ -8,12 +8,13 @@ import pytest
 from robustness import example_folders, fault, sweep  # pyright: ignore[reportMissingImports]
 
 import hydrostat as hs
+from hydrostat.robot import load_robot
 
 
 @pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize("folder", example_folders(), ids=lambda folder: folder.name)
 def test_every_random_contraction_of_every_example_converges(folder: Path) -> None:
-    found = sweep(folder, 50, seed=1)
+    found = sweep(load_robot(folder), 50, seed=1)
     assert found.failures == []
     assert max(found.iterations) < 80
 
