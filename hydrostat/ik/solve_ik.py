@@ -58,7 +58,7 @@ def solve_ik(
         options: tolerances and limits.
 
     Raises:
-        InputError: a marker that does not exist, or a robot without cables.
+        InputError: a marker that does not exist, a robot without cables, or one whose cables have friction.
     """
     pose = targets if isinstance(targets, Pose) else Pose(name="target", targets=dict(targets))
     return _Search(simulation, pose, options or InverseOptions()).run(start)
@@ -113,6 +113,11 @@ class _Search:
         if not robot.cables:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
+            )
+        if simulation.friction is not None:
+            raise InputError(
+                "cables with friction end in another pose for every way there, so no contractions belong to a pose; "
+                "set friction = 0 to find some, then simulate them with friction"
             )
         self.simulation, self.target, self.options = simulation, target, options
         self.low = np.array([-winch.release for winch in robot.winches])

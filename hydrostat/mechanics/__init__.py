@@ -5,6 +5,7 @@ from hydrostat.mechanics.cable import CableEnergy, TensionLaw
 from hydrostat.mechanics.energy import Energy, nearest_semidefinite
 from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
 from hydrostat.mechanics.fibre import FibreEnergy
+from hydrostat.mechanics.friction import ChainLaw, FrictionCableEnergy, Turns
 from hydrostat.mechanics.neo_hookean import NeoHookean
 from hydrostat.mechanics.newton import NewtonOptions, NewtonResult, Reason, RoundOff, minimise
 from hydrostat.mechanics.pin import PinEnergy
@@ -16,9 +17,11 @@ __all__ = [
     "Analysis",
     "Assembly",
     "CableEnergy",
+    "ChainLaw",
     "Energy",
     "Factorisation",
     "FibreEnergy",
+    "FrictionCableEnergy",
     "NeoHookean",
     "NewtonOptions",
     "NewtonResult",
@@ -27,6 +30,7 @@ __all__ = [
     "RoundOff",
     "Stiffness",
     "TensionLaw",
+    "Turns",
     "Warp",
     "WeightEnergy",
     "factorise",

@@ -1,11 +1,13 @@
 """From the parts of a robot to the energies of its physics."""
 
+from typing import Any
+
 import numpy as np
 
-from hydrostat.geometry.anchors import locate
 from hydrostat.mechanics import (
     CableEnergy,
     Energy,
+    FrictionCableEnergy,
     NeoHookean,
     PinEnergy,
     RoundOff,
@@ -13,7 +15,8 @@ from hydrostat.mechanics import (
     Warp,
     WeightEnergy,
 )
-from hydrostat.robot import Cable, Mount, Robot
+from hydrostat.robot import Robot
+from hydrostat.simulation.turns import cable_segments, cable_turns
 
 
 def body_energies(robot: Robot) -> list[Energy]:
@@ -25,24 +28,16 @@ def body_energies(robot: Robot) -> list[Energy]:
 
 
 def cable_energy(robot: Robot) -> CableEnergy:
-    """All cables, in their order; the control of each is the index of its winch."""
-    order = {winch.name: index for index, winch in enumerate(robot.winches)}
-    cables = robot.cables
-    segments = [_segments(robot, cable) for cable in cables]
-    corners, dim = 2 * robot.body.mesh.dim + 2, robot.body.mesh.dim
-    return CableEnergy(
-        robot.body.mesh.nodes,
-        stencils=np.concatenate([np.zeros((0, corners), dtype=np.int64), *(own[0] for own in segments)]),
-        weights=np.concatenate([np.zeros((0, corners)), *(own[1] for own in segments)]),
-        offsets=np.concatenate([np.zeros((0, dim)), *(own[2] for own in segments)]),
-        cables=np.repeat(np.arange(len(cables)), [len(own[0]) for own in segments]),
-        law=TensionLaw(
-            stiffness=np.array([cable.stiffness for cable in cables]),
-            smoothing=np.array([cable.smoothing for cable in cables]),
-        ),
-        winches=np.array([order[cable.winch] for cable in cables], dtype=np.int64),
-        slack=np.array([cable.slack for cable in cables]),
-    )
+    """All cables, in their order, as if they had no friction; the control of each is the index of its winch."""
+    return CableEnergy(robot.body.mesh.nodes, **_runs(robot))
+
+
+def friction_energy(robot: Robot) -> FrictionCableEnergy | None:
+    """All cables as they rub, in place of `cable_energy`; None if none of them does."""
+    friction = np.array([cable.friction for cable in robot.cables])
+    if not friction.any():
+        return None
+    return FrictionCableEnergy(robot.body.mesh.nodes, **_runs(robot), friction=friction, turns=cable_turns(robot))
 
 
 def warp(robot: Robot, body: NeoHookean, pins: PinEnergy) -> Warp:
@@ -103,16 +98,21 @@ def _weight(robot: Robot) -> WeightEnergy:
     return WeightEnergy(robot.body.mesh.nodes, node_masses(robot)[:, None] * np.array(robot.gravity))
 
 
-def _segments(robot: Robot, cable: Cable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Stencils, signed weights and offsets of the segments of a cable that are not sheathed."""
-    points = np.array(cable.points)
-    fixed = np.zeros((len(points), 1), dtype=bool)
-    fixed[0] = robot.winch(cable.winch).mount is Mount.WORLD
-    anchors = locate(robot.body.mesh, points)
-    weights, offsets = np.where(fixed, 0.0, anchors.weights), np.where(fixed, points, 0.0)
-    start = np.flatnonzero(cable.bare)
-    return (
-        np.concatenate([anchors.stencils[start], anchors.stencils[start + 1]], axis=1),
-        np.concatenate([-weights[start], weights[start + 1]], axis=1),
-        offsets[start + 1] - offsets[start],
-    )
+def _runs(robot: Robot) -> dict[str, Any]:
+    """Arguments of a `CableEnergy` but for the nodes."""
+    order = {winch.name: index for index, winch in enumerate(robot.winches)}
+    cables = robot.cables
+    segments = [tuple(part[cable.bare] for part in cable_segments(robot, cable)) for cable in cables]
+    corners, dim = 2 * robot.body.mesh.dim + 2, robot.body.mesh.dim
+    return {
+        "stencils": np.concatenate([np.zeros((0, corners), dtype=np.int64), *(own[0] for own in segments)]),
+        "weights": np.concatenate([np.zeros((0, corners)), *(own[1] for own in segments)]),
+        "offsets": np.concatenate([np.zeros((0, dim)), *(own[2] for own in segments)]),
+        "cables": np.repeat(np.arange(len(cables)), [len(own[0]) for own in segments]),
+        "law": TensionLaw(
+            stiffness=np.array([cable.stiffness for cable in cables]),
+            smoothing=np.array([cable.smoothing for cable in cables]),
+        ),
+        "winches": np.array([order[cable.winch] for cable in cables], dtype=np.int64),
+        "slack": np.array([cable.slack for cable in cables]),
+    }

@@ -13,8 +13,9 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Stiffness, minimise
 from hydrostat.robot import Robot
-from hydrostat.simulation.build import body_energies, cable_energy, round_off, warp
+from hydrostat.simulation.build import body_energies, cable_energy, friction_energy, round_off, warp
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
+from hydrostat.simulation.friction_path import FrictionPath
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.profile import Profile
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -32,11 +33,18 @@ class Simulation:
         self.robot = robot
         self.options = options or NewtonOptions()
         self.cables = cable_energy(robot)
+        self.friction = friction_energy(robot)
         body, pins, *rest = body_energies(robot)
-        self.assembly = Assembly([body, pins, *rest, self.cables], rest=mesh.nodes, control_count=len(robot.winches))
+        pulls = self.friction or self.cables
+        self.assembly = Assembly([body, pins, *rest, pulls], rest=mesh.nodes, control_count=len(robot.winches))
         self.marker_anchors = _markers(robot)
         self._warp = warp(robot, body, pins)
         self._round_off = round_off(robot)
+        self._path = None
+        if self.friction is not None:
+            self._path = FrictionPath(
+                robot, self.assembly, self.friction, options=self.options, round_off=self._round_off, warp=self._warp
+            )
         self._last: tuple[SolvedPose, Stiffness] | None = None
 
     def contractions(self, given: Contractions) -> Vector:
@@ -65,6 +73,9 @@ class Simulation:
     def solve(self, contractions: Contractions, *, start: SolvedPose | None = None, strict: bool = True) -> SolvedPose:
         """Equilibrium at the given contractions.
 
+        With friction it depends on the way there. This is then followed from `start` in small increments, in which all
+        contractions change in proportion (E14).
+
         Args:
             contractions: cable taken in [m].
             start: a pose to begin from; the rest pose if left out.
@@ -75,11 +86,14 @@ class Simulation:
             NotConvergedError: the solver stopped early; its text says why.
         """
         goal = self.contractions(contractions)
-        if start is None:
+        slips = np.zeros(0)
+        if self._path is not None:
+            result, slips = self._path.solve(goal, start)
+        elif start is None:
             result = self._minimise(self.robot.body.mesh.nodes, goal, self._rest_stiffness)
         else:
             result = self._minimise(start.nodes, goal, self._known_stiffness(start))
-        if not result.converged:
+        if not result.converged and self._path is None:
             result = self._in_steps(goal, result)
         if strict and not result.converged:
             raise NotConvergedError(
@@ -87,14 +101,18 @@ class Simulation:
                 f"(force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
                 result,
             )
-        return self._solved(goal, result)
+        return self._solved(goal, result, slips)
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
         """D nodes / d contractions at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
 
+        Cables with friction go on slipping where they are at the limit of it, and stick elsewhere.
+
         Raises:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
+        if self._path is not None:
+            return self._path.moves(pose).reshape(*pose.nodes.shape, -1)
         stiffness = self.stiffness(pose)
         if stiffness.singular:
             raise NotConvergedError(
@@ -176,15 +194,25 @@ class Simulation:
 
     @cached_property
     def dynamics(self) -> Dynamics:
-        """Steps in time; their sparse pattern is made here, once."""
+        """Steps in time; their sparse pattern is made here, once.
+
+        Raises:
+            InputError: a cable with friction, which has no steps in time yet.
+        """
+        if self.friction is not None:
+            raise InputError("cables with friction cannot move in time yet; set friction = 0, or solve for poses")
         return Dynamics(self.robot, self.assembly, self.cables, self.marker_anchors, self.options)
 
-    def tensions(self, nodes: Nodes, contractions: Vector) -> Vector:
-        """Tension of each cable [N]."""
+    def tensions(self, nodes: Nodes, contractions: Vector, slips: Vector | None = None) -> Vector:
+        """Tension of each cable [N]; at its winch if it has friction and has slipped by `slips` [m]."""
+        if self.friction is not None and slips is not None:
+            return self.friction.resumed(slips, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
 
     def stiffness(self, pose: SolvedPose) -> Stiffness:
         """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
+        if self._path is not None:
+            return self._path.stiffness(pose)
         return self._known_stiffness(pose) or self.assembly.stiffness(pose.nodes, pose.contractions)
 
     @cached_property
@@ -221,18 +249,19 @@ class Simulation:
             stiffness=stiffness,
         )
 
-    def _solved(self, contractions: Vector, result: NewtonResult) -> SolvedPose:
+    def _solved(self, contractions: Vector, result: NewtonResult, slips: Vector) -> SolvedPose:
         positions = self.marker_anchors.positions(result.nodes)
         pose = SolvedPose(
             contractions=contractions,
             nodes=result.nodes,
             markers={marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)},
-            tensions=self.tensions(result.nodes, contractions),
+            tensions=self.tensions(result.nodes, contractions, slips),
             energy=result.energy,
             result=replace(result, stiffness=None),
         )
         self._last = None if result.stiffness is None else (pose, result.stiffness)
         return pose
+            slips=slips,
 
 
 _REFINEMENTS = 3

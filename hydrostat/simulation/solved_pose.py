@@ -1,7 +1,9 @@
 """`SolvedPose`: a robot at rest under given contractions."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import NewtonResult
@@ -18,6 +20,7 @@ class SolvedPose:
         tensions: of each cable [N], in cable order.
         energy: total energy [J].
         result: how the solver ended: reason, residual [N], iterations, stability.
+        slips: how much cable has slipped over each point with friction until now [m]; empty without friction.
     """
 
     contractions: Vector
@@ -26,3 +29,4 @@ class SolvedPose:
     tensions: Vector
     energy: float
     result: NewtonResult
+    slips: Vector = field(default_factory=lambda: np.zeros(0))
