@@ -1,6 +1,7 @@
 """`Anchors`: points stuck to the material of a mesh."""
 
 from dataclasses import dataclass
+from functools import reduce
 from itertools import chain
 
 import numpy as np
@@ -17,8 +18,8 @@ _HAIR = 1e-9
 _MARGIN = 1e-6
 """How much the box around an element is widened, in its longest side: far more than a hair and rounding."""
 
-_AT_ONCE = 100_000
-"""Pairs of point and element that are tried one by one; more are looked for in a tree."""
+_AT_ONCE = 3_000_000
+"""Pairs of point and box that are tried one by one; more are looked for in a tree."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +89,11 @@ def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndar
 
 def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"]]:
     """The element in which each point lies deepest, and its barycentric weights there; -1 and 0 where it is in none."""
-    corners = mesh.nodes[mesh.elements]
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    margin = _MARGIN * (high - low).max(axis=1, keepdims=True)
-    asked, elements = _in_boxes(low - margin, high + margin, points)
+    asked, elements = _in_boxes(mesh, points)
+    some, which = np.unique(elements, return_inverse=True)
+    corners = mesh.nodes[mesh.elements[some]]
     inverses = np.linalg.inv(np.swapaxes(_spans(corners), 1, 2))
-    local = np.einsum("pij,pj->pi", inverses[elements], points[asked] - corners[elements, 0])
+    local = np.einsum("pij,pj->pi", inverses[which], points[asked] - corners[which, 0])
     weights = np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1)
     depth = weights.min(axis=1)
     order = np.lexsort((elements, -depth, asked))
@@ -104,20 +104,24 @@ def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Fl
     return held, shares
 
 
-def _in_boxes(
-    low: Float[np.ndarray, "elements dim"], high: Float[np.ndarray, "elements dim"], points: Points
-) -> tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]:
+def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]:
     """Every pair of a point and an element in whose box it lies."""
+    corners = [mesh.nodes[corner] for corner in mesh.elements.T]
+    low, high = reduce(np.minimum, corners), reduce(np.maximum, corners)
+    longest = (high - low).max(axis=1)
+    low, high = low - _MARGIN * longest[:, None], high + _MARGIN * longest[:, None]
     if len(points) * len(low) <= _AT_ONCE:
-        asked, elements = np.divmod(np.arange(len(points) * len(low)), max(len(low), 1))
-    else:
-        # Imported here, for it takes longer than what it saves on few points.
-        from scipy.spatial import KDTree
+        inside = np.ones((len(points), len(low)), dtype=bool)
+        for axis in range(mesh.dim):
+            inside &= (points[:, axis, None] >= low[:, axis]) & (points[:, axis, None] <= high[:, axis])
+        asked, elements = np.nonzero(inside)
+        return asked, elements
+    # Imported here: few points do without, and start sooner.
+    from scipy.spatial import KDTree
 
-        middle, reach = 0.5 * (low + high), 0.5 * (high - low).max(axis=1)
-        near = KDTree(points).query_ball_point(middle, np.nextafter(reach, np.inf), p=np.inf)
-        elements = np.repeat(np.arange(len(low)), [len(some) for some in near])
-        asked = np.fromiter(chain.from_iterable(near), np.int64, len(elements))
+    near = KDTree(points).query_ball_point(0.5 * (low + high), (0.5 + 2 * _MARGIN) * longest, p=np.inf)
+    elements = np.repeat(np.arange(len(low)), [len(some) for some in near])
+    asked = np.fromiter(chain.from_iterable(near), np.int64, len(elements))
     inside = ((points[asked] >= low[elements]) & (points[asked] <= high[elements])).all(axis=1)
     return asked[inside], elements[inside]
 
