@@ -89,12 +89,8 @@ class Simulation:
         slips = np.zeros(0)
         if self._path is not None:
             result, slips = self._path.solve(goal, start)
-        elif start is None:
-            result = self._minimise(self.robot.body.mesh.nodes, goal, self._rest_stiffness)
         else:
-            result = self._minimise(start.nodes, goal, self._known_stiffness(start))
-        if not result.converged and self._path is None:
-            result = self._in_steps(goal, result)
+            result = self._approach(goal, start)
         if strict and not result.converged:
             raise NotConvergedError(
                 f"no equilibrium found after {result.iterations} iterations: {result.reason} "
@@ -224,27 +220,63 @@ class Simulation:
         """The Hessian at a pose if it is at hand: that of the last one solved."""
         return self._last[1] if self._last is not None and self._last[0] is pose else None
 
-    def _in_steps(self, goal: Vector, failed: NewtonResult) -> NewtonResult:
-        """From rest by smaller and smaller steps; the first failure if even those do not arrive."""
-        iterations = failed.iterations
-        for steps in (4, 16):
-            nodes, result = self.robot.body.mesh.nodes, failed
-            for step in range(1, steps + 1):
-                result = self._minimise(nodes, goal * (step / steps))
-                nodes = result.nodes
-                iterations += result.iterations
-            if result.converged:
-                return replace(result, iterations=iterations)
-        return failed
+    def _approach(self, goal: Vector, start: SolvedPose | None) -> NewtonResult:
+        """At once; failing that in load steps from `start`, and failing that from rest."""
+        rest, idle = self.robot.body.mesh.nodes, np.zeros_like(goal)
+        begin = start.nodes if start else rest
+        known = self._known_stiffness(start) if start else self._rest_stiffness
+        direct = result = self._minimise(begin, goal, known, iterations=_DIRECT_ITERATIONS)
+        spent = result.iterations
+        if not result.converged and start and (start.contractions != goal).any():
+            result = self._in_steps(begin, start.contractions, goal, known)
+            spent += result.iterations
+        if not result.converged:
+            result = self._in_steps(rest, idle, goal, self._rest_stiffness)
+            spent += result.iterations
+        return replace(result if result.converged else direct, iterations=spent)
 
-    def _minimise(self, nodes: Nodes, contractions: Vector, stiffness: Stiffness | None = None) -> NewtonResult:
+    def _in_steps(self, nodes: Nodes, begin: Vector, goal: Vector, stiffness: Stiffness | None) -> NewtonResult:
+        """By load steps that are halved where one fails and doubled where not; the last failure if they get too small.
+
+        A step on the way need not end sharp.
+        """
+        done, step, spent = 0.0, _FIRST_STEP, 0
+        while True:
+            share = min(done + step, 1.0)
+            last = share == 1.0
+            iterations, tolerance = (None, None) if last else (_DIRECT_ITERATIONS, _LOOSE)
+            controls = goal if last else begin + share * (goal - begin)
+            result = self._minimise(nodes, controls, stiffness, iterations=iterations, tolerance=tolerance)
+            spent += result.iterations
+            if result.converged and not last:
+                nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
+                continue
+            step *= 0.5
+            if result.converged or step < _SMALLEST_STEP:
+                return replace(result, iterations=spent)
+
+    def _minimise(
+        self,
+        nodes: Nodes,
+        contractions: Vector,
+        stiffness: Stiffness | None = None,
+        *,
+        iterations: int | None = None,
+        tolerance: float | None = None,
+    ) -> NewtonResult:
+        """Newton with the simulation's options, or with fewer iterations or a looser tolerance."""
+        options = self.options
+        if iterations is not None:
+            options = replace(options, iterations=min(iterations, options.iterations))
+        if tolerance is not None:
+            options = replace(options, tolerance=max(tolerance, options.tolerance))
         return minimise(
             self.assembly,
             nodes,
             contractions,
             force_scale=lambda nodes: float(self.tensions(nodes, contractions).max(initial=0.0)),
             round_off=self._round_off,
-            options=self.options,
+            options=options,
             warp=self._warp,
             stiffness=stiffness,
         )
@@ -258,13 +290,25 @@ class Simulation:
             tensions=self.tensions(result.nodes, contractions, slips),
             energy=result.energy,
             result=replace(result, stiffness=None),
+            slips=slips,
         )
         self._last = None if result.stiffness is None else (pose, result.stiffness)
         return pose
-            slips=slips,
 
 
 _REFINEMENTS = 3
+
+_DIRECT_ITERATIONS = 20
+"""So many steps of Newton before a command is approached in load steps."""
+
+_FIRST_STEP = 0.25
+"""Share of a command that is tried first."""
+
+_LOOSE = 1e-2
+"""What may be left over on the way, as a share of the largest applied force."""
+
+_SMALLEST_STEP = 2.0**-10
+"""No load step is smaller than this share of a command."""
 
 
 def _markers(robot: Robot) -> Anchors:
