@@ -15,13 +15,17 @@ from hydrostat.mechanics import (
     Warp,
     WeightEnergy,
 )
-from hydrostat.robot import Robot
+from hydrostat.mechanics.patch_volume import PatchVolume
+from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
+from hydrostat.robot import Robot, Volume
 from hydrostat.simulation.turns import cable_segments, cable_turns
 
 
 def body_energies(robot: Robot) -> list[Energy]:
-    """The elastic body, the pins that hold it and its weight."""
+    """The elastic body, the pins that hold it; then its volume in patches and its weight, if it has these."""
     energies: list[Energy] = [elastic_energy(robot), pin_energy(robot)]
+    if robot.body.volume is Volume.PATCH:
+        energies.append(_patch_volume(robot))
     if robot.gravity is not None:
         energies.append(_weight(robot))
     return energies
@@ -71,10 +75,18 @@ def node_masses(robot: Robot) -> np.ndarray:
 
 
 def elastic_energy(robot: Robot) -> NeoHookean:
-    """The elastic body."""
+    """The elastic body, without what resists a change of its volume if that is measured in patches."""
     body = robot.body
     mu, lame = body.material.lame
+    if body.volume is Volume.PATCH:
+        lame = 0.0
     return NeoHookean(body.mesh.nodes, body.mesh.elements, mu=mu, lame=lame, thickness=body.thickness or 1.0)
+
+
+def _patch_volume(robot: Robot) -> PatchVolume:
+    mesh, thickness = robot.body.mesh, robot.body.thickness or 1.0
+    patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
+    return PatchVolume(mesh.nodes, mesh.elements, patches, lame=robot.body.material.lame[1], thickness=thickness)
 
 
 def pin_energy(robot: Robot) -> PinEnergy:
