@@ -63,9 +63,7 @@ def test_wanted_directions_are_the_best_of_all_angles() -> None:
     errors = np.zeros((len(angles), count))
     for row, angle in enumerate(angles):
         fibres = element_fibres(mesh, turned(count, angle))
-        assembly = Assembly(
-            [*body_energies(robot), fibres.energy()], rest=mesh.nodes, control_count=count
-        )
+        assembly = Assembly([*body_energies(robot), fibres.energy()], rest=mesh.nodes, control_count=count)
         for fibre in range(3, count, 5):
             tensions = np.zeros(count)
             # The same couple of forces at the ends of a fibre of unit length, whatever its own length is.

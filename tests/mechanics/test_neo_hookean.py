@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from builders import box_mesh, strip_mesh
+from loads import Rollers
 from scipy.optimize import root, root_scalar
 from states import CONTROLS, deform, rough_mesh
 
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.mechanics import Assembly, Energy, NeoHookean, NewtonOptions, RoundOff, minimise
+from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, RoundOff, WeightEnergy, minimise
 
 MU, LAME, THICKNESS = 11e3, 17e3, 0.03
 NONE = np.zeros(CONTROLS)
@@ -72,43 +73,6 @@ def test_uniaxial(dim: int, stretch: float) -> None:
     assert stress == pytest.approx(expected, abs=1e-9 * MU)
 
 
-class Load(Energy):
-    """A dead load on nodes."""
-
-    def __init__(self, nodes: np.ndarray, forces: np.ndarray) -> None:
-        self.stencils, self.forces = nodes[:, None], forces
-
-    def value(self, nodes, controls):
-        return -float((self.forces * nodes[self.stencils[:, 0]]).sum())
-
-    def gradient(self, nodes, controls):
-        return -self.forces[:, None, :]
-
-    def hessian(self, nodes, controls):
-        dim = nodes.shape[1]
-        return np.zeros((len(self.stencils), dim, dim))
-
-
-class Rollers(Energy):
-    """Nodes that slide along the plane on which one of their coordinates is 0."""
-
-    def __init__(self, nodes: np.ndarray, axis: int, stiffness: np.ndarray) -> None:
-        self.stencils, self.axis, self.stiffness = nodes[:, None], axis, stiffness
-
-    def value(self, nodes, controls):
-        return 0.5 * float(self.stiffness @ nodes[self.stencils[:, 0], self.axis] ** 2)
-
-    def gradient(self, nodes, controls):
-        blocks = np.zeros((len(self.stencils), 1, nodes.shape[1]))
-        blocks[:, 0, self.axis] = self.stiffness * nodes[self.stencils[:, 0], self.axis]
-        return blocks
-
-    def hessian(self, nodes, controls):
-        blocks = np.zeros((len(self.stencils), nodes.shape[1], nodes.shape[1]))
-        blocks[:, self.axis, self.axis] = self.stiffness
-        return blocks
-
-
 def end_areas(mesh: Mesh, end: float) -> tuple[np.ndarray, np.ndarray]:
     """Nodes of the face x = end and the area that belongs to each."""
     facets = mesh.boundary[(np.abs(mesh.nodes[mesh.boundary, 0] - end) < 1e-9).all(axis=1)]
@@ -127,13 +91,13 @@ def test_a_block_under_an_end_load_takes_its_closed_form(dim: int, traction: flo
     mesh = Mesh(mesh.nodes - mesh.nodes.min(axis=0), mesh.elements)
     length = float(np.ptp(mesh.nodes[:, 0]))
     (left, left_areas), (right, right_areas) = end_areas(mesh, 0.0), end_areas(mesh, length)
-    forces = np.zeros((len(right), dim))
-    forces[:, 0] = traction * right_areas
+    forces = np.zeros_like(mesh.nodes)
+    forces[right, 0] = traction * right_areas
     sides = [np.flatnonzero(mesh.nodes[:, axis] == 0.0) for axis in range(dim)]
     rollers = [Rollers(sides[axis], axis, np.full(len(sides[axis]), 1e4)) for axis in range(1, dim)]
     springs = 1e9 * left_areas
     assembly = Assembly(
-        [body(mesh), Load(right, forces), Rollers(left, 0, springs), *rollers],
+        [body(mesh), WeightEnergy(mesh.nodes, forces), Rollers(left, 0, springs), *rollers],
         rest=mesh.nodes,
         control_count=0,
     )

@@ -134,6 +134,42 @@ def test_the_last_steps_are_few() -> None:
     assert all(after < 0.2 * before for before, after in last)
 
 
+def test_what_is_no_minimum_is_not_called_stable() -> None:
+    """Oracle: dense eigenvalues of the strip, crushed to 60 % of its length along and swollen across."""
+    start = MESH.nodes * [0.6, 1.1]
+    result = solve(0.0, start=start, iterations=0)
+    assert np.linalg.eigvalsh(dense(strip(), start, np.zeros(1)))[0] < 0
+    assert not result.stable
+    assert not solve(0.03, start=MESH.nodes * [1, -1]).stable
+
+
+def test_a_node_that_nothing_holds_stays_and_the_rest_arrives() -> None:
+    """The Hessian is singular, however much of it is lifted: only a shift of its diagonal can be solved with.
+
+    Closed form: the pins carry the strip along as it is; the loose node feels no force.
+    """
+    nodes, shift = np.vstack([MESH.nodes, [[0.3, 0.3]]]), np.array([0.01, 0.02])
+    pins = PinEnergy(
+        stencils=np.arange(4)[:, None],
+        weights=np.ones((4, 1)),
+        targets=MESH.nodes[:4] + shift,
+        stiffness=np.full(4, 10.0),
+    )
+    body = NeoHookean(nodes, MESH.elements, mu=11e3, lame=17e3, thickness=0.03)
+    result = minimise(
+        Assembly([body, pins], rest=nodes, control_count=0),
+        nodes,
+        np.zeros(0),
+        force_scale=lambda _: 0.1,
+        round_off=ROUND_OFF,
+        options=OPTIONS,
+    )
+    assert result.converged
+    assert not result.stable
+    assert result.nodes[:-1] == pytest.approx(MESH.nodes + shift, abs=1e-8)
+    assert result.nodes[-1] == pytest.approx(nodes[-1], abs=1e-12)
+
+
 @pytest.mark.parametrize("iterations", [0, 1, 3])
 def test_the_iteration_limit_is_kept_and_named(iterations: int) -> None:
     result = solve(0.03, iterations=iterations)

@@ -164,6 +164,19 @@ def test_a_solve_that_stops_early_raises_or_says_why() -> None:
     assert np.isfinite(pose.nodes).all()
 
 
+def test_what_is_too_far_for_one_go_is_reached_in_steps() -> None:
+    """One step of Newton less than it takes at once: smaller loads one after the other lead to the same pose."""
+    far = np.array([0.08, 0.0])
+    at_once = Simulation(strip_robot()).solve(far)
+    limit = at_once.result.iterations - 1
+    simulation = Simulation(strip_robot(), options=NewtonOptions(iterations=limit))
+    pose = simulation.solve(far)
+    assert pose.result.converged
+    assert pose.result.iterations > limit
+    assert np.abs(pose.nodes - at_once.nodes).max() < 1e-8 * simulation.robot.body.mesh.size
+    assert np.abs(simulation.assembly.gradient(pose.nodes, far)).max() <= pose.result.allowed
+
+
 @pytest.mark.parametrize("name", ROBOTS)
 def test_the_predicted_start_gives_the_same_equilibrium_sooner(name: str) -> None:
     """From a pose 2 % away; oracle: the pose found from rest."""
