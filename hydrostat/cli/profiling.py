@@ -1,0 +1,88 @@
+"""Where time went, for `--profile`."""
+
+import cProfile
+import pstats
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+PARTS = {
+    "neo_hookean": "elements",
+    "patch_volume": "elements",
+    "assembly": "assembly",
+    "blas": "factorisation",
+    "factorisation": "factorisation",
+    "supernodal": "factorisation",
+    "ordering": "analysis of the pattern",
+    "symbolic": "analysis of the pattern",
+    "stiffness": "factorisation",
+    "warp": "arcs",
+    "tighten": "cables",
+    "cable": "cables",
+    "friction": "cables",
+    "newton": "Newton",
+    "anchors": "anchors",
+    "mesh": "mesh",
+    "read": "robot.toml",
+    "schema": "robot.toml",
+}
+"""What the files of hydrostat are about; the time of anything else counts to the parts that called for it."""
+
+Place = tuple[str, int, str]
+"""File, line and name of a function."""
+
+
+@contextmanager
+def profiled(wanted: bool) -> Iterator[None]:
+    """Print a table of the CPU time of what is done inside, if that is wanted."""
+    if not wanted:
+        yield
+        return
+    watch = cProfile.Profile()
+    watch.enable()
+    try:
+        yield
+    finally:
+        watch.disable()
+        _report(pstats.Stats(watch))
+
+
+def _report(stats: pstats.Stats) -> None:
+    """Time by part: the own time of its functions, and of the library functions that work for it."""
+    entries = stats.stats  # pyright: ignore[reportAttributeAccessIssue]
+    known: dict[Place, dict[str, float]] = {}
+    times: dict[str, float] = {}
+    calls: dict[str, int] = {}
+    for place, (_, count, own, _, _) in entries.items():
+        for name, share in _owners(place, entries, known).items():
+            times[name] = times.get(name, 0.0) + share * own
+        if part := _part(place):
+            calls[part] = calls.get(part, 0) + count
+    whole = sum(times.values()) or 1.0
+    print(f"{'where time went':<26}{'ms':>9}{'share':>8}{'calls':>9}")
+    for name, seconds in sorted(times.items(), key=lambda item: -item[1]):
+        if seconds >= 0.005 * whole:
+            print(f"{name:<26}{1e3 * seconds:>9.1f}{seconds / whole:>8.0%}{calls.get(name, 0) or '':>9}")
+    print(f"{'sum (the watch slows it)':<26}{1e3 * whole:>9.1f}")
+
+
+def _owners(place: Place, entries: dict, known: dict[Place, dict[str, float]]) -> dict[str, float]:
+    """Shares of the parts for which a function works: its own, or those of its callers by the time they spend in it."""
+    if part := _part(place):
+        return {part: 1.0}
+    if place in known:
+        return known[place]
+    known[place] = {"other": 1.0}  # for functions that call themselves
+    callers = entries[place][4]
+    whole = sum(cumulative for _, _, _, cumulative in callers.values())
+    shares: dict[str, float] = {}
+    for caller, (_, _, _, cumulative) in callers.items():
+        for name, share in _owners(caller, entries, known).items():
+            shares[name] = shares.get(name, 0.0) + share * (cumulative / whole if whole else 1.0 / len(callers))
+    known[place] = shares or {"other": 1.0}
+    return known[place]
+
+
+def _part(place: Place) -> str | None:
+    path = Path(place[0])
+    return PARTS.get(path.stem) if "hydrostat" in path.parts else None
