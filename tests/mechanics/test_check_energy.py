@@ -95,7 +95,7 @@ class CableWithoutBend(CableEnergy):
 class CableWithoutLowRank(CableEnergy):
     """T d2l alone: it says that it couples no more than the nodes of a segment."""
 
-    def low_rank(self, nodes, controls):
+    def low_rank(self, nodes, controls):  # pyright: ignore[reportIncompatibleMethodOverride]
         return None
 
 
@@ -258,8 +258,8 @@ def test_a_cable_that_forgets_a_node_is_found() -> None:
 
     class Forgetful(CableEnergy):
         def value(self, nodes, controls):
-            length = np.linalg.norm(nodes[0] - nodes[-1])
-            return super().value(nodes, controls) + float(self.law.energy(length[None])[0])
+            lengths = np.linalg.norm(nodes[:1] - nodes[-1:], axis=1)
+            return super().value(nodes, controls) + float(self.law.energy(lengths)[0])
 
     random = np.random.default_rng(0)
     mesh = rough_mesh(2, random)

@@ -1,4 +1,4 @@
-"""Cables during a step. Oracles: scipy.optimize on the same convex function, complementarity, the lengths themselves."""
+"""Cables during a step. Oracles: scipy.optimize on the same convex function, complementarity, measured lengths."""
 
 import numpy as np
 import pytest

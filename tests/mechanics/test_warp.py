@@ -1,4 +1,4 @@
-"""Steps along arcs. Oracles: rotations in closed form (scipy), and the order at which a bent step leaves a straight one."""
+"""Steps along arcs. Oracles: rotations in closed form (scipy), the order at which bent and straight steps part."""
 
 import numpy as np
 import pytest
@@ -91,7 +91,7 @@ def test_no_step_stays_where_it_is(mesh: Mesh) -> None:
 
 
 def test_a_bar_that_curls_keeps_its_length() -> None:
-    """Why it is there: a bar whose sections spin by x / R up to a right angle, straight and bent. Oracle: its length."""
+    """Why it is there: the sections of a bar spin, at its end by a right angle. Oracle: its length."""
     mesh = strip_mesh(40, 2, size=(0.2, 0.01))
     curvature = np.pi / 2 / 0.2
     x, y = mesh.nodes.T
