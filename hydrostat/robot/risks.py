@@ -13,8 +13,14 @@ from hydrostat.robot.winch import Mount
 LEAST_ANGLE = 20.0
 """Triangles with a smaller angle [degrees] make the simulation less exact."""
 
-LOCKING_POISSON = 0.45
-"""From this Poisson's ratio on, volume measured in each linear element makes a body too stiff in bending."""
+LOCKING_POISSON = 0.35
+"""From this Poisson's ratio on, what locking adds to the bending stiffness of linear elements is worth a word."""
+
+LOCKING = {
+    2: {0.35: 0.14, 0.4: 0.20, 0.43: 0.27, 0.45: 0.35, 0.47: 0.54, 0.49: 1.4},
+    3: {0.35: 0.12, 0.4: 0.20, 0.43: 0.31, 0.45: 0.45, 0.47: 0.77, 0.49: 2.4},
+}
+"""What it adds with 4 elements across a limb, a fraction, in the plane and in space (`benchmarks/locking.py`)."""
 
 LEAST_COVER = 0.003
 """A cable nearer to the edge than this [m] tears out of the cloth."""
@@ -31,9 +37,10 @@ def _body(robot: Robot) -> Iterator[str]:
         yield f"body: the mesh has an angle of {smallest_angle(mesh):.0f} degrees; try another element_size"
     poisson = robot.body.material.poisson
     if poisson >= LOCKING_POISSON and robot.body.volume is Volume.ELEMENT:
+        added = max(part for ratio, part in LOCKING[mesh.dim].items() if ratio <= poisson)
         yield (
-            f"body.material: Poisson's ratio {poisson:g}: linear elements lock when nearly incompressible, the body "
-            'will bend too little; try volume = "patch"'
+            f"body.material: Poisson's ratio {poisson:g}: linear elements lock; with 4 of them across a limb it can be "
+            f'{100 * added:.0f} % too stiff in bending for that alone; try volume = "patch"'
         )
 
 
