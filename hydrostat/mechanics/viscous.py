@@ -54,7 +54,7 @@ class ViscousEnergy(Energy):
     def lifted_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         return self._solid.lifted_hessian(self._apart(nodes), controls, share)
 
-    def _apart(self, nodes: Nodes) -> Nodes:
+    def _apart(self, nodes: Nodes) -> Float[np.ndarray, "apart dim"]:
         """The corners of each element for themselves."""
         corners = nodes[self.stencils]
         return (corners - corners[:, :1]).reshape(-1, nodes.shape[1])
