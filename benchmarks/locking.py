@@ -13,8 +13,8 @@ patches is the other fault of linear elements: they cannot bend (shear locking),
 **Stability.** The smallest singular value of the divergence from velocities, held at the border, to a pressure a patch,
 less the constant one (the inf-sup constant); and how many pressures no velocity feels.
 
-**Solves.** Of robots at a tenth of their cables (the finger at 20 mm): CPU time, iterations, entries of the Hessian; where
-the first marker is.
+**Solves.** Of robots at a tenth of their cables (the finger at 20 mm): CPU time, iterations, entries of the Hessian;
+where the first marker is.
 """
 
 import argparse
