@@ -14,7 +14,7 @@ from hydrostat.mechanics.warp import Warp
 from hydrostat.robot import Robot
 from hydrostat.simulation.solved_pose import SolvedPose
 
-_INCREMENT = 0.02
+_INCREMENT = 0.05
 """Largest increment of a contraction, as a share of the length of the winch's shortest cable."""
 
 _HALVINGS = 4
@@ -127,7 +127,8 @@ class FrictionPath:
             nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
             wanted = cables.capstan_limits(nodes, goal)
             missing = np.abs(wanted - cables.law.limits).max(initial=0.0)
-            if missing <= _TOLERANCE * cables.span_tensions(nodes, goal).max(initial=0.0) or not result.converged:
+            largest = cables.span_tensions(nodes, goal).max(initial=0.0)
+            if missing <= max(_TOLERANCE * largest, self._round_off.force) or not result.converged:
                 break
             if corrections == _CORRECTIONS:
                 result = replace(result, reason=Reason.ITERATION_LIMIT)
