@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.contractions import check_contraction, contraction
+from hydrostat.cli.motion import move
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,10 +22,20 @@ def simulate(
         list[str] | None, typer.Option(metavar="WINCH=LENGTH", help="Cable a winch takes in; may be repeated.")
     ] = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
+    dynamic: Annotated[bool, typer.Option("--dynamic", help="Move there in time, from rest.")] = False,
+    duration: Annotated[
+        str | None, typer.Option(metavar="TIME", help="How long; 1 s, or as long as --play, if left out.")
+    ] = None,
+    step: Annotated[str, typer.Option(metavar="TIME", help="Longest time step.")] = "5ms",
+    ramp: Annotated[str, typer.Option(metavar="TIME", help="In which the winches take in their cable.")] = "0.5s",
+    play: Annotated[
+        Path | None, typer.Option(metavar="FILE.csv", help="Contractions in time: columns time_s, WINCH ... [mm].")
+    ] = None,
 ) -> None:
-    """Find where a robot rests when its winches take in cable.
+    """Find where a robot rests when its winches take in cable, or with --dynamic how it moves.
 
-    Writes pose.json, pose.vtu (for ParaView) and pose.png.
+    Writes pose.json, pose.vtu (for ParaView) and pose.png; of a motion these show its end, and there are also
+    motion.csv, motion.pvd (for ParaView) and motion.png.
 
     Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
     """
@@ -34,19 +46,17 @@ def simulate(
     require_folder(out)
     loaded = load_robot(robot)
     simulation = Simulation(loaded)
-    contractions = dict(_contraction(text) for text in contract or [])
+    contractions = dict(contraction(text) for text in contract or [])
     for name, value in contractions.items():
-        winch = loaded.winch(name)
-        if not -winch.release <= value <= winch.travel:
-            print(
-                f"note: winch {name} can take in from {-1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
-                f"{1e3 * value:g} mm is beyond it"
-            )
-        shortest = min((cable.length for cable in loaded.cables if cable.winch == name), default=float("inf"))
-        if value >= shortest:
-            raise InputError(
-                f"--contract {name}: {1e3 * value:g} mm is all of a cable that is {1e3 * shortest:.3g} mm long"
-            )
+        check_contraction(loaded, name, value)
+    if dynamic:
+        if jacobian:
+            raise InputError("--jacobian: a motion has none; leave out --dynamic")
+        files = move(simulation, contractions, out, duration=duration, step=step, ramp=ramp, play=play)
+        print("Wrote " + ", ".join(str(file) for file in files))
+        return
+    if play is not None or duration is not None:
+        raise InputError("--play and --duration go with --dynamic; add it")
     began = time.process_time()
     pose = simulation.solve(contractions, strict=False)
     seconds = time.process_time() - began
@@ -60,19 +70,6 @@ def simulate(
     print("Wrote " + ", ".join(str(file) for file in files))
     if not pose.result.converged:
         raise typer.Exit(1)
-
-
-def _contraction(text: str) -> tuple[str, float]:
-    from hydrostat.units import LENGTH, parse_quantity
-
-    name, equals, length = text.partition("=")
-    if not equals:
-        raise InputError(f'--contract {text}: write WINCH=LENGTH, for example "left=12mm"')
-    sign = -1.0 if length.strip().startswith("-") else 1.0
-    try:
-        return name.strip(), sign * parse_quantity(length.strip().removeprefix("-"), LENGTH)
-    except InputError as error:
-        raise InputError(f"--contract {text}: {error}") from None
 
 
 def _picture(simulation: "Simulation", pose: "SolvedPose", out: Path) -> list[Path]:

@@ -2,6 +2,7 @@
 
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.motion import motion_frames, motion_svg
+from hydrostat.plot.motion_figures import draw_motion
 from hydrostat.plot.picture_file import inline_svg, save_png
 from hydrostat.plot.pose_figures import draw_portrait, draw_pose, draw_reached
 from hydrostat.plot.report import report_text, write_report
@@ -10,6 +11,7 @@ from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
 __all__ = [
     "draw_activation",
     "draw_candidates",
+    "draw_motion",
     "draw_network",
     "draw_portrait",
     "draw_pose",

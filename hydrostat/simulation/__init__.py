@@ -3,6 +3,7 @@
 from hydrostat.simulation.build import body_energies, cable_energy, round_off
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.motion import Motion
+from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.pose_file import pose_facts, write_pose
 from hydrostat.simulation.profile import Profile, read_profile
 from hydrostat.simulation.simulation import Contractions, Simulation
@@ -12,6 +13,7 @@ __all__ = [
     "Contractions",
     "Dynamics",
     "Motion",
+    "MotionTable",
     "PinShifts",
     "Profile",
     "Simulation",
@@ -22,5 +24,6 @@ __all__ = [
     "pose_facts",
     "read_profile",
     "round_off",
+    "write_motion",
     "write_pose",
 ]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics import NewtonResult
 from hydrostat.mechanics.viscous import Metrics
+from hydrostat.simulation.solved_pose import SolvedPose
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,3 +45,21 @@ class Motion:
     def energy(self) -> float:
         """Kinetic and potential energy [J]."""
         return self.kinetic + self.potential
+
+    @property
+    def pose(self) -> SolvedPose:
+        """What is to be seen of it, as a pose; no equilibrium, and its result is that of the last step.
+
+        Raises:
+            ValueError: the motion has not made a step yet.
+        """
+        if self.result is None:
+            raise ValueError("a motion that has not begun has no result; use the pose that it began in")
+        return SolvedPose(
+            contractions=self.contractions,
+            nodes=self.nodes,
+            markers=self.markers,
+            tensions=self.tensions,
+            energy=self.potential,
+            result=self.result,
+        )

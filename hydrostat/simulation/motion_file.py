@@ -1,0 +1,132 @@
+"""`write_motion`: a motion as motion.csv, and as motion.pvd with a mesh for each frame, which ParaView plays."""
+
+import csv
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import NotConvergedError
+from hydrostat.geometry.mesh_file import write_mesh
+from hydrostat.robot import Robot, replace_file
+from hydrostat.simulation.motion import Motion
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MotionTable:
+    """What is to be seen of a motion, a row an instant.
+
+    Attributes:
+        times: [s].
+        contractions: of the winches [m].
+        markers: their positions [m].
+        tensions: of the cables [N].
+        energies: kinetic and potential [J].
+    """
+
+    times: Vector
+    contractions: Float[np.ndarray, "rows winches"]
+    markers: Float[np.ndarray, "rows markers dim"]
+    tensions: Float[np.ndarray, "rows cables"]
+    energies: Float[np.ndarray, "rows 2"]
+
+
+def write_motion(
+    robot: Robot, motions: Iterable[Motion], folder: Path, *, frames_per_second: float = 30.0
+) -> tuple[list[Path], MotionTable, Motion]:
+    """Write a motion while it is found; a motion that stops early is written as far as it got.
+
+    Args:
+        robot: that moves.
+        motions: its instants, at least one.
+        folder: made if need be; the meshes go to `frames` in it.
+        frames_per_second: for the meshes: the nearest instants are taken.
+
+    Returns:
+        The paths of motion.csv and motion.pvd, the table, and the last instant.
+
+    Raises:
+        NotConvergedError: from the motion, after all has been written.
+    """
+    (folder / "frames").mkdir(parents=True, exist_ok=True)
+    frames: list[tuple[float, str]] = []
+    seen: list[tuple] = []
+    stopped, last = None, None
+    kept = _until_stopped(motions)
+    for motion in kept:
+        if isinstance(motion, NotConvergedError):
+            stopped = motion
+            break
+        last = motion
+        seen.append(_row(robot, motion))
+        if motion.time >= len(frames) / frames_per_second - 1e-9:
+            frames.append((motion.time, _write_frame(robot, motion, folder, len(frames))))
+    if last is None:
+        raise ValueError("a motion has at least one instant")
+    table = _table(robot, seen)
+    files = [
+        replace_file(folder / "motion.csv", _csv(robot, table).encode()),
+        replace_file(folder / "motion.pvd", _pvd(frames).encode()),
+    ]
+    if stopped is not None:
+        raise stopped
+    return files, table, last
+
+
+def _until_stopped(motions: Iterable[Motion]) -> Iterator[Motion | NotConvergedError]:
+    """The motions, and the error that ended them in place of being raised."""
+    try:
+        yield from motions
+    except NotConvergedError as error:
+        yield error
+
+
+def _row(robot: Robot, motion: Motion) -> tuple:
+    markers = np.array(list(motion.markers.values())).reshape(-1, robot.body.mesh.dim)
+    return motion.time, motion.contractions, markers, motion.tensions, (motion.kinetic, motion.potential)
+
+
+def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
+    times, contractions, markers, tensions, energies = zip(*rows, strict=True)
+    return MotionTable(
+        times=np.array(times),
+        contractions=np.array(contractions).reshape(len(rows), len(robot.winches)),
+        markers=np.array(markers),
+        tensions=np.array(tensions).reshape(len(rows), len(robot.cables)),
+        energies=np.array(energies),
+    )
+
+
+def _write_frame(robot: Robot, motion: Motion, folder: Path, number: int) -> str:
+    name = f"frames/motion_{number:04d}.vtu"
+    part = folder / "frames" / ".motion.part.vtu"
+    write_mesh(part, robot.body.mesh, motion.nodes, {"rest": robot.body.mesh.nodes, "velocity": motion.velocities})
+    part.replace(folder / name)
+    return name
+
+
+def _csv(robot: Robot, table: MotionTable) -> str:
+    """Times in s, lengths in mm, tensions in N, energies in J."""
+    axes = "xyz"[: robot.body.mesh.dim]
+    head = ["time_s", *(f"{winch.name}_mm" for winch in robot.winches)]
+    head += [f"{marker.name}_{axis}_mm" for marker in robot.markers for axis in axes]
+    head += [f"cable_{index + 1}_N" for index in range(len(robot.cables))] + ["kinetic_J", "potential_J"]
+    places = table.markers.reshape(len(table.times), -1)
+    columns = [table.times[:, None], 1e3 * table.contractions, 1e3 * places, table.tensions, table.energies]
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows([f"{value:.9g}" for value in row] for row in np.concatenate(columns, axis=1))
+    return text.getvalue()
+
+
+def _pvd(frames: list[tuple[float, str]]) -> str:
+    sets = "\n".join(f'    <DataSet timestep="{time:.9g}" part="0" file="{name}"/>' for time, name in frames)
+    return (
+        f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n{sets}\n'
+        "  </Collection>\n</VTKFile>\n"
+    )
