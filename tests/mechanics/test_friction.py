@@ -1,4 +1,4 @@
-"""Cables that rub. Oracles: central differences, the conditions of least energy, cables without friction, the capstan."""
+"""Cables that rub. Oracles: differences, the conditions of least energy, cables without friction, the capstan."""
 
 from dataclasses import replace
 
