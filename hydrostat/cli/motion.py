@@ -38,7 +38,12 @@ def move(
     spent = time.process_time() - began
     extra = {"time": last.time, "kinetic": last.kinetic, "seconds": spent, "version": __version__}
     files += write_pose(simulation, last.pose, out, extra=extra)
-    files.append(save_png(draw_pose(simulation.robot, last.pose), out / "pose.png"))
+    files.append(
+        save_png(
+            draw_pose(simulation.robot, last.pose, title=f"{simulation.robot.name} after {last.time:g} s"),
+            out / "pose.png",
+        )
+    )
     files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
     for name, place in last.markers.items():
         print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")

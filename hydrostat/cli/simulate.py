@@ -24,7 +24,7 @@ def simulate(
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
     dynamic: Annotated[bool, typer.Option("--dynamic", help="Move there in time, from rest.")] = False,
     duration: Annotated[
-        str | None, typer.Option(metavar="TIME", help="How long; 1 s, or as long as --play, if left out.")
+        str | None, typer.Option(metavar="TIME", help="How long; as --ramp or --play, at least 1 s, if left out.")
     ] = None,
     step: Annotated[str, typer.Option(metavar="TIME", help="Longest time step.")] = "5ms",
     ramp: Annotated[str, typer.Option(metavar="TIME", help="In which the winches take in their cable.")] = "0.5s",

@@ -1,5 +1,7 @@
 """`draw_motion`: markers, winches and cables over time."""
 
+from itertools import cycle
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -18,6 +20,8 @@ MOST_NAMES = 12
 def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """How far each marker is from where it began, what each winch takes in, and what each cable pulls, over time.
 
+    A marker with the name of a winch has its colour.
+
     Args:
         robot: that moved.
         table: its motion.
@@ -33,8 +37,9 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     colours = winch_colours(robot)
     way = MILLIMETRES * np.linalg.norm(table.markers - table.markers[0], axis=2)
     names = [marker.name for marker in robot.markers]
-    _lines(upper, table.times, way, names, [WINCHES[index % len(WINCHES)] for index in range(len(names))])
-    upper.set_ylabel("marker's way [mm]")
+    others = cycle([colour for colour in WINCHES if colour not in colours.values()] or WINCHES)
+    _lines(upper, table.times, way, names, [colours.get(name) or next(others) for name in names])
+    upper.set_ylabel("marker moved [mm]")
     winches = [winch.name for winch in robot.winches]
     _lines(middle, table.times, MILLIMETRES * table.contractions, winches, [colours[name] for name in winches])
     middle.set_ylabel("cable taken in [mm]")

@@ -180,6 +180,8 @@ class Simulation:
         Raises:
             InputError, NotConvergedError: as for `step`.
         """
+        if not (seconds > 0 and dt > 0):
+            raise InputError(f"duration and time step must be above 0 s, not {seconds:g} and {dt:g}")
         motion = start or self.still()
         begin, steps = motion.time, max(1, ceil(seconds / dt - 1e-9))
         yield motion

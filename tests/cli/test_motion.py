@@ -1,0 +1,78 @@
+"""`simulate --dynamic`; oracle: the library called directly, and what its files say."""
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hydrostat as hs
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+def test_a_ramp(run: Run, starfish: Path, tmp_path: Path) -> None:
+    options = ("--dynamic", "--duration", "0.1s", "--step", "20 ms", "--ramp", "50ms")
+    code, out, _ = run("simulate", starfish, *options, "--contract", "left=5mm", "--out", tmp_path)
+    assert code == 0
+    assert "5 steps to 0.1 s" in out
+    simulation = hs.Simulation(hs.load_robot(starfish))
+    *_, last = simulation.play(hs.Profile.ramp(simulation.contractions({"left": 0.005}), 0.05), 0.1, 0.02)
+    with (tmp_path / "motion.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 6
+    assert float(rows[-1]["left_mm"]) == pytest.approx(5.0)
+    assert float(rows[-1]["left_x_mm"]) == pytest.approx(1e3 * last.markers["left"][0], rel=1e-8)
+    facts = json.loads((tmp_path / "pose.json").read_text())
+    assert facts["time"] == pytest.approx(0.1)
+    assert facts["tensions"] == pytest.approx(last.tensions)
+    for name in ("motion.png", "pose.png"):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "frames" / "motion_0000.vtu").exists()
+
+
+def test_a_table_is_played(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the contractions of the table, for as long as it lasts, but a second at least."""
+    played = tmp_path / "wave.csv"
+    played.write_text("time_s,left\n0,0\n0.2,6\n1.2,2\n")
+    code, _, _ = run("simulate", starfish, "--dynamic", "--play", played, "--step", "0.1s", "--out", tmp_path / "out")
+    assert code == 0
+    with (tmp_path / "out" / "motion.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    times = [float(row["time_s"]) for row in rows]
+    assert times[-1] == pytest.approx(1.2)
+    expected = np.interp(times, [0, 0.2, 1.2], [0, 6, 2])
+    assert [float(row["left_mm"]) for row in rows] == pytest.approx(expected.tolist())
+
+
+@pytest.mark.parametrize(
+    ("options", "fragments"),
+    [
+        (("--duration", "2s"), ("--dynamic", "--duration")),
+        (("--dynamic", "--duration", "2"), ("--duration 2", "no unit")),
+        (("--dynamic", "--step", "0s"), ("--step 0s", "above 0")),
+        (("--dynamic", "--step", "5mm"), ("--step 5mm",)),
+        (("--dynamic", "--jacobian"), ("--jacobian",)),
+        (("--dynamic", "--play", "none.csv"), ("none.csv", "cannot be read")),
+        (("--dynamic", "--play", "none.csv", "--contract", "left=5mm"), ("--play", "--contract")),
+    ],
+)
+def test_one_clear_line(
+    run: Run, starfish: Path, tmp_path: Path, options: tuple[str, ...], fragments: tuple[str, ...]
+) -> None:
+    code, _, err = run("simulate", starfish, *options, "--out", tmp_path / "out")
+    assert code == 2
+    assert err.count("\n") == 1
+    for fragment in fragments:
+        assert fragment in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_table_that_takes_in_a_whole_cable_is_refused(run: Run, starfish: Path, tmp_path: Path) -> None:
+    played = tmp_path / "wave.csv"
+    played.write_text("time_s,left\n0,0\n1,900\n")
+    code, _, err = run("simulate", starfish, "--dynamic", "--play", played, "--out", tmp_path / "out")
+    assert code == 2
+    assert "all of a cable" in err

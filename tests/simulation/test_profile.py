@@ -1,0 +1,63 @@
+"""Contractions in time."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+import hydrostat as hs
+from hydrostat.simulation import read_profile
+
+
+def test_a_profile_goes_through_its_values() -> None:
+    """Oracle: numpy.interp."""
+    times, values = np.array([0.0, 0.5, 2.0]), np.array([[0.0, 0.0], [0.01, -0.004], [0.002, 0.0]])
+    profile = hs.Profile(times=times, values=values)
+    for time in (-1.0, 0.0, 0.2, 0.5, 1.7, 2.0, 9.0):
+        expected = [np.interp(time, times, column) for column in values.T]
+        assert profile.at(time) == pytest.approx(expected, abs=1e-15)
+    one = hs.Profile(times=times[:1], values=values[1:2])
+    assert (one.at(3.0) == values[1]).all()
+
+
+def test_a_ramp_begins_and_ends_gently() -> None:
+    """Oracle: 3 s^2 - 2 s^3, differences at both ends."""
+    ramp = hs.Profile.ramp(np.array([0.01]), 2.0)
+    assert ramp.at(1.0)[0] == pytest.approx(0.005)
+    assert ramp.at(0.5)[0] == pytest.approx(0.01 * (3 / 16 - 2 / 64))
+    assert ramp.at(0.002)[0] < 1e-7
+    assert ramp.at(1.998)[0] > 0.01 - 1e-7
+
+
+def test_a_table_is_read(tmp_path: Path) -> None:
+    """Oracle: the numbers that stand in it."""
+    path = tmp_path / "wave.csv"
+    path.write_text("time_s, down\n0, 0\n0.5, 12\n\n1.5, 4.5\n")
+    profile = read_profile(path, strip_robot(columns=4, rows=2))
+    assert profile.times.tolist() == [0.0, 0.5, 1.5]
+    assert profile.values == pytest.approx(np.array([[0, 0], [0, 0.012], [0, 0.0045]]))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "line 1: name the columns"),
+        ("down\n1\n", "line 1: name the columns"),
+        ("time_s,down,down\n0,1,1\n", "each once"),
+        ("time_s,sideways\n0,1\n", 'line 1: there is no winch "sideways"; winches are: up, down'),
+        ("time_s,down\n0,1\n1,much\n", "line 3: write a number in each of the 2 columns"),
+        ("time_s,down\n0,1\n1\n", "line 3: write a number"),
+        ("time_s,down\n0,1\n0,2\n", "must rise"),
+        ("time_s,down\n0,1\n1,nan\n", "not finite"),
+        ("time_s,down\n", "needs contractions for each time"),
+    ],
+)
+def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "wave.csv"
+    path.write_text(text)
+    with pytest.raises(hs.InputError, match=message) as refused:
+        read_profile(path, strip_robot(columns=4, rows=2))
+    assert str(path) in str(refused.value)
+    with pytest.raises(hs.InputError, match="cannot be read"):
+        read_profile(tmp_path / "none.csv", strip_robot(columns=4, rows=2))
