@@ -1,6 +1,6 @@
 """Cables that rub. Oracles: differences, the conditions of least energy, cables without friction, the capstan."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -75,7 +75,14 @@ def test_locked_chains_answer_limits_and_stretches(seed: int) -> None:
     assert found == pytest.approx(by_limit[:, rubbing], abs=1e-6)
 
 
-def rubbing(dim: int, random: np.random.Generator, *, stretch: float, slipping: bool, world: bool = False) -> State:
+@dataclass(frozen=True)
+class Rubbing(State):
+    """A state of cables with friction."""
+
+    energy: FrictionCableEnergy
+
+
+def rubbing(dim: int, random: np.random.Generator, *, stretch: float, slipping: bool, world: bool = False) -> Rubbing:
     """A cable with friction and one without, both of the same stretch in all; the first with a sheath in the middle."""
     mesh = rough_mesh(dim, random)
     stencils, weights, offsets = [], [], []
@@ -106,7 +113,7 @@ def rubbing(dim: int, random: np.random.Generator, *, stretch: float, slipping: 
     stretches = energy.stretches(nodes, controls)
     controls[[1, 0]] += stretch - np.array([stretches[:3].sum(), stretches[3]])
     limits = np.append(0.0, random.uniform(0.1, 0.3, 2)) * (1.0 if slipping else 1e5)
-    return State(energy.with_limits(np.append(limits, 0.0)), nodes, controls)
+    return Rubbing(energy.with_limits(np.append(limits, 0.0)), nodes, controls)
 
 
 KINDS = {
@@ -225,7 +232,7 @@ def test_capstan_while_a_cable_is_taken_in_and_let_out() -> None:
     winch's tension itself, by the sum of the stretches of the segments at those tensions. The springs follow
     the straight part of their law, so the smoothing has no share in any error.
     """
-    energy, nodes = arc()
+    (energy, nodes), tensions = arc(), np.zeros(SEGMENTS)
     decay = np.exp(-0.25 * TURN * np.arange(SEGMENTS) / (SEGMENTS - 1))
     for contraction in np.linspace(0, 0.004, 9)[1:]:
         energy, tensions = pull(energy, nodes, contraction)

@@ -17,7 +17,7 @@ from hydrostat.mechanics import FrictionCableEnergy
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, load_robot, save_robot
 from hydrostat.simulation import Simulation, SolvedPose, friction_path
 
-WAVY = (0.015, 0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
+WAVY = (0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
 
 
 def rub(robot: Robot, friction: float) -> Robot:
@@ -30,9 +30,8 @@ def wavy_strip(
     """A strip whose upper cable zigzags."""
     robot = strip_robot(mount=mount, slack=slack, sheathed=sheathed)
     first, *others = robot.cables
-    points = [(x, y) for (x, _), y in zip(first.points, WAVY, strict=True)]
-    points[0] = first.points[0]
-    return rub(robot.with_network(robot.winches, [replace(first, points=tuple(points)), *others]), friction)
+    waves = tuple((x, y) for (x, _), y in zip(first.points[1:], WAVY, strict=True))
+    return rub(robot.with_network(robot.winches, [replace(first, points=(first.points[0], *waves)), *others]), friction)
 
 
 ROBOTS = {
