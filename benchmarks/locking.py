@@ -21,7 +21,7 @@ import argparse
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import permutations
+from itertools import combinations, permutations
 from pathlib import Path
 
 from machine import machine
@@ -105,13 +105,13 @@ def upright(nodes: np.ndarray, elements: np.ndarray) -> np.ndarray:
     """The elements with their corners in positive order."""
     corners = nodes[elements]
     flipped = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0
-    elements[flipped] = elements[flipped][:, [1, 0, 2, 3]]
+    elements[flipped, :2] = elements[flipped, 1::-1]
     return elements
 
 
 MESHES: dict[str, tuple[Callable[..., Mesh], tuple[int, ...], tuple[Kind, ...]]] = {
     "triangles, as hydrostat makes them": (drawn, (2, 4, 8), ("element", "nodal", 2, 3, 4, 6, 8)),
-    "tetrahedra, cubes cut in six": (kuhn, (2, 4, 6), ("element", "nodal", 4, 6, 8, 12)),
+    "tetrahedra, cubes cut in six": (kuhn, (2, 3, 4, 6), ("element", "nodal", 4, 6, 8, 12)),
     "tetrahedra, body-centred lattice": (lattice, (2, 3, 4), ("element", "nodal", 4, 6, 8, 12)),
 }
 """Maker, numbers of elements across the height, and ways to measure the volume."""
@@ -233,6 +233,65 @@ def solve(robot: Robot, contractions: np.ndarray, repeat: int) -> Timed:
     return Timed(1e3 * float(np.median(times)), pose.result.iterations, entries, tip, float(pose.tensions.max()))
 
 
+def refined(mesh: Mesh) -> Mesh:
+    """Each tetrahedron cut into eight by the middles of its edges, each triangle into four."""
+    middles = {tuple(edge): len(mesh.nodes) + k for k, edge in enumerate(np.sort(mesh.edges, axis=1).tolist())}
+    nodes = np.concatenate([mesh.nodes, mesh.nodes[list(middles)].mean(axis=1)])
+    elements = []
+    for corners in mesh.elements.tolist():
+        m = {pair: middles[tuple(sorted(corners[k] for k in pair))] for pair in combinations(range(len(corners)), 2)}
+        if mesh.dim == 2:
+            a, b, c = corners
+            elements += [(a, m[0, 1], m[0, 2]), (b, m[1, 2], m[0, 1]), (c, m[0, 2], m[1, 2]), tuple(m.values())]
+            continue
+        for k, corner in enumerate(corners):
+            elements.append((corner, *(m[pair] for pair in m if k in pair)))
+        ring = [m[0, 1], m[0, 2], m[2, 3], m[1, 3]]
+        elements += [(m[0, 3], m[1, 2], one, two) for one, two in zip(ring, ring[1:] + ring[:1], strict=True)]
+    return Mesh(nodes, upright(nodes, np.array(elements)))
+
+
+def refinement(folder: Path) -> None:
+    """The finger, cut finer and finer: by elements it must come to what it is by patches."""
+    readers = sofa_robots(folder)
+    if "finger" not in readers:
+        return
+    robot = readers["finger"]()
+    print("\nthe finger at 20 mm, nu 0.45\n\n| elements | volume in | tension N | marker mm |\n|---|---|---|---|")
+    mesh = robot.body.mesh
+    for _ in range(3):
+        for volume in Volume:
+            body = replace(robot.body, mesh=mesh, volume=volume)
+            found = solve(replace(robot, body=body), np.array([0.02]), 1)
+            tip = ", ".join(f"{x:.2f}" for x in found.tip)
+            print(f"| {len(mesh.elements)} | {volume} | {found.tension:.3f} | {tip} |", flush=True)
+        mesh = refined(mesh)
+
+
+def robustness(count: int) -> None:
+    """Solves of the starfish at random contractions, up to 40 % of a winch's shortest cable."""
+    robot = load_robot(gallery_folder("starfish"))
+    shortest = [min(c.segments.sum() for c in robot.cables if c.winch == w.name) for w in robot.winches]
+    print(f"\n{count} random contractions of the starfish\n")
+    print("| nu | volume in | converged | iterations median / max | CPU ms median |\n|---|---|---|---|---|")
+    for poisson in (0.3, 0.45, 0.49):
+        for volume in Volume:
+            body = replace(robot.body, material=replace(robot.body.material, poisson=poisson), volume=volume)
+            simulation = Simulation(replace(robot, body=body))
+            random, results, times = np.random.default_rng(0), [], []
+            for _ in range(count):
+                goal = 0.4 * random.uniform(size=len(shortest)) * shortest
+                start = time.process_time()
+                results.append(simulation.solve(goal, strict=False).result)
+                times.append(time.process_time() - start)
+            iterations = [result.iterations for result in results]
+            print(
+                f"| {poisson:g} | {volume} | {sum(result.converged for result in results)} | "
+                f"{np.median(iterations):.0f} / {max(iterations)} | {1e3 * np.median(times):.1f} |",
+                flush=True,
+            )
+
+
 def solves(folder: Path, repeat: int) -> None:
     robots = {"starfish": load_robot(gallery_folder("starfish"))}
     robots |= {name: read() for name, read in sofa_robots(folder).items() if name in ("finger", "diamond")}
@@ -257,12 +316,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--robots", type=Path, default=ROBOTS, help="robots of SOFA's SoftRobots; left out if missing")
     parser.add_argument("--repeat", type=int, default=7, help="runs of each solve")
+    parser.add_argument("--random", type=int, default=100, help="random contractions")
     options = parser.parse_args()
     print(machine())
     bending()
     locking_alone()
     stability()
     solves(options.robots, options.repeat)
+    refinement(options.robots)
+    robustness(options.random)
 
 
 if __name__ == "__main__":
