@@ -14,6 +14,8 @@ import numpy as np
 from numba import njit, types
 from numba.extending import get_cython_function_address
 
+from hydrostat.mechanics.kernel import INNER
+
 
 class Scratch(NamedTuple):
     """Where scalars lie while a routine reads them; one for each thread of execution.
@@ -47,7 +49,7 @@ _dsyrk = _routine("dsyrk", 10)
 _dtrsm = _routine("dtrsm", 11)
 
 
-@njit(cache=True, inline="never")
+@njit(inline="never", **INNER)
 @no_type_check
 def subtract_product(call, rows, columns, depth, a, lda, b, ldb, c, ldc):
     """C -= A B^T, with A (rows, depth), B (columns, depth)."""
@@ -58,7 +60,7 @@ def subtract_product(call, rows, columns, depth, a, lda, b, ldb, c, ldc):
     _dgemm(letter + 2, letter + 3, at, at + 4, at + 8, one + 8, a, at + 12, b, at + 16, one, c, at + 20)
 
 
-@njit(cache=True, inline="never")
+@njit(inline="never", **INNER)
 @no_type_check
 def subtract_plain_product(call, rows, columns, depth, a, lda, b, ldb, c, ldc):
     """C -= A B, with A (rows, depth), B (depth, columns)."""
@@ -69,7 +71,7 @@ def subtract_plain_product(call, rows, columns, depth, a, lda, b, ldb, c, ldc):
     _dgemm(letter + 2, letter + 2, at, at + 4, at + 8, one + 8, a, at + 12, b, at + 16, one, c, at + 20)
 
 
-@njit(cache=True, inline="never")
+@njit(inline="never", **INNER)
 @no_type_check
 def subtract_square(call, size, depth, a, lda, c, ldc):
     """C -= A A^T in the lower triangle, with A (size, depth)."""
@@ -79,7 +81,7 @@ def subtract_square(call, size, depth, a, lda, c, ldc):
     _dsyrk(letter, letter + 2, at, at + 4, one + 8, a, at + 8, one, c, at + 12)
 
 
-@njit(cache=True, inline="never")
+@njit(inline="never", **INNER)
 @no_type_check
 def divide_right(call, transposed, rows, size, lower, lda, b, ldb):
     """B := B L^-1, or B L^-T where `transposed`, with L lower triangular (size, size), B (rows, size)."""

@@ -169,7 +169,7 @@ def _cheapest_tree(indptr: np.ndarray, indices: np.ndarray, dim: int, points: No
         ordering.nested_dissection(starts, neighbours, coordinates, LEAF, SHARES),
         _minimum_degree(starts, neighbours),
     ]
-    trees = [symbolic.Tree(*symbolic.supernodes(starts, neighbours, order, dim)) for order in orders]
+    trees = [symbolic.supernodes(starts, neighbours, order, dim) for order in orders]
     return min(trees, key=lambda tree: tree.seconds)
 
 

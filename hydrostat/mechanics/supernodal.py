@@ -27,7 +27,8 @@ from hydrostat.mechanics.blas import (
     subtract_product,
     subtract_square,
 )
-from hydrostat.mechanics.symbolic import Tree
+from hydrostat.mechanics.kernel import INNER, KERNEL
+from hydrostat.mechanics.symbolic import Tree, children
 
 BLOCK = 24
 """Columns eliminated together by plain loops, before BLAS applies them to the rest."""
@@ -36,207 +37,158 @@ FINE = {"contract", "reassoc", "nsz"}
 """What the compiler may do with sums; NaN and infinity stay what they are."""
 
 
+COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES = range(11)
+"""Columns of `Fronts.table`."""
+
+
 class Fronts(NamedTuple):
-    """Where everything goes, counted in degrees of freedom. One entry a supernode unless said otherwise.
+    """Where everything goes, counted in degrees of freedom. Few arrays, for each costs time to compile.
 
     Attributes:
-        columns, below: size of a front, own columns and rows below them.
-        first: first own column.
-        panel: where its part of L begins, (supernodes + 1,).
-        starts: where its rows begin in `rows`, (supernodes + 1,).
+        table: a row for every supernode and one more, (supernodes + 1, 11):
+            COLUMNS, BELOW: size of a front, own columns and rows below them;
+            FIRST: first own column;
+            PANEL: where its part of L begins;
+            STARTS: where its rows begin in `rows`;
+            CHILD, SIBLING: first child, next child of the same parent; -1 if there is none;
+            STACK: which of two stacks takes what it hands up;
+            OFFSET: where on the stack;
+            RUNS, ENTRIES: where its runs and its entries of A begin.
         rows: indices of the rows below every front, one front after the other.
-        child, sibling: first child, next child of the same parent; -1 if there is none.
-        stack: which of two stacks takes what it hands up.
-        offset: where on the stack.
-        runs: where its runs begin, (supernodes + 1,).
-        run_from, run_to, run_length: rows below that lie together in the parent's front too: their number here, there.
-        entries: where its entries of A begin, (supernodes + 1,).
-        source, target: place of each entry in the data of A and in the front's panel.
+        runs: rows below that lie together in the parent's front too: their number here, there, how many, (runs, 3).
+        entries: place of each entry in the data of A and in the front's panel, (entries, 2).
         diagonal: places of the diagonal in the data of A; -1 where it has none, (dofs,).
     """
 
-    columns: np.ndarray
-    below: np.ndarray
-    first: np.ndarray
-    panel: np.ndarray
-    starts: np.ndarray
+    table: np.ndarray
     rows: np.ndarray
-    child: np.ndarray
-    sibling: np.ndarray
-    stack: np.ndarray
-    offset: np.ndarray
     runs: np.ndarray
-    run_from: np.ndarray
-    run_to: np.ndarray
-    run_length: np.ndarray
     entries: np.ndarray
-    source: np.ndarray
-    target: np.ndarray
     diagonal: np.ndarray
 
 
 def plan(tree: Tree, indptr: np.ndarray, indices: np.ndarray, dim: int) -> tuple[Fronts, np.ndarray, np.ndarray]:
     """The fronts of a tree, the places of the degrees of freedom in the order, and the sizes of the two stacks."""
-    columns = np.diff(tree.first) * dim
-    below = np.diff(tree.starts) * dim
-    panel = np.concatenate([[0], np.cumsum(columns * (columns + below))])
-    rows = (tree.rows[:, None] * dim + np.arange(dim)).ravel()
     place = np.empty(len(tree.order) * dim, np.int64)
     place[(tree.order[:, None] * dim + np.arange(dim)).ravel()] = np.arange(len(place))
-    child, sibling, stack, offset, sizes = _stacks(tree.parent, below)
-    runs, run_from, run_to, run_length = _runs(tree.first * dim, tree.parent, tree.starts * dim, rows)
-    entries, source, target, diagonal = _entries(indptr, indices, place, tree.first * dim, tree.starts * dim, rows)
-    fronts = Fronts(
-        columns=columns,
-        below=below,
-        first=tree.first[:-1] * dim,
-        panel=panel,
-        starts=tree.starts * dim,
-        rows=rows,
-        child=child,
-        sibling=sibling,
-        stack=stack,
-        offset=offset,
-        runs=runs,
-        run_from=run_from,
-        run_to=run_to,
-        run_length=run_length,
-        entries=entries,
-        source=source,
-        target=target,
-        diagonal=diagonal,
-    )
-    return fronts, place, sizes
+    rows = (tree.rows[:, None] * dim + np.arange(dim)).ravel()
+    table = np.zeros((len(tree.parent) + 1, 11), np.int64)
+    table[:, FIRST], table[:, STARTS] = tree.first * dim, tree.starts * dim
+    table[:-1, COLUMNS], table[:-1, BELOW] = np.diff(table[:, FIRST]), np.diff(table[:, STARTS])
+    table[1:, PANEL] = np.cumsum(table[:-1, COLUMNS] * (table[:-1, COLUMNS] + table[:-1, BELOW]))
+    table[:-1, CHILD], table[:-1, SIBLING] = children(tree.parent)
+    sizes = np.zeros(2, np.int64)
+    runs = np.empty((len(rows), 3), np.int64)
+    entries = np.empty(((len(indices) + len(place)) // 2 + 1, 2), np.int32)
+    diagonal, local = np.full(len(place), -1), np.empty(len(place), np.int64)
+    _stacks(table, tree.parent, np.zeros(2, np.int64), sizes)
+    _runs(table, tree.parent, rows, runs)
+    _entries(table, rows, indptr, indices, place, np.argsort(place), local, entries, diagonal)
+    runs, entries = runs[: table[-1, RUNS]].copy(), entries[: table[-1, ENTRIES]].copy()
+    return Fronts(table, rows, runs, entries, diagonal), place, sizes
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
-def _stacks(parent, below):
-    """Children of each supernode, and where on which stack what it hands up will lie."""
-    count = len(parent)
-    child = np.full(count, -1, np.int64)
-    sibling = np.full(count, -1, np.int64)
-    stack = np.zeros(count, np.int64)
-    for vertex in range(count - 1, -1, -1):
+def _stacks(table, parent, top, most):
+    """On which stack what a front hands up will lie, where, and how much the stacks hold at most; `top` is 0."""
+    for vertex in range(len(parent) - 1, -1, -1):
         if parent[vertex] >= 0:
-            sibling[vertex] = child[parent[vertex]]
-            child[parent[vertex]] = vertex
-            stack[vertex] = 1 - stack[parent[vertex]]
-    offset = np.zeros(count, np.int64)
-    top = np.zeros(2, np.int64)
-    most = np.zeros(2, np.int64)
-    for vertex in range(count):
-        if child[vertex] >= 0:
-            top[1 - stack[vertex]] = offset[child[vertex]]
-        which = stack[vertex]
-        offset[vertex] = top[which]
-        top[which] += below[vertex] * below[vertex]
+            table[vertex, STACK] = 1 - table[parent[vertex], STACK]
+    for vertex in range(len(parent)):
+        which = table[vertex, STACK]
+        if table[vertex, CHILD] >= 0:
+            top[1 - which] = table[table[vertex, CHILD], OFFSET]
+        table[vertex, OFFSET] = top[which]
+        top[which] += table[vertex, BELOW] * table[vertex, BELOW]
         most[which] = max(most[which], top[which])
-    return child, sibling, stack, offset, most
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
-def _runs(first, parent, starts, rows):
+def _runs(table, parent, rows, runs):
     """Pieces of the rows below each front that are contiguous in the parent's front; none crosses its own columns."""
-    count = len(parent)
-    runs = np.zeros(count + 1, np.int64)
-    run_from = np.empty(len(rows), np.int64)
-    run_to = np.empty(len(rows), np.int64)
-    run_length = np.empty(len(rows), np.int64)
     filled = 0
-    for which in range(count):
+    for which in range(len(parent)):
         up = parent[which]
         if up >= 0:
-            columns = first[up + 1] - first[up]
-            at = starts[up]
+            columns, at = table[up, COLUMNS], table[up, STARTS]
             previous = -2
-            for position in range(starts[which], starts[which + 1]):
+            for position in range(table[which, STARTS], table[which + 1, STARTS]):
                 row = rows[position]
-                if row < first[up + 1]:
-                    local = row - first[up]
-                else:
+                local = row - table[up, FIRST]
+                if local >= columns:
                     while rows[at] < row:
                         at += 1
-                    local = columns + at - starts[up]
+                    local = columns + at - table[up, STARTS]
                 if local == previous + 1 and local != columns:
-                    run_length[filled - 1] += 1
+                    runs[filled - 1, 2] += 1
                 else:
-                    run_from[filled] = position - starts[which]
-                    run_to[filled] = local
-                    run_length[filled] = 1
+                    runs[filled, 0] = position - table[which, STARTS]
+                    runs[filled, 1] = local
+                    runs[filled, 2] = 1
                     filled += 1
                 previous = local
-        runs[which + 1] = filled
-    return runs, run_from[:filled].copy(), run_to[:filled].copy(), run_length[:filled].copy()
+        table[which + 1, RUNS] = filled
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
-def _entries(indptr, indices, place, first, starts, rows):
+def _entries(table, rows, indptr, indices, place, undo, local, entries, diagonal):
     """For each front the places of its entries of A in the data and in its panel, and the places of the diagonal."""
-    size = len(indptr) - 1
-    count = len(first) - 1
-    front = np.empty(size, np.int64)
-    for which in range(count):
-        front[first[which] : first[which + 1]] = which
-    undo = np.empty(size, np.int64)
-    undo[place] = np.arange(size)
-    diagonal = np.full(size, -1, np.int64)
-    entries = np.zeros(count + 1, np.int64)
-    source = np.empty((len(indices) + size) // 2 + 1, np.int32)
-    target = np.empty(len(source), np.int32)
-    local = np.empty(size, np.int64)
     filled = 0
-    for which in range(count):
-        columns = first[which + 1] - first[which]
-        height = columns + starts[which + 1] - starts[which]
-        for row in range(first[which], first[which + 1]):
-            local[row] = row - first[which]
-        for position in range(starts[which], starts[which + 1]):
-            local[rows[position]] = columns + position - starts[which]
-        for column in range(first[which], first[which + 1]):
-            old = undo[column]
+    for which in range(len(table) - 1):
+        first, columns, start = table[which, FIRST], table[which, COLUMNS], table[which, STARTS]
+        height = columns + table[which, BELOW]
+        for row in range(columns):
+            local[first + row] = row
+        for position in range(table[which, BELOW]):
+            local[rows[start + position]] = columns + position
+        for column in range(columns):
+            old = undo[first + column]
             for entry in range(indptr[old], indptr[old + 1]):
                 row = place[indices[entry]]
-                if row == column:
+                if row == first + column:
                     diagonal[old] = entry
-                if row >= column:
-                    source[filled] = entry
-                    target[filled] = (column - first[which]) * height + local[row]
+                if row >= first + column:
+                    entries[filled, 0] = entry
+                    entries[filled, 1] = column * height + local[row]
                     filled += 1
-        entries[which + 1] = filled
-    return entries, source[:filled].copy(), target[:filled].copy(), diagonal
+        table[which + 1, ENTRIES] = filled
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **KERNEL)
 @no_type_check
 def factorise_fronts(fronts, data, lower, signs, first_stack, second_stack, spare, call, tiny):
     """Fill L and S; the number of negative pivots, or -1 where a pivot is not above `tiny` x the largest diagonal."""
+    table, entries = fronts.table, fronts.entries
     largest = 0.0
     for place in fronts.diagonal:
         if place >= 0:
             value = abs(data[place])
             if not value <= largest:
                 largest = value
-    if not np.isfinite(largest):
+    if not largest < np.inf:
         return -1
     least = tiny * largest
     negative = 0
-    for which in range(len(fronts.columns)):
-        columns, below = fronts.columns[which], fronts.below[which]
-        panel = lower[fronts.panel[which] : fronts.panel[which + 1]]
-        panel[:] = 0.0
-        for entry in range(fronts.entries[which], fronts.entries[which + 1]):
-            panel[fronts.target[entry]] = data[fronts.source[entry]]
-        mine, theirs = (second_stack, first_stack) if fronts.stack[which] else (first_stack, second_stack)
-        update = mine[fronts.offset[which] : fronts.offset[which] + below * below]
-        _clear(update, below)
-        child = fronts.child[which]
+    for which in range(len(table) - 1):
+        columns, below = table[which, COLUMNS], table[which, BELOW]
+        panel = lower[table[which, PANEL] : table[which + 1, PANEL]]
+        for place in range(len(panel)):
+            panel[place] = 0.0
+        for entry in range(table[which, ENTRIES], table[which + 1, ENTRIES]):
+            panel[entries[entry, 1]] = data[entries[entry, 0]]
+        mine, theirs = (second_stack, first_stack) if table[which, STACK] else (first_stack, second_stack)
+        update = mine[table[which, OFFSET] : table[which, OFFSET] + below * below]
+        for column in range(below):
+            for place in range(column * below + column, (column + 1) * below):
+                update[place] = 0.0
+        child = table[which, CHILD]
         while child >= 0:
-            _extend_add(fronts, child, theirs, panel, columns, columns + below, update, below)
-            child = fronts.sibling[child]
-        sign = signs[fronts.first[which] : fronts.first[which] + columns]
+            _extend_add(table, fronts.runs, child, theirs, panel, columns, columns + below, update, below)
+            child = table[child, SIBLING]
+        sign = signs[table[which, FIRST] : table[which, FIRST] + columns]
         count = _eliminate(panel, columns, below, update, sign, spare, call, least)
         if count < 0:
             return -1
@@ -244,25 +196,17 @@ def factorise_fronts(fronts, data, lower, signs, first_stack, second_stack, spar
     return negative
 
 
-@njit(cache=True)
+@njit(fastmath=FINE, **INNER)
 @no_type_check
-def _clear(update, size):
-    """Zero the lower triangle."""
-    for column in range(size):
-        update[column * size + column : (column + 1) * size] = 0.0
-
-
-@njit(cache=True, fastmath=FINE)
-@no_type_check
-def _extend_add(fronts, child, stack, panel, columns, height, update, below):
+def _extend_add(table, runs, child, stack, panel, columns, height, update, below):
     """Add what a child hands up to its parent's front, lower triangle only."""
-    size = fronts.below[child]
-    given = stack[fronts.offset[child] : fronts.offset[child] + size * size]
-    low, high = fronts.runs[child], fronts.runs[child + 1]
+    size = table[child, BELOW]
+    given = stack[table[child, OFFSET] : table[child, OFFSET] + size * size]
+    low, high = table[child, RUNS], table[child + 1, RUNS]
     for run in range(low, high):
-        for step in range(fronts.run_length[run]):
-            source = given[(fronts.run_from[run] + step) * size : (fronts.run_from[run] + step + 1) * size]
-            column = fronts.run_to[run] + step
+        for step in range(runs[run, 2]):
+            source = given[(runs[run, 0] + step) * size : (runs[run, 0] + step + 1) * size]
+            column = runs[run, 1] + step
             if column < columns:
                 target = panel[column * height : (column + 1) * height]
                 shift = 0
@@ -271,20 +215,20 @@ def _extend_add(fronts, child, stack, panel, columns, height, update, below):
                 shift = columns
             start = step
             for other in range(run, high):
-                here = fronts.run_from[other] + start
-                there = fronts.run_to[other] + start - shift
-                for position in range(fronts.run_length[other] - start):
+                here = runs[other, 0] + start
+                there = runs[other, 1] + start - shift
+                for position in range(runs[other, 2] - start):
                     target[there + position] += source[here + position]
                 start = 0
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **INNER)
 @no_type_check
 def _eliminate(panel, columns, below, update, sign, spare, call, least):
     """Eliminate the own columns of a front; the number of negative pivots, or -1 where one is too small."""
     height = columns + below
-    at, handed = panel.ctypes.data, update.ctypes.data
-    negative = 0
+    at, handed = np.int64(panel.ctypes.data), np.int64(update.ctypes.data)
+    negative = zero = np.int64(0)
     for low in range(0, columns, BLOCK):
         high = min(columns, low + BLOCK)
         count = _eliminate_block(panel, height, low, high, sign, least)
@@ -292,16 +236,16 @@ def _eliminate(panel, columns, below, update, sign, spare, call, least):
             return -1
         negative += count
         if high < columns:
-            _subtract_signed(panel, height, low, high, high, columns, sign, spare, call, at, 0, height)
+            _subtract_signed(panel, height, low, high, high, columns, sign, spare, call, at, zero, height)
     if below > 0:
         if negative == 0:
             subtract_square(call, below, columns, at + 8 * columns, height, handed, below)
         else:
-            _subtract_signed(panel, height, 0, columns, columns, height, sign, spare, call, handed, columns, below)
+            _subtract_signed(panel, height, zero, columns, columns, height, sign, spare, call, handed, columns, below)
     return negative
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **INNER)
 @no_type_check
 def _eliminate_block(panel, height, low, high, sign, least):
     """Eliminate columns low to high of a panel, to which all earlier ones have been applied, by plain loops."""
@@ -340,14 +284,14 @@ def _eliminate_block(panel, height, low, high, sign, least):
     return negative
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **INNER)
 @no_type_check
 def _subtract_signed(panel, height, low, high, begin, end, sign, spare, call, target, shift, leading):
     """C -= P S P^T, P the columns low to high of a panel, for the columns begin to end of C and the rows below them.
 
     C is given by its address; its first row and column have the number `shift`.
     """
-    at = panel.ctypes.data
+    at, place = np.int64(panel.ctypes.data), np.int64(spare.ctypes.data)
     depth = high - low
     for column in range(begin, end, BLOCK):
         width = min(BLOCK, end - column)
@@ -361,43 +305,44 @@ def _subtract_signed(panel, height, low, high, begin, end, sign, spare, call, ta
             depth,
             at + 8 * (low * height + column),
             height,
-            spare.ctypes.data,
+            place,
             width,
             target + 8 * ((column - shift) * leading + column - shift),
             leading,
         )
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **KERNEL)
 @no_type_check
 def solve_vector(fronts, lower, signs, values, work):
     """Solve L S L^T x = b in place, in the order of elimination; `work` holds the rows of a front."""
-    count = len(fronts.columns)
-    for which in range(count):
-        columns, below = fronts.columns[which], fronts.below[which]
-        panel = lower[fronts.panel[which] : fronts.panel[which + 1]]
-        first, start = fronts.first[which], fronts.starts[which]
+    table, rows = fronts.table, fronts.rows
+    for which in range(len(table) - 1):
+        columns, below = table[which, COLUMNS], table[which, BELOW]
+        panel = lower[table[which, PANEL] : table[which + 1, PANEL]]
+        first, start = table[which, FIRST], table[which, STARTS]
         _forward(panel, columns, columns + below, values[first : first + columns], work)
         for row in range(below):
-            values[fronts.rows[start + row]] -= work[columns + row]
+            values[rows[start + row]] -= work[columns + row]
     for row in range(len(values)):
         values[row] *= signs[row]
-    for which in range(count - 1, -1, -1):
-        columns, below = fronts.columns[which], fronts.below[which]
-        panel = lower[fronts.panel[which] : fronts.panel[which + 1]]
-        first, start = fronts.first[which], fronts.starts[which]
+    for which in range(len(table) - 2, -1, -1):
+        columns, below = table[which, COLUMNS], table[which, BELOW]
+        panel = lower[table[which, PANEL] : table[which + 1, PANEL]]
+        first, start = table[which, FIRST], table[which, STARTS]
         for row in range(below):
-            work[columns + row] = values[fronts.rows[start + row]]
+            work[columns + row] = values[rows[start + row]]
         _backward(panel, columns, columns + below, values[first : first + columns], work)
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **INNER)
 @no_type_check
 def _forward(panel, columns, height, own, work):
     """Replace own by L11^-1 own, and `work` below by L21 times that; the rest of `work` is spoilt."""
     for row in range(columns):
         work[row] = -own[row]
-    work[columns:height] = 0.0
+    for row in range(columns, height):
+        work[row] = 0.0
     column = 0
     while column + 4 <= columns:
         for inner in range(column, column + 4):
@@ -423,7 +368,7 @@ def _forward(panel, columns, height, own, work):
             rest[row] += value * one[row]
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **INNER)
 @no_type_check
 def _backward(panel, columns, height, own, work):
     """Replace own by L11^-T (own - L21^T work below), in `work` too."""
@@ -463,36 +408,42 @@ def _backward(panel, columns, height, own, work):
             work[inner] = own[inner]
 
 
-@njit(cache=True, fastmath=FINE)
+@njit(fastmath=FINE, **KERNEL)
 @no_type_check
 def solve_matrix(fronts, lower, signs, values, work, call):
     """As `solve_vector` for several right-hand sides, (dofs, sides) row by row: transposed, they are Fortran's."""
-    count = len(fronts.columns)
+    table, rows = fronts.table, fronts.rows
     sides = values.shape[1]
-    at, other = values.ctypes.data, work.ctypes.data
-    for which in range(count):
-        columns, below = fronts.columns[which], fronts.below[which]
-        place = lower[fronts.panel[which] : fronts.panel[which + 1]].ctypes.data
-        first, start, height = fronts.first[which], fronts.starts[which], columns + below
+    at, other, panels = np.int64(values.ctypes.data), np.int64(work.ctypes.data), np.int64(lower.ctypes.data)
+    yes = np.int64(1)
+    for which in range(len(table) - 1):
+        columns, below = table[which, COLUMNS], table[which, BELOW]
+        place = panels + 8 * table[which, PANEL]
+        first, start, height = table[which, FIRST], table[which, STARTS], columns + below
         own = at + 8 * first * sides
-        divide_right(call, True, sides, columns, place, height, own, sides)
+        divide_right(call, yes, sides, columns, place, height, own, sides)
         if below > 0:
-            work[:below] = 0.0
+            for row in range(below):
+                for side in range(sides):
+                    work[row, side] = 0.0
             subtract_product(call, sides, below, columns, own, sides, place + 8 * columns, height, other, sides)
             for row in range(below):
-                values[fronts.rows[start + row]] += work[row]
+                for side in range(sides):
+                    values[rows[start + row], side] += work[row, side]
     for row in range(len(values)):
-        values[row] *= signs[row]
-    for which in range(count - 1, -1, -1):
-        columns, below = fronts.columns[which], fronts.below[which]
-        place = lower[fronts.panel[which] : fronts.panel[which + 1]].ctypes.data
-        first, start, height = fronts.first[which], fronts.starts[which], columns + below
+        for side in range(sides):
+            values[row, side] *= signs[row]
+    for which in range(len(table) - 2, -1, -1):
+        columns, below = table[which, COLUMNS], table[which, BELOW]
+        place = panels + 8 * table[which, PANEL]
+        first, start, height = table[which, FIRST], table[which, STARTS], columns + below
         own = at + 8 * first * sides
         if below > 0:
             for row in range(below):
-                work[row] = values[fronts.rows[start + row]]
+                for side in range(sides):
+                    work[row, side] = values[rows[start + row], side]
             subtract_plain_product(call, sides, columns, below, other, sides, place + 8 * columns, height, own, sides)
-        divide_right(call, False, sides, columns, place, height, own, sides)
+        divide_right(call, 1 - yes, sides, columns, place, height, own, sides)
 
 
 class SupernodalAnalysis:
@@ -501,10 +452,11 @@ class SupernodalAnalysis:
     def __init__(self, tree: Tree, indptr: np.ndarray, indices: np.ndarray, dim: int) -> None:
         """Fronts of the elimination `tree` of a pattern."""
         self.fronts, self.place, sizes = plan(tree, indptr, indices, dim)
-        self.entries = int(self.fronts.panel[-1])
-        self.height = int((self.fronts.columns + self.fronts.below).max(initial=1))
+        table = self.fronts.table
+        self.entries = int(table[-1, PANEL])
+        self.height = int((table[:, COLUMNS] + table[:, BELOW]).max(initial=1))
         self.call: Scratch = scratch()
-        widest = int(self.fronts.columns.max(initial=1))
+        widest = int(table[:, COLUMNS].max(initial=1))
         self._spare = np.empty(max(widest * max(widest, BLOCK), 1))
         self._stacks = np.empty(int(sizes[0])), np.empty(int(sizes[1]))
 

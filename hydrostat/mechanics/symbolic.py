@@ -13,6 +13,8 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
+from hydrostat.mechanics.kernel import INNER, KERNEL
+
 FRONT = 1.5e-6
 ENTRY = 0.6e-9
 UPDATE = 0.8e-9
@@ -42,39 +44,59 @@ class Tree(NamedTuple):
     seconds: float
 
 
-@njit(cache=True)
 @no_type_check
 def front_seconds(columns, rows):
-    """Modelled time of a front with that many columns and rows (columns included), in degrees of freedom."""
+    """Modelled time of fronts with that many columns and rows (columns included), in degrees of freedom."""
     below = rows - columns
-    operations = columns * (columns * columns / 3.0 + columns * below + below * float(below))
-    return (
-        FRONT + ENTRY * columns * rows + 0.5 * UPDATE * below * below + operations / (RATE * columns / (columns + RAMP))
-    )
+    operations = columns * (columns * columns / 3.0 + columns * below + below * 1.0 * below)
+    rate = RATE * columns / (columns + RAMP)
+    return FRONT + ENTRY * columns * rows + 0.5 * UPDATE * below * below + operations / rate
 
 
-@njit(cache=True)
+_front_seconds = njit(**INNER)(front_seconds)
+
+
+def supernodes(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray, dim: int) -> Tree:
+    """The supernodes of eliminating a graph in a given order."""
+    order = order[_postordered(_elimination(starts, neighbours, order))]
+    parent = _elimination(starts, neighbours, order)
+    count = np.ones(len(order), np.int64)
+    _column_counts(starts, neighbours, order, _inverse(order), parent, count, np.full(len(order), -1))
+    head = _merged(_fundamental(parent, count), parent, count, dim)
+    return _collected(starts, neighbours, order, parent, count, head, dim)
+
+
+def children(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First child of each vertex of a forest and next sibling of each child, rising; -1 where there is none."""
+    child, sibling = np.full(len(parent), -1), np.full(len(parent), -1)
+    order = np.argsort(parent, kind="stable")
+    order = order[parent[order] >= 0]
+    same = parent[order[1:]] == parent[order[:-1]]
+    sibling[order[:-1][same]] = order[1:][same]
+    first = order[np.append(True, ~same)[: len(order)]]
+    child[parent[first]] = first
+    return child, sibling
+
+
+def _inverse(order: np.ndarray) -> np.ndarray:
+    """The place of each node in an order."""
+    place = np.empty(len(order), np.int64)
+    place[order] = np.arange(len(order))
+    return place
+
+
+def _elimination(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray) -> np.ndarray:
+    """The elimination tree: parent of each place in the order; -1 at a root."""
+    parent, ancestor = np.full(len(order), -1), np.full(len(order), -1)
+    _elimination_tree(starts, neighbours, order, _inverse(order), parent, ancestor)
+    return parent
+
+
+@njit(**KERNEL)
 @no_type_check
-def supernodes(starts, neighbours, order, dim):
-    """The `Tree` of eliminating a graph in a given order, as a tuple."""
-    order = order[_postorder(_elimination_tree(starts, neighbours, order))]
-    parent = _elimination_tree(starts, neighbours, order)
-    count = _column_counts(starts, neighbours, order, parent)
-    head = _fundamental(parent, count)
-    head = _merged(head, parent, count, dim)
-    return _collect(starts, neighbours, order, parent, count, head, dim)
-
-
-@njit(cache=True)
-@no_type_check
-def _elimination_tree(starts, neighbours, order):
-    """Parent of each place in the order; -1 at a root. `ancestor` shortens the paths."""
-    nodes = len(order)
-    place = np.empty(nodes, np.int64)
-    place[order] = np.arange(nodes)
-    parent = np.full(nodes, -1, np.int64)
-    ancestor = np.full(nodes, -1, np.int64)
-    for column in range(nodes):
+def _elimination_tree(starts, neighbours, order, place, parent, ancestor):
+    """Fill `parent`; `ancestor` shortens the paths. Both are -1 before."""
+    for column in range(len(order)):
         for entry in range(starts[order[column]], starts[order[column] + 1]):
             row = place[neighbours[entry]]
             while row >= 0 and row < column:
@@ -83,19 +105,22 @@ def _elimination_tree(starts, neighbours, order):
                 if following < 0:
                     parent[row] = column
                 row = following
-    return parent
 
 
-@njit(cache=True)
-@no_type_check
-def _postorder(parent):
+def _postordered(parent: np.ndarray) -> np.ndarray:
     """Vertices of a forest, children before parents, each subtree in one piece."""
-    size = len(parent)
-    child, sibling = _children(parent)
-    result = np.empty(size, np.int64)
-    stack = np.empty(size, np.int64)
+    child, sibling = children(parent)
+    result, stack = np.empty(len(parent), np.int64), np.empty(len(parent), np.int64)
+    _postorder(parent, child, sibling, result, stack)
+    return result
+
+
+@njit(**KERNEL)
+@no_type_check
+def _postorder(parent, child, sibling, result, stack):
+    """Fill `result`, and spoil `child`."""
     filled = 0
-    for root in range(size):
+    for root in range(len(parent)):
         if parent[root] >= 0:
             continue
         stack[0] = root
@@ -110,32 +135,16 @@ def _postorder(parent):
                 result[filled] = vertex
                 filled += 1
                 depth -= 1
-    return result
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
-def _children(parent):
-    """First child of each vertex and next sibling of each child, rising; -1 where there is none."""
-    child = np.full(len(parent), -1, np.int64)
-    sibling = np.full(len(parent), -1, np.int64)
-    for vertex in range(len(parent) - 1, -1, -1):
-        if parent[vertex] >= 0:
-            sibling[vertex] = child[parent[vertex]]
-            child[parent[vertex]] = vertex
-    return child, sibling
+def _column_counts(starts, neighbours, order, place, parent, count, seen):
+    """Entries of each column of L, the diagonal included: a row of L is a subtree from the row's entries upwards.
 
-
-@njit(cache=True)
-@no_type_check
-def _column_counts(starts, neighbours, order, parent):
-    """Entries of each column of L, the diagonal included: a row of L is a subtree from the row's entries upwards."""
-    nodes = len(order)
-    place = np.empty(nodes, np.int64)
-    place[order] = np.arange(nodes)
-    count = np.ones(nodes, np.int64)
-    seen = np.full(nodes, -1, np.int64)
-    for row in range(nodes):
+    `count` is 1 and `seen` -1 before.
+    """
+    for row in range(len(order)):
         seen[row] = row
         for entry in range(starts[order[row]], starts[order[row] + 1]):
             column = place[neighbours[entry]]
@@ -143,114 +152,85 @@ def _column_counts(starts, neighbours, order, parent):
                 seen[column] = row
                 count[column] += 1
                 column = parent[column]
-    return count
 
 
-@njit(cache=True)
-@no_type_check
-def _fundamental(parent, count):
+def _fundamental(parent: np.ndarray, count: np.ndarray) -> np.ndarray:
     """The last node of the supernode of each node: chains without a branch whose columns have the same rows."""
-    nodes = len(parent)
-    children = np.zeros(nodes, np.int64)
-    for node in range(nodes):
-        if parent[node] >= 0:
-            children[parent[node]] += 1
-    head = np.arange(nodes)
-    for node in range(nodes - 2, -1, -1):
-        if parent[node] == node + 1 and children[node + 1] == 1 and count[node] == count[node + 1] + 1:
-            head[node] = head[node + 1]
-    return head
+    nodes = np.arange(len(parent))
+    only = np.bincount(parent[parent >= 0], minlength=len(parent)) == 1
+    last = np.ones(len(parent), bool)
+    last[:-1] = ~((parent[:-1] == nodes[1:]) & only[1:] & (count[:-1] == count[1:] + 1))
+    heads = nodes[last]
+    return heads[np.searchsorted(heads, nodes)]
 
 
-@njit(cache=True)
-@no_type_check
-def _merged(head, parent, count, dim):
+def _merged(head: np.ndarray, parent: np.ndarray, count: np.ndarray, dim: int) -> np.ndarray:
     """`head` after merging supernodes into their parents where it saves modelled time. A head is its highest node."""
-    nodes = len(head)
-    columns = np.zeros(nodes, np.int64)
-    for node in range(nodes):
-        columns[head[node]] += 1
-    above = np.full(nodes, -1, np.int64)
-    for node in range(nodes):
-        if head[node] == node and parent[node] >= 0:
-            above[node] = head[parent[node]]
-    child, sibling = _children(above)
-    into = np.arange(nodes)
-    for top in range(nodes):
-        if head[top] != top:
-            continue
-        own = count[top] - 1
-        vertex = child[top]
-        while vertex >= 0:
-            low = columns[vertex] + count[vertex] - 1
-            apart = front_seconds(dim * columns[vertex], dim * low)
-            apart += front_seconds(dim * columns[top], dim * (columns[top] + own))
-            both = columns[top] + columns[vertex]
-            if front_seconds(dim * both, dim * (both + own)) < apart:
-                columns[top] = both
-                into[vertex] = top
-            vertex = sibling[vertex]
-    for node in range(nodes - 1, -1, -1):
-        into[node] = into[into[node]] if into[node] != node else node
+    nodes = np.arange(len(head))
+    above = np.where((head == nodes) & (parent >= 0), head[parent], -1)
+    into = nodes.copy()
+    _merge(*children(above), np.bincount(head, minlength=len(head)), count, into, dim)
     return into[head]
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
-def _collect(starts, neighbours, order, parent, count, head, dim):
+def _merge(child, sibling, columns, count, into, dim):
+    """Fill in which supernode each is merged into, itself at first; `columns` are those of heads, 0 of other nodes."""
+    nodes = len(into)
+    for top in range(nodes):
+        vertex = child[top]
+        while vertex >= 0:
+            own = dim * (count[top] - 1)
+            two = dim * columns[vertex]
+            one = dim * columns[top]
+            apart = _front_seconds(two, two + dim * (count[vertex] - 1)) + _front_seconds(one, one + own)
+            if _front_seconds(one + two, one + two + own) < apart:
+                columns[top] += columns[vertex]
+                into[vertex] = top
+            vertex = sibling[vertex]
+    for node in range(nodes - 1, -1, -1):
+        into[node] = into[into[node]]
+
+
+def _collected(
+    starts: np.ndarray,
+    neighbours: np.ndarray,
+    order: np.ndarray,
+    parent: np.ndarray,
+    count: np.ndarray,
+    head: np.ndarray,
+    dim: int,
+) -> Tree:
     """Number the supernodes given by their heads in postorder, and list their rows."""
-    nodes = len(order)
-    above = np.full(nodes, -2, np.int64)
-    for node in range(nodes):
-        if head[node] == node:
-            above[node] = head[parent[node]] if parent[node] >= 0 else -1
-    tops = np.flatnonzero(above > -2)
-    number = np.full(nodes, -1, np.int64)
+    tops = np.flatnonzero(head == np.arange(len(head)))
+    number = np.full(len(head) + 1, -1)  # the last for the parent -1 of a root
     number[tops] = np.arange(len(tops))
-    total = len(tops)
-    lifted = np.full(total, -1, np.int64)
-    for which in range(total):
-        if above[tops[which]] >= 0:
-            lifted[which] = number[above[tops[which]]]
-    walk = _postorder(lifted)
-    rank = np.empty(total, np.int64)
-    rank[walk] = np.arange(total)
-    up = np.full(total, -1, np.int64)
-    for which in range(total):
-        if lifted[walk[which]] >= 0:
-            up[which] = rank[lifted[walk[which]]]
-    first = np.zeros(total + 1, np.int64)
-    for node in range(nodes):
-        first[rank[number[head[node]]] + 1] += 1
-    first = np.cumsum(first)
-    fill = first.copy()
-    moved = np.empty(nodes, np.int64)
-    for node in range(nodes):
-        which = rank[number[head[node]]]
-        moved[fill[which]] = order[node]
-        fill[which] += 1
-    begins = np.zeros(total + 1, np.int64)
-    for which in range(total):
-        begins[which + 1] = begins[which] + count[tops[walk[which]]] - 1
-    rows = _rows(starts, neighbours, moved, first, up, begins)
-    seconds = 0.0
-    for which in range(total):
-        columns = first[which + 1] - first[which]
-        seconds += front_seconds(dim * columns, dim * (columns + begins[which + 1] - begins[which]))
-    return moved, first, up, begins, rows, seconds
-
-
-@njit(cache=True)
-@no_type_check
-def _rows(starts, neighbours, order, first, parent, begins):
-    """Rows below each supernode: of its nodes' neighbours and of its children, those after its last node."""
-    nodes = len(order)
-    place = np.empty(nodes, np.int64)
-    place[order] = np.arange(nodes)
-    child, sibling = _children(parent)
+    above = number[np.where(parent[tops] >= 0, head[parent[tops]], -1)]
+    walk = _postordered(above)
+    rank = np.append(_inverse(walk), -1)
+    up = rank[above[walk]]
+    which = rank[number[head]]
+    order = order[np.argsort(which, kind="stable")]
+    first = np.append(0, np.cumsum(np.bincount(which, minlength=len(tops))))
+    begins = np.append(0, np.cumsum(count[tops[walk]] - 1))
     rows = np.empty(begins[-1], np.int64)
-    seen = np.full(nodes, -1, np.int64)
-    for which in range(len(parent)):
+    _rows(starts, neighbours, order, _inverse(order), first, *children(up), begins, rows, np.full(len(order), -1))
+    owner = np.repeat(np.arange(len(tops)), np.diff(begins)) * len(order)
+    rows = np.sort(owner + rows) - owner
+    columns = dim * np.diff(first)
+    seconds = front_seconds(columns, columns + dim * np.diff(begins)).sum()
+    return Tree(order, first, up, begins, rows, float(seconds))
+
+
+@njit(**KERNEL)
+@no_type_check
+def _rows(starts, neighbours, order, place, first, child, sibling, begins, rows, seen):
+    """Rows below each supernode: of its nodes' neighbours and of its children, those after its last node.
+
+    `seen` is -1 before.
+    """
+    for which in range(len(child)):
         end = first[which + 1]
         at = begins[which]
         for column in range(first[which], end):
@@ -269,5 +249,3 @@ def _rows(starts, neighbours, order, first, parent, begins):
                     rows[at] = row
                     at += 1
             below = sibling[below]
-        rows[begins[which] : begins[which + 1]].sort()
-    return rows
