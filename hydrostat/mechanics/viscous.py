@@ -87,7 +87,7 @@ class Memory:
     def stored(self, metrics: Metrics, nodes: Nodes) -> float:
         """What the springs hold [J]."""
         total = 0.0
-        gradients = self._body.deformation_gradients(nodes)
+        gradients = self._body.deformation_gradients(nodes) if self.times.any() else np.zeros(0)
         for metric, viscosity, time in zip(metrics, self.viscosities, self.times, strict=True):
             if time > 0:
                 turned = gradients @ metric @ np.swapaxes(gradients, 1, 2)
@@ -114,6 +114,8 @@ class Memory:
 
     def relaxed(self, metrics: Metrics, nodes: Nodes, step: float) -> Metrics:
         """Metrics after an implicit step [s] that ends at `nodes`."""
+        if not len(self):
+            return metrics
         times = self.times[:, None, None, None]
         return (times * metrics + step * self._inverse(nodes)) / (times + step)
 

@@ -75,13 +75,7 @@ class Dynamics:
     def __init__(
         self, robot: Robot, statics: Assembly, cables: CableEnergy, markers: Anchors, options: NewtonOptions
     ) -> None:
-        """The robot's physics at rest, where its markers are, and how far Newton goes.
-
-        Raises:
-            InputError: a cable has friction.
-        """
-        if any(cable.friction for cable in robot.cables):
-            raise InputError("cables with friction cannot be moved in time yet; set their friction to 0")
+        """The robot's physics at rest, where its markers are, and how far Newton goes."""
         mesh, material = robot.body.mesh, robot.body.material
         self.robot, self.masses = robot, node_masses(robot)
         self._statics, self._cables, self._markers, self._options = statics, cables, markers, options
