@@ -17,7 +17,7 @@ PARTS = {
     "symbolic": "analysis of the pattern",
     "stiffness": "factorisation",
     "warp": "arcs",
-    "tighten": "cables",
+    "settle": "cables",
     "cable": "cables",
     "friction": "cables",
     "newton": "Newton",

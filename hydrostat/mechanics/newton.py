@@ -6,12 +6,13 @@ from enum import StrEnum
 from itertools import count
 
 import numpy as np
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.cable import CableEnergy
+from hydrostat.mechanics.settle import settle
 from hydrostat.mechanics.stiffness import Stiffness
-from hydrostat.mechanics.tighten import Tightener, settle
 from hydrostat.mechanics.warp import Warp
 
 
@@ -65,8 +66,8 @@ class NewtonResult:
         iterations: steps taken.
         stable: whether the full Hessian there is positive definite: a minimum, no saddle.
         buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
-        stiffness: the Hessian there, factorised, or at the last step, which began with less than 1e-5 of the applied force
-            left over.
+        stiffness: the Hessian there, factorised, or where the last step began, if that was with less than 1e-5 of the
+            applied force left over.
     """
 
     nodes: Nodes
@@ -99,8 +100,8 @@ def minimise(
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
     The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). The
-    step follows arcs and ends with its cables tightened; it is halved until no element is inverted and the energy
-    falls. A saddle is left along its lowest mode.
+    step follows arcs and knows that a cable can go slack; it is halved until no element is inverted and the energy
+    falls. A saddle is left along a mode in which the energy falls.
 
     Args:
         assembly: the energy.
@@ -111,7 +112,7 @@ def minimise(
         options: tolerance and limits.
         warp: bends steps along arcs; only straight ones without it.
         stiffness: the Hessian at `start` at other controls, such as those at which it is in equilibrium. The first step
-            then costs no factorisation: it is the prediction dx/da, bent and tightened.
+            then costs no factorisation: it is the prediction dx/da, bent along arcs.
     """
     return _Descent(assembly, controls, force_scale, round_off, options, warp).run(start, stiffness)
 
@@ -209,20 +210,19 @@ class _Descent:
         step = self._step(nodes, gradient, stiffness)
         slope = float(gradient @ step)
         length = 1.0
-        trials = _Trials(self, nodes, step, stiffness)
         for _ in range(self.options.halvings):
             gain = -length * slope
+            trial = self.bend(nodes, length * step.reshape(nodes.shape))
+            value = self.assembly.value(trial, self.controls)
             if gain > self.noise.energy:
-                value, trial = trials.best(length)
                 if value <= energy - 1e-4 * gain:
+                    if self.share > 0.0 and length == 1.0:
+                        trial, value = self._stride(nodes, step, trial, value)
                     return trial, value, self.assembly.gradient(trial, self.controls)
-            else:
-                trial = trials.plain(length)
-                value = self.assembly.value(trial, self.controls)
-                if value <= energy + 10 * self.noise.energy:
-                    after = self.assembly.gradient(trial, self.controls)
-                    if abs(after @ step) <= 0.9 * abs(slope):
-                        return trial, value, after
+            elif value <= energy + 10 * self.noise.energy:
+                after = self.assembly.gradient(trial, self.controls)
+                if abs(after @ step) <= 0.9 * abs(slope):
+                    return trial, value, after
             length *= 0.5
         return None
 
@@ -252,20 +252,33 @@ class _Descent:
                 return free - stiffness.moves @ tensions
         return -stiffness.solve(gradient)
 
+    def _stride(self, nodes: Nodes, step: Vector, trial: Nodes, value: float) -> tuple[Nodes, float]:
+        """A lifted Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
+        length = 2.0
+        while True:
+            longer = self.bend(nodes, length * step.reshape(nodes.shape))
+            lower = self.assembly.value(longer, self.controls)
+            if not lower < value:
+                return trial, value
+            trial, value = longer, lower
+            length *= 2.0
+
     def _leave_saddle(self, nodes: Nodes, energy: float, stiffness: Stiffness) -> tuple[Nodes, float, Vector] | None:
-        """A place of lower energy along the lowest mode; None at a minimum, or where none is found."""
+        """A place of lower energy along a falling mode; None at a minimum, or where none is found."""
         if stiffness.definite or stiffness.singular or self.saddles == _SADDLES:
             return None
-        mode = _lowest_mode(stiffness, nodes.size).reshape(nodes.shape)
+        try:
+            mode = _falling_mode(stiffness, nodes.size).reshape(nodes.shape)
+        except ArpackNoConvergence:
+            return None
         size = float(np.ptp(nodes, axis=0).max())
-        for share in _LEAPS:
-            for sign in (1.0, -1.0):
-                trial = nodes + sign * share * size * mode
-                value = self.assembly.value(trial, self.controls)
-                if value < energy - 10 * self.noise.energy:
-                    self.saddles += 1
-                    return trial, value, self.assembly.gradient(trial, self.controls)
-        return None
+        trials = [self.bend(nodes, leap * size * mode) for leap in _LEAPS]
+        values = [self.assembly.value(trial, self.controls) for trial in trials]
+        least = int(np.argmin(values))
+        if not values[least] < energy - 10 * self.noise.energy:
+            return None
+        self.saddles += 1
+        return trials[least], values[least], self.assembly.gradient(trials[least], self.controls)
 
     def _result(
         self,
@@ -290,48 +303,12 @@ class _Descent:
         )
 
 
-class _Trials:
-    """Where one step may lead: along arcs, with the cables tightened or as they come."""
-
-    def __init__(self, descent: _Descent, nodes: Nodes, step: Vector, stiffness: Stiffness) -> None:
-        self.assembly, self.controls = descent.assembly, descent.controls
-        self.bend, self.noise = descent.bend, descent.noise.energy
-        self.nodes, self.step = nodes, step.reshape(nodes.shape)
-        self.tighten = None
-        if descent.cables is not None and stiffness.columns.size:
-            self.cables = descent.cables
-            self.stretches = descent.cables.stretches(nodes, self.controls)
-            self.pull = stiffness.columns.T @ step
-            self.tighten = Tightener(descent.cables, self.controls, stiffness)
-
-    def plain(self, length: float) -> Nodes:
-        """Where this length of the step leads, along arcs if that is known."""
-        return self.bend(self.nodes, length * self.step)
-
-    def best(self, length: float) -> tuple[float, Nodes]:
-        """Energy and nodes at this length of the step, with the cables tightened if that is better."""
-        place = self.plain(length)
-        value = self.assembly.value(place, self.controls)
-        if self.tighten is not None:
-            tightened = self.tighten(place, self.cables.law.tension(self.stretches + length * self.pull))
-            if tightened is not place:
-                lower = self.assembly.value(tightened, self.controls)
-                if lower < value - self.noise:
-                    return lower, tightened
-        return value, place
-
-
-def _lowest_mode(stiffness: Stiffness, size: int) -> Vector:
-    """A direction in which the energy falls, by inverse iteration from a fixed random one; its largest entry is 1."""
-    mode = np.random.default_rng(0).standard_normal(size)
-    best, lowest = mode, np.inf
-    for _ in range(_INVERSE_ITERATIONS):
-        moved = stiffness.solve(mode)
-        curvature = float(mode @ moved) / float(moved @ moved)
-        mode = moved / np.linalg.norm(moved)
-        if curvature < lowest:
-            best, lowest = mode, curvature
-    return best / np.abs(best).max()
+def _falling_mode(stiffness: Stiffness, size: int) -> Vector:
+    """A mode of negative curvature, largest entry 1: that of the most negative eigenvalue of H^-1, by Lanczos."""
+    inverse = LinearOperator((size, size), matvec=stiffness.solve, dtype=float)
+    start = np.random.default_rng(0).standard_normal(size)
+    mode = eigsh(inverse, k=1, which="SA", v0=start, tol=1e-3)[1][:, 0]
+    return mode / np.abs(mode).max()
 
 
 _NEAR = 1e-5
@@ -349,7 +326,5 @@ _SHIFTS = tuple(np.logspace(-10, 1, 12))
 _SADDLES = 3
 """So many saddles are left in one solve."""
 
-_LEAPS = (1e-2, 1e-3, 1e-4, 1e-5)
-"""How far to go from a saddle: fractions of the size of the body."""
-
-_INVERSE_ITERATIONS = 8
+_LEAPS = tuple(sign * leap for leap in (0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, 1e-5) for sign in (1.0, -1.0))
+"""How far to go from a saddle: fractions of the size of the body; the lowest place is taken."""

@@ -242,7 +242,7 @@ class Simulation:
 
         A step on the way need not end sharp.
         """
-        done, step, spent = 0.0, _FIRST_STEP, 0
+        done, step, spent, buckled = 0.0, _FIRST_STEP, 0, False
         while True:
             share = min(done + step, 1.0)
             last = share == 1.0
@@ -250,12 +250,14 @@ class Simulation:
             controls = goal if last else begin + share * (goal - begin)
             result = self._minimise(nodes, controls, stiffness, iterations=iterations, tolerance=tolerance)
             spent += result.iterations
+            if result.converged:
+                buckled |= result.buckled
             if result.converged and not last:
                 nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
                 continue
             step *= 0.5
             if result.converged or step < _SMALLEST_STEP:
-                return replace(result, iterations=spent)
+                return replace(result, iterations=spent, buckled=buckled)
 
     def _minimise(
         self,
