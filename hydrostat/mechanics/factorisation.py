@@ -88,7 +88,7 @@ class Analysis:
             count = "no" if points is None else len(points)
             raise ValueError(f"{size} degrees of freedom, {dim} a node, do not go with {count} points")
         self.backend = "supernodal" if backend == "auto" else backend
-        indptr, indices = np.ascontiguousarray(indptr, np.int32), np.ascontiguousarray(indices, np.int32)
+        indptr, indices = (np.require(array, np.int32, ["C", "W"]) for array in (indptr, indices))
         self._indptr, self._indices, self._size = indptr, indices, size
         if self.backend == "supernodal":
             tree = _cheapest_tree(indptr, indices, dim, points)
@@ -97,7 +97,7 @@ class Analysis:
     def factorise(self, data: Vector) -> "Factorisation":
         """Factorise the matrix with these values, in the order of `indices`."""
         if self.backend == "supernodal":
-            return Factorisation(self._supernodal.factorise(np.ascontiguousarray(data), TINY))
+            return Factorisation(self._supernodal.factorise(np.require(data, float, ["C", "W"]), TINY))
         matrix = csc_array((data, self._indices, self._indptr), shape=(self._size, self._size))
         return Factorisation(SuperLUFactors(matrix))
 

@@ -5,11 +5,14 @@ import sys
 
 import numpy as np
 import pytest
+from numba.core.dispatcher import Dispatcher
 from scipy.sparse import block_diag, coo_array, csc_array, eye_array, kron
 from scipy.spatial import Delaunay
 
+from hydrostat.mechanics import blas, ordering, supernodal, symbolic
 from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
 
+ROOMS = (blas, ordering, supernodal, symbolic)
 BACKENDS: tuple[Backend, ...] = ("supernodal", "superlu")
 
 
@@ -261,6 +264,25 @@ assert stats.cache_hits and not stats.cache_misses, stats
         if result.returncode == 0:
             return
     pytest.fail(result.stderr)
+
+
+def test_nothing_is_compiled_twice() -> None:
+    """Oracle: numba's list of signatures, after matrices of every kind; each further one would cost seconds."""
+    for dim, points in ((1, False), (2, True), (3, True)):
+        places, graph = body(80, max(dim, 2))
+        matrix = shifted(elastic(graph, dim), 0)
+        matrix.sort_indices()
+        for wide in (np.int32, np.int64):
+            indptr, indices, data = matrix.indptr.astype(wide), matrix.indices.astype(wide), matrix.data.copy()
+            for array in (indptr, indices, data, places):
+                array.setflags(write=False)
+            for some in (places, np.asfortranarray(places)):
+                factor = Analysis(indptr, indices, dim=dim, points=some if points else None).factorise(data)
+            for right in (np.ones(80 * dim), np.ones((80 * dim, 3), order="F"), np.ones((80 * dim, 4))[:, ::2]):
+                factor.solve(right)
+    kernels = {name: item for room in ROOMS for name, item in vars(room).items() if isinstance(item, Dispatcher)}
+    assert {"factorise_fronts", "solve_vector", "solve_matrix", "_dissect", "_alternate", "_rows"} <= kernels.keys()
+    assert {name: len(item.signatures) for name, item in kernels.items() if len(item.signatures) > 1} == {}
 
 
 def test_ordering_finds_the_separator_of_a_grid() -> None:
