@@ -14,9 +14,11 @@ import numpy as np  # isort: skip
 from robustness import EXAMPLES, example_folders
 
 from hydrostat.robot import Robot, load_robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Simulation, SolvedPose, friction_path
 
 REPEATS = 5
+COMMANDS = 4
+INCREMENTS = (0.01, 0.05, 0.2, 1.0)
 
 
 def timed(robot: Robot, goal: np.ndarray) -> tuple[float, Simulation, SolvedPose]:
@@ -54,6 +56,28 @@ def row(name: str, friction: float) -> str:
     )
 
 
+def way(name: str, friction: float) -> str:
+    """How far poses of random commands, one after the other, are from those in increments of 1 %, by increment."""
+    robot = load_robot(EXAMPLES / name)
+    robot = robot.with_network(robot.winches, [replace(cable, friction=friction) for cable in robot.cables])
+    shortest = [min(cable.length for cable in robot.cables if cable.winch == winch.name) for winch in robot.winches]
+    goals = np.random.default_rng(1).uniform(0, 0.3, (COMMANDS, len(shortest))) * shortest
+    runs = []
+    for share in INCREMENTS:
+        friction_path._INCREMENT = share
+        simulation, pose, run = Simulation(robot), None, []
+        for goal in goals:
+            pose = simulation.solve(goal, start=pose, strict=False)
+            run.append(pose)
+        runs.append(run)
+    failed = sum(not pose.result.converged for run in runs for pose in run)
+    apart = [
+        [f"{1e3 * np.abs(pose.nodes - finest.nodes).max():.0e}" for pose, finest in zip(run, runs[0], strict=True)]
+        for run in runs[1:]
+    ]
+    return f"| {name} | {failed} | " + " | ".join(", ".join(own) for own in apart) + " |"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("examples", nargs="*", help="names of example folders; all if left out")
@@ -69,6 +93,11 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|---|---|---|---|---|", flush=True)
     for name in names:
         print(row(name, options.friction), flush=True)
+    print(f"\nmm between poses of {COMMANDS} random commands and those in increments of 1 % of the shortest cable\n")
+    print("| example | failed | " + " | ".join(f"{share:.0%}" for share in INCREMENTS[1:]) + " |")
+    print("|---|---|" + "---|" * len(INCREMENTS[1:]), flush=True)
+    for name in names:
+        print(way(name, options.friction), flush=True)
 
 
 if __name__ == "__main__":
