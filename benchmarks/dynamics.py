@@ -63,6 +63,37 @@ def cost(simulation: hs.Simulation, name: str, kind: str, reach: np.ndarray, sch
     return row + f"| {1e3 * spent:.1f} | {dt / spent:.2f} |"
 
 
+def branches() -> Iterator[str]:
+    """Time of a step of the starfish by how many Maxwell branches its material has."""
+    robot = hs.load_robot(EXAMPLES / "starfish")
+    for count in (0, 1, 3, 10):
+        memory = tuple(Relaxation(modulus=2e4 / count, time=10.0 ** (-2 + 0.3 * place)) for place in range(count))
+        material = replace(robot.body.material, relaxation=memory)
+        simulation = hs.Simulation(replace(robot, body=replace(robot.body, material=material)))
+        reach = np.array([0.02, 0.02, 0.0])
+        yield f"| {count} | {cost(simulation, '', '', reach, 'sdirk2', 0.005, 40).split('|')[-3].strip()} |"
+
+
+def jumps(quick: bool) -> Iterator[str]:
+    """Winches that jump to up to 40 % of their shortest cable within a step of 1 to 200 ms, and stay for another."""
+    random = np.random.default_rng(0)
+    for name in ("starfish", "pig", "squid", "letter_s"):
+        robot = replace(hs.load_robot(EXAMPLES / name), gravity=(0.0, -GRAVITY))
+        shortest = [min(c.length for c in robot.cables if c.winch == winch.name) for winch in robot.winches]
+        for kind, chosen in (("elastic", robot), ("viscous", viscous(robot))):
+            simulation = hs.Simulation(chosen, options=hs.NewtonOptions())
+            motion, done, cut = simulation.still(), 0, 0
+            for _ in range(5 if quick else 40):
+                goal, dt = random.uniform(0, 0.4, len(shortest)) * shortest, 10 ** random.uniform(-3, -0.7)
+                for _ in range(2):
+                    try:
+                        motion = simulation.step(motion, goal, dt, options=hs.StepOptions(halvings=0))
+                    except hs.NotConvergedError:
+                        motion, cut = simulation.still(), cut + 1
+                    done += 1
+            yield f"| {name} | {kind} | {done} | {cut} |"
+
+
 def strip(columns: int, rows: int) -> Robot:
     """A flat strip 200 x 50 mm, held at its left end."""
     x, y = np.meshgrid(np.linspace(0, 0.2, columns + 1), np.linspace(-0.025, 0.025, rows + 1))
@@ -157,6 +188,12 @@ def main() -> None:
     for row in costs(quick):
         print(row, flush=True)
     schemes = "euler", "sdirk2", "sdirk3"
+    print("\n| Maxwell branches | CPU ms a step |\n|---|---|")
+    for row in branches():
+        print(row, flush=True)
+    print("\n| jumps of the winches | body | steps | not converged at once |\n|---|---|---|---|")
+    for row in jumps(quick):
+        print(row, flush=True)
     print("\nviscous strip let go, after 0.1 s: nodes mm, velocities mm/s")
     print("| minimisations | " + " | ".join(f"{name}: mm | mm/s" for name in schemes) + " |\n|" + 7 * "---|")
     for row in errors(quick):

@@ -11,7 +11,7 @@ from builders import FOAM, box_mesh, box_robot, mesh_body, strip_mesh, strip_rob
 
 import hydrostat as hs
 from hydrostat.mechanics.time_scheme import SCHEMES
-from hydrostat.robot import Body, Material, Pin, Relaxation, Robot
+from hydrostat.robot import Body, Material, Pin, Relaxation, Robot, Volume
 
 GRAVITY = 9.80665
 LOOSE = 1e-13
@@ -164,7 +164,13 @@ def test_energy_falls_all_the_time(viscous_strip: hs.Simulation, scheme: str) ->
     assert energies[-1] < energies[0] - 1e-4
 
 
-@pytest.mark.parametrize("make", [lambda: strip_robot(columns=8, rows=2), box_robot])
+def patched() -> Robot:
+    """A strip whose volume is measured in patches."""
+    robot = strip_robot(columns=8, rows=2)
+    return replace(robot, body=replace(robot.body, volume=Volume.PATCH))
+
+
+@pytest.mark.parametrize("make", [lambda: strip_robot(columns=8, rows=2), box_robot, patched])
 def test_it_settles_to_the_statics_at_any_step(make: object) -> None:
     """Oracle: `solve`, for places and tensions, and two time steps beside each other."""
     robot = make()
