@@ -82,8 +82,7 @@ def _copy_gallery(robot: str, folder: Path) -> None:
 def _picture(robot: "Robot", folder: Path) -> None:
     from hydrostat.plot import draw_rest, save_png
 
-    if robot.body.mesh.dim == 2:
-        save_png(draw_rest(robot), folder / "rest.png")
+    save_png(draw_rest(robot), folder / "rest.png")
 
 
 def _file_name(drawing: Path) -> str:

@@ -33,8 +33,8 @@ Place = tuple[str, int, str]
 
 
 @contextmanager
-def profiled(wanted: bool) -> Iterator[None]:
-    """Print a table of the CPU time of what is done inside, if that is wanted."""
+def profiled(wanted: bool, work: str) -> Iterator[None]:
+    """Print a table of the CPU time of the work done inside, if that is wanted."""
     if not wanted:
         yield
         return
@@ -44,10 +44,10 @@ def profiled(wanted: bool) -> Iterator[None]:
         yield
     finally:
         watch.disable()
-        _report(pstats.Stats(watch))
+        _report(work, pstats.Stats(watch))
 
 
-def _report(stats: pstats.Stats) -> None:
+def _report(work: str, stats: pstats.Stats) -> None:
     """Time by part: the own time of its functions, and of the library functions that work for it."""
     entries = stats.stats  # pyright: ignore[reportAttributeAccessIssue]
     known: dict[Place, dict[str, float]] = {}
@@ -59,11 +59,11 @@ def _report(stats: pstats.Stats) -> None:
         if part := _part(place):
             calls[part] = calls.get(part, 0) + count
     whole = sum(times.values()) or 1.0
-    print(f"{'where time went':<26}{'ms':>9}{'share':>8}{'calls':>9}")
+    print(f"{work:<26}{'ms':>9}{'share':>8}{'calls':>9}")
     for name, seconds in sorted(times.items(), key=lambda item: -item[1]):
         if seconds >= 0.005 * whole:
             print(f"{name:<26}{1e3 * seconds:>9.1f}{seconds / whole:>8.0%}{calls.get(name, 0) or '':>9}")
-    print(f"{'sum (the watch slows it)':<26}{1e3 * whole:>9.1f}")
+    print(f"{'sum (the watch slows it)':<26}{1e3 * whole:>9.1f}\n")
 
 
 def _owners(place: Place, entries: dict, known: dict[Place, dict[str, float]]) -> dict[str, float]:

@@ -9,6 +9,7 @@ import typer
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.contractions import check_contraction, contraction
 from hydrostat.cli.motion import move
+from hydrostat.cli.profiling import profiled
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ def simulate(
     play: Annotated[
         Path | None, typer.Option(metavar="FILE.csv", help="Contractions in time: columns time_s, WINCH ... [mm].")
     ] = None,
+    profile: Annotated[bool, typer.Option("--profile", help="Print where time went.")] = False,
 ) -> None:
     """Find where a robot rests when its winches take in cable, or with --dynamic how it moves.
 
@@ -44,21 +46,24 @@ def simulate(
     from hydrostat.simulation import Simulation, write_pose
 
     require_folder(out)
-    loaded = load_robot(robot)
-    simulation = Simulation(loaded)
+    with profiled(profile, "reading and preparing"):
+        loaded = load_robot(robot)
+        simulation = Simulation(loaded)
     contractions = dict(contraction(text) for text in contract or [])
     for name, value in contractions.items():
         check_contraction(loaded, name, value)
     if dynamic:
         if jacobian:
             raise InputError("--jacobian: a motion has none; leave out --dynamic")
-        files = move(simulation, contractions, out, duration=duration, step=step, ramp=ramp, play=play)
+        with profiled(profile, "moving"):
+            files = move(simulation, contractions, out, duration=duration, step=step, ramp=ramp, play=play)
         print("Wrote " + ", ".join(str(file) for file in files))
         return
     if play is not None or duration is not None:
         raise InputError("--play and --duration go with --dynamic; add it")
     began = time.process_time()
-    pose = simulation.solve(contractions, strict=False)
+    with profiled(profile, "finding the pose"):
+        pose = simulation.solve(contractions, strict=False)
     seconds = time.process_time() - began
     files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
     files += _picture(simulation, pose, out)
@@ -67,6 +72,10 @@ def simulate(
     for index, tension in enumerate(pose.tensions):
         print(f"cable {index + 1:<10} {tension:8.3f} N")
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
+    if pose.result.buckled:
+        print("note: the body buckled on the way; it could as well have gone to another side")
+    if pose.result.converged and not pose.result.stable:
+        print("note: the body is at rest on a saddle; the least push would make it leave")
     print("Wrote " + ", ".join(str(file) for file in files))
     if not pose.result.converged:
         raise typer.Exit(1)

@@ -26,6 +26,7 @@ def pose_facts(robot: Robot, pose: SolvedPose) -> dict[str, Any]:
         "residual": pose.result.residual,
         "reason": str(pose.result.reason),
         "stable": pose.result.stable,
+        "buckled": pose.result.buckled,
         "iterations": pose.result.iterations,
         "markers": {name: [float(value) for value in place] for name, place in pose.markers.items()},
     }
