@@ -62,7 +62,7 @@ def round_off(robot: Robot) -> RoundOff:
     mu, lame = body.material.lame
     scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
     springs = max((pin.stiffness for pin in robot.pins), default=0.0) * body.mesh.size
-    return RoundOff(force=1e-13 * scale / body.mesh.size + 2e-16 * springs, energy=1e-15 * scale)
+    return RoundOff(force=1e-14 * scale / body.mesh.size + 2e-16 * springs, energy=1e-15 * scale)
 
 
 def node_masses(robot: Robot) -> np.ndarray:
