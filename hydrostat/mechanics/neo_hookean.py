@@ -44,11 +44,11 @@ class NeoHookean(Energy):
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient G = F - I, so that little is lost to rounding near rest."""
-        return _value(nodes - self._rest, *self._element_data, self._axes)
+        return _value(nodes - self._rest, *self._element_data)
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         blocks = np.empty((*self.stencils.shape, nodes.shape[1]))
-        _gradient(nodes - self._rest, *self._element_data, self._axes, blocks)
+        _gradient(blocks, nodes - self._rest, *self._element_data)
         return blocks
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
@@ -57,12 +57,12 @@ class NeoHookean(Energy):
     def lifted_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         size = self.stencils.shape[1] * nodes.shape[1]
         blocks = np.empty((len(self.stencils), size, size))
-        _hessian(nodes - self._rest, *self._element_data, self._axes, share, blocks)
+        _hessian(blocks, share, nodes - self._rest, *self._element_data)
         return blocks
 
     @property
     def _element_data(self) -> tuple:
-        return self.stencils, self._padded, self.volumes, self.mu, self.lame
+        return self.stencils, self._padded, self.volumes, self.mu, self.lame, self._axes
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -133,7 +133,7 @@ def _spatial_gradients(G, J, gradients, spatial):
 
 @njit(cache=True, error_model="numpy")
 @no_type_check
-def _gradient(displacements, stencils, gradients, volumes, mu, lame, axes, blocks):
+def _gradient(blocks, displacements, stencils, gradients, volumes, mu, lame, axes):
     """P grad N of each element, with P = mu (F - F^-T) + lambda ln J F^-T = mu (G + (I - F^-T)) + ..."""
     G = np.empty((3, 3))
     spatial = np.empty((4, 3))
@@ -154,7 +154,7 @@ def _gradient(displacements, stencils, gradients, volumes, mu, lame, axes, block
 
 @njit(cache=True, error_model="numpy")
 @no_type_check
-def _hessian(displacements, stencils, gradients, volumes, mu, lame, axes, share, blocks):
+def _hessian(blocks, share, displacements, stencils, gradients, volumes, mu, lame, axes):
     G, V, stretches, vectors = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     spatial, local = np.empty((4, 3)), np.empty((4, 3))
     dim = len(axes)

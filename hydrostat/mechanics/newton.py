@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import count
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
@@ -117,8 +118,23 @@ def minimise(
     return _Descent(assembly, controls, force_scale, round_off, options, warp).run(start, stiffness)
 
 
+class _Place(NamedTuple):
+    """Where Newton is."""
+
+    nodes: Nodes
+    energy: float
+    gradient: Vector
+
+
 class _Descent:
-    """One minimisation; `run` is the loop, each method one part of it."""
+    """One minimisation; `run` is the loop, each method one part of it.
+
+    Attributes:
+        share: of what is negative in the Hessian that the last step took out.
+        saddles: how many have been left.
+        last: the Hessian of the last step, if nothing was taken out of it.
+        sharp: whether that step began near enough to the end for `last` to stand for the Hessian there.
+    """
 
     def __init__(
         self,
@@ -134,42 +150,43 @@ class _Descent:
         self.cables = next((energy for energy in assembly.energies if isinstance(energy, CableEnergy)), None)
         self.share = 0.0
         self.saddles = 0
+        self.last: Stiffness | None = None
+        self.sharp = False
 
     def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
         """Newton from `start` to a reason to stop."""
-        assembly, controls = self.assembly, self.controls
-        nodes, energy = start, assembly.value(start, controls)
+        energy = self.assembly.value(start, self.controls)
         if not np.isfinite(energy):
-            return self._result(start, Reason.BAD_START, np.inf, 0.0, energy, 0, None)
-        gradient = assembly.gradient(nodes, controls)
-        last, last_near = None, False
+            return self._result(_Place(start, energy, np.full(start.size, np.inf)), Reason.BAD_START, 0.0, 0)
+        place = self._arrive(start, energy)
         for iteration in count():
-            allowed = max(self.options.tolerance * self.force_scale(nodes), self.noise.force)
-            residual = float(np.abs(gradient).max())
-            arrived = residual <= allowed
-            near = residual < _NEAR * self.force_scale(nodes)
-            if arrived or iteration == self.options.iterations:
-                stiffness = last if arrived and last_near else assembly.stiffness(nodes, controls)
-                found = self._leave_saddle(nodes, energy, stiffness) if arrived else None
-                if found is None:
-                    reason = Reason.CONVERGED if arrived else Reason.ITERATION_LIMIT
-                    return self._result(nodes, reason, residual, allowed, energy, iteration, stiffness)
-                nodes, energy, gradient = found
-                continue
-            found = None
-            if last is not None and near:
-                found = self._chord(nodes, energy, gradient, last)
+            scale = self.force_scale(place.nodes)
+            allowed = max(self.options.tolerance * scale, self.noise.force)
+            residual = float(np.abs(place.gradient).max())
+            if residual <= allowed:
+                found, reason = self._leave_saddle(place), Reason.CONVERGED
+            elif iteration == self.options.iterations:
+                found, reason = None, Reason.ITERATION_LIMIT
+            else:
+                found, reason = self._advance(place, known, residual < _NEAR * scale), Reason.NO_DESCENT
+                known = None
             if found is None:
-                last, known, last_near = self._reuse(nodes, known) or self._definite(nodes), None, near
-                if last is not None:
-                    found = self._search(nodes, energy, gradient, last)
-            if found is None:
-                stiffness = assembly.stiffness(nodes, controls)
-                return self._result(nodes, Reason.NO_DESCENT, residual, allowed, energy, iteration, stiffness)
-            nodes, energy, gradient = found
-            if self.share > 0.0:
-                last, last_near = None, False
+                return self._result(place, reason, allowed, iteration)
+            place = found
         raise AssertionError("count() never ends")
+
+    def _arrive(self, nodes: Nodes, energy: float) -> _Place:
+        return _Place(nodes, energy, self.assembly.gradient(nodes, self.controls))
+
+    def _advance(self, place: _Place, known: Stiffness | None, near: bool) -> _Place | None:
+        """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones."""
+        if self.last is not None and near:
+            found = self._chord(place, self.last)
+            if found is not None:
+                return found
+        stiffness = self._reuse(place.nodes, known) or self._definite(place.nodes)
+        self.last, self.sharp = (stiffness, near) if self.share == 0.0 else (None, False)
+        return None if stiffness is None else self._search(place, stiffness)
 
     def _reuse(self, nodes: Nodes, known: Stiffness | None) -> Stiffness | None:
         """What is known of the Hessian, with the cables as they are now; None if that is not definite."""
@@ -200,102 +217,104 @@ class _Descent:
                 return stiffness
         return None
 
-    def _search(
-        self, nodes: Nodes, energy: float, gradient: Vector, stiffness: Stiffness
-    ) -> tuple[Nodes, float, Vector] | None:
-        """Next nodes, energy and gradient; None if no length of the step lowers the energy.
+    def _search(self, place: _Place, stiffness: Stiffness) -> _Place | None:
+        """The next place; None if no length of the step lowers the energy.
 
         Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
         """
-        step = self._step(nodes, gradient, stiffness)
+        nodes, energy, gradient = place
+        step = self._step(place, stiffness)
         slope = float(gradient @ step)
         length = 1.0
         for _ in range(self.options.halvings):
             gain = -length * slope
-            trial = self.bend(nodes, length * step.reshape(nodes.shape))
+            trial = self.bend(nodes, length * step)
             value = self.assembly.value(trial, self.controls)
             if gain > self.noise.energy:
                 if value <= energy - 1e-4 * gain:
                     if self.share > 0.0 and length == 1.0:
                         trial, value = self._stride(nodes, step, trial, value)
-                    return trial, value, self.assembly.gradient(trial, self.controls)
+                    return self._arrive(trial, value)
             elif value <= energy + 10 * self.noise.energy:
-                after = self.assembly.gradient(trial, self.controls)
-                if abs(after @ step) <= 0.9 * abs(slope):
-                    return trial, value, after
+                found = self._arrive(trial, value)
+                if abs(found.gradient @ step) <= 0.9 * abs(slope):
+                    return found
             length *= 0.5
         return None
 
-    def bend(self, nodes: Nodes, step: Nodes) -> Nodes:
+    def bend(self, nodes: Nodes, step: Vector) -> Nodes:
         """Where a step leads, along arcs if that is known."""
-        return nodes + step if self.warp is None else self.warp(nodes, step)
+        straight = step.reshape(nodes.shape)
+        return nodes + straight if self.warp is None else self.warp(nodes, straight)
 
-    def _chord(
-        self, nodes: Nodes, energy: float, gradient: Vector, last: Stiffness
-    ) -> tuple[Nodes, float, Vector] | None:
+    def _chord(self, place: _Place, last: Stiffness) -> _Place | None:
         """One more step with the factors of the last one; None if it does not pay."""
-        trial = self.bend(nodes, -last.solve(gradient).reshape(nodes.shape))
+        trial = self.bend(place.nodes, -last.solve(place.gradient))
         value = self.assembly.value(trial, self.controls)
-        if not value <= energy + 10 * self.noise.energy:
+        if not value <= place.energy + 10 * self.noise.energy:
             return None
-        after = self.assembly.gradient(trial, self.controls)
-        return (trial, value, after) if np.abs(after).max() < _PAYS * np.abs(gradient).max() else None
+        found = self._arrive(trial, value)
+        return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
-    def _step(self, nodes: Nodes, gradient: Vector, stiffness: Stiffness) -> Vector:
+    def _step(self, place: _Place, stiffness: Stiffness) -> Vector:
         """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
         if self.cables is not None and stiffness.body_definite and stiffness.columns.size:
-            stretches = self.cables.stretches(nodes, self.controls)
+            stretches = self.cables.stretches(place.nodes, self.controls)
             pulled = stiffness.columns @ self.cables.law.tension(stretches)
-            free = -stiffness.solve_body(gradient - pulled)
+            free = -stiffness.solve_body(place.gradient - pulled)
             tensions = settle(self.cables.law, stretches + stiffness.columns.T @ free, stiffness.compliance)
             if tensions is not None:
                 return free - stiffness.moves @ tensions
-        return -stiffness.solve(gradient)
+        return -stiffness.solve(place.gradient)
 
     def _stride(self, nodes: Nodes, step: Vector, trial: Nodes, value: float) -> tuple[Nodes, float]:
         """A lifted Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
         length = 2.0
         while True:
-            longer = self.bend(nodes, length * step.reshape(nodes.shape))
+            longer = self.bend(nodes, length * step)
             lower = self.assembly.value(longer, self.controls)
             if not lower < value:
                 return trial, value
             trial, value = longer, lower
             length *= 2.0
 
-    def _leave_saddle(self, nodes: Nodes, energy: float, stiffness: Stiffness) -> tuple[Nodes, float, Vector] | None:
+    def _leave_saddle(self, place: _Place) -> _Place | None:
         """A place of lower energy along a falling mode; None at a minimum, or where none is found."""
-        if stiffness.definite or stiffness.singular or self.saddles == _SADDLES:
+        if self.saddles == _SADDLES:
+            return None
+        stiffness = self._stiffness(place.nodes)
+        if stiffness.definite or stiffness.singular:
             return None
         try:
-            mode = _falling_mode(stiffness, nodes.size).reshape(nodes.shape)
+            mode = _falling_mode(stiffness, place.gradient.size)
         except ArpackNoConvergence:
             return None
-        size = float(np.ptp(nodes, axis=0).max())
-        trials = [self.bend(nodes, leap * size * mode) for leap in _LEAPS]
+        size = float(np.ptp(place.nodes, axis=0).max())
+        trials = [self.bend(place.nodes, leap * size * mode) for leap in _LEAPS]
         values = [self.assembly.value(trial, self.controls) for trial in trials]
         least = int(np.argmin(values))
-        if not values[least] < energy - 10 * self.noise.energy:
+        if not values[least] < place.energy - 10 * self.noise.energy:
             return None
         self.saddles += 1
-        return trials[least], values[least], self.assembly.gradient(trials[least], self.controls)
+        self.last = None
+        return self._arrive(trials[least], values[least])
 
-    def _result(
-        self,
-        nodes: Nodes,
-        reason: Reason,
-        residual: float,
-        allowed: float,
-        energy: float,
-        iterations: int,
-        stiffness: Stiffness | None,
-    ) -> NewtonResult:
+    def _stiffness(self, nodes: Nodes) -> Stiffness:
+        """The Hessian at the end."""
+        if self.last is None or not self.sharp:
+            self.last, self.sharp = self.assembly.stiffness(nodes, self.controls), True
+        return self.last
+
+    def _result(self, place: _Place, reason: Reason, allowed: float, iterations: int) -> NewtonResult:
+        if reason is not Reason.CONVERGED:
+            self.last = None
+        stiffness = None if reason is Reason.BAD_START else self._stiffness(place.nodes)
         return NewtonResult(
-            nodes=nodes,
+            nodes=place.nodes,
             reason=reason,
-            residual=residual,
+            residual=float(np.abs(place.gradient).max()),
             allowed=allowed,
-            energy=energy,
+            energy=place.energy,
             iterations=iterations,
             stable=stiffness is not None and stiffness.definite,
             buckled=self.saddles > 0,
@@ -305,9 +324,9 @@ class _Descent:
 
 def _falling_mode(stiffness: Stiffness, size: int) -> Vector:
     """A mode of negative curvature, largest entry 1: that of the most negative eigenvalue of H^-1, by Lanczos."""
-    inverse = LinearOperator((size, size), matvec=stiffness.solve, dtype=float)
+    inverse = LinearOperator((size, size), matvec=stiffness.solve, dtype=float)  # pyright: ignore[reportCallIssue]
     start = np.random.default_rng(0).standard_normal(size)
-    mode = eigsh(inverse, k=1, which="SA", v0=start, tol=1e-3)[1][:, 0]
+    mode = eigsh(inverse, k=1, which="SA", v0=start, tol=1e-3)[1][:, 0]  # pyright: ignore[reportArgumentType]
     return mode / np.abs(mode).max()
 
 

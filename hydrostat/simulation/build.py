@@ -21,14 +21,14 @@ from hydrostat.robot import Robot, Volume
 from hydrostat.simulation.turns import cable_segments, cable_turns
 
 
-def body_energies(robot: Robot) -> list[Energy]:
+def body_energies(robot: Robot) -> tuple[NeoHookean, PinEnergy, *tuple[Energy, ...]]:
     """The elastic body, the pins that hold it; then its volume in patches and its weight, if it has these."""
-    energies: list[Energy] = [elastic_energy(robot), pin_energy(robot)]
+    others: list[Energy] = []
     if robot.body.volume is Volume.PATCH:
-        energies.append(_patch_volume(robot))
+        others.append(_patch_volume(robot))
     if robot.gravity is not None:
-        energies.append(_weight(robot))
-    return energies
+        others.append(_weight(robot))
+    return elastic_energy(robot), pin_energy(robot), *others
 
 
 def cable_energy(robot: Robot) -> CableEnergy:
