@@ -12,6 +12,7 @@ from scipy.sparse import csc_array
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.energy import Energy
 from hydrostat.mechanics.factorisation import Analysis
+from hydrostat.mechanics.kernel import KERNEL
 from hydrostat.mechanics.stiffness import Stiffness
 
 
@@ -147,7 +148,7 @@ class Assembly:
         ]
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
 def _add_vectors(stencils, vectors, total):
     """Add the vector of every corner of every term to its node."""
@@ -158,7 +159,7 @@ def _add_vectors(stencils, vectors, total):
                 total[node, axis] += vectors[term, corner, axis]
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
 def _add_blocks(stencils, slots, strides, blocks, data):
     """Add every dim x dim block of symmetric blocks to the values of the sparse matrix."""

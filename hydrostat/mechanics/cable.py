@@ -10,6 +10,7 @@ from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
+from hydrostat.mechanics.kernel import KERNEL
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -163,7 +164,7 @@ the kink, no gradient vanishes there, and Newton stops without a descent.
 """
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
     """Span and length of every segment."""
@@ -178,7 +179,7 @@ def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
         lengths[term] = math.sqrt(square)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _bends(spans, lengths, weights, tensions, blocks):
     """T (I - u u^T) / length of every segment, spread to its nodes by the weights."""
@@ -197,7 +198,7 @@ def _bends(spans, lengths, weights, tensions, blocks):
                         blocks[term, a * dim + i, b * dim + j] = weights[term, a] * weights[term, b] * across
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 @no_type_check
 def _spread(stencils, cables, gradients, columns):
     """Add up the gradients of the segments of each cable."""

@@ -9,6 +9,7 @@ from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
+from hydrostat.mechanics.kernel import INNER, KERNEL
 
 
 class NeoHookean(Energy):
@@ -65,7 +66,7 @@ class NeoHookean(Energy):
         return self.stencils, self._padded, self.volumes, self.mu, self.lame, self._axes
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(inline="always", **INNER)
 @no_type_check
 def _displacement_gradient(displacements, stencil, gradients, axes, G):
     """G = F - I of one element, padded to 3 x 3; returns J - 1 without cancellation."""
@@ -89,7 +90,7 @@ def _displacement_gradient(displacements, stencil, gradients, axes, G):
     return G[0, 0] + G[1, 1] + G[2, 2] + minors + determinant
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
     G = np.empty((3, 3))
@@ -108,7 +109,7 @@ def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
     return total
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(inline="always", **INNER)
 @no_type_check
 def _spatial_gradients(G, J, gradients, spatial):
     """Gradients of the shape functions in the deformed shape, F^-T grad N, from F = I + G (which this overwrites)."""
@@ -131,7 +132,7 @@ def _spatial_gradients(G, J, gradients, spatial):
         spatial[corner, 2] = c20 * x + c21 * y + c22 * z
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _gradient(blocks, displacements, stencils, gradients, volumes, mu, lame, axes):
     """P grad N of each element, with P = mu (F - F^-T) + lambda ln J F^-T = mu (G + (I - F^-T)) + ..."""
@@ -141,7 +142,9 @@ def _gradient(blocks, displacements, stencils, gradients, volumes, mu, lame, axe
     for element in range(stencils.shape[0]):
         rest = gradients[element]
         change = _displacement_gradient(displacements, stencils[element], rest, axes, G)
-        kept[:] = G
+        for i in range(3):
+            for j in range(3):
+                kept[i, j] = G[i, j]
         _spatial_gradients(G, 1.0 + change, rest, spatial)
         pressure = lame * math.log1p(change)
         for corner in range(stencils.shape[1]):
@@ -152,7 +155,7 @@ def _gradient(blocks, displacements, stencils, gradients, volumes, mu, lame, axe
                 blocks[element, corner, i] = volumes[element] * force
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _hessian(blocks, share, displacements, stencils, gradients, volumes, mu, lame, axes):
     G, V, stretches, vectors = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
@@ -184,7 +187,7 @@ def _hessian(blocks, share, displacements, stencils, gradients, volumes, mu, lam
             _lift(G, 1.0 + change, rest, share * volume, mu, lame, axes, block, V, stretches, vectors, local, column)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INNER)
 @no_type_check
 def _lift(F, J, gradients, weight, mu, lame, axes, block, V, stretches, vectors, local, column):
     """Take the negative eigenvalues, times a weight, out of one element's Hessian block.
@@ -254,7 +257,7 @@ def _lift(F, J, gradients, weight, mu, lame, axes, block, V, stretches, vectors,
         _add_square(block, -weight * value, column)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(inline="always", **INNER)
 @no_type_check
 def _positive(A, out):
     """Whether a symmetric 3 x 3 matrix, less its axis `out`, is positive definite, by its leading minors."""
@@ -268,7 +271,7 @@ def _positive(A, out):
     return A[0, 0] > 0.0 and minor > 0.0 and whole > 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INNER)
 @no_type_check
 def _add_square(block, scale, column):
     """Block += scale column column^T."""
@@ -278,7 +281,7 @@ def _add_square(block, scale, column):
             block[row, other] += factor * column[other]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INNER)
 @no_type_check
 def _eigen(A, V):
     """Make a symmetric 3 x 3 matrix diagonal by Jacobi's rotations; the columns of V are its eigenvectors."""

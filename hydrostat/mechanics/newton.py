@@ -203,14 +203,14 @@ class _Descent:
         negative is taken out; the share falls from step to step as long as it suffices. None where nothing helps: the
         Hessian is not finite, or 0.
         """
-        self.share = self.share / 4 if self.share > _LEAST_SHARE else 0.0
+        self.share = self.share / 16 if self.share > _LEAST_SHARE else 0.0
         while True:
             stiffness = self.assembly.stiffness(nodes, self.controls, lift=self.share)
             if stiffness.definite:
                 return stiffness
             if self.share == 1.0:
                 break
-            self.share = min(4 * self.share, 1.0) if self.share else 1.0
+            self.share = min(16 * self.share, 1.0) if self.share else 1.0
         for shift in _SHIFTS:
             stiffness = self.assembly.stiffness(nodes, self.controls, lift=1.0, shift=shift)
             if stiffness.definite:

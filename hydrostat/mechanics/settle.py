@@ -7,6 +7,7 @@ from numba import njit
 
 from hydrostat.arrays import Vector
 from hydrostat.mechanics.cable import TensionLaw
+from hydrostat.mechanics.kernel import INNER, KERNEL
 from hydrostat.mechanics.stiffness import Small
 
 
@@ -29,7 +30,7 @@ _SETTLING = 30
 _HALVINGS = 12
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INNER)
 @no_type_check
 def _law(k, eps, stretch):
     """Energy, tension and its slope at one stretch; see `TensionLaw`."""
@@ -40,7 +41,7 @@ def _law(k, eps, stretch):
     return 0.5 * k * (stretch - eps) ** 2 + k * eps * eps / 6.0, k * (stretch - eps), k
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INNER)
 @no_type_check
 def _eliminate(matrix, right):
     """Solve a small system in place, with pivoting; false if it is singular."""
@@ -70,7 +71,7 @@ def _eliminate(matrix, right):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _settle(stiffness, smoothing, stretches, compliance, tensions):
     """Newton with a line search on T M T / 2 + U(stretches - M T); false if it does not arrive."""
@@ -115,6 +116,7 @@ def _settle(stiffness, smoothing, stretches, compliance, tensions):
             length *= 0.5
         if not found:
             return False
-        tensions[:] = trial
+        for cable in range(count):
+            tensions[cable] = trial[cable]
         value = reached
     return False

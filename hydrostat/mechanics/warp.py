@@ -10,6 +10,7 @@ from numba import njit
 from hydrostat.arrays import Nodes
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.factorisation import Analysis
+from hydrostat.mechanics.kernel import INNER, KERNEL
 
 
 class Warp:
@@ -58,7 +59,7 @@ def _entries(stencils: Stencils, blocks: np.ndarray, count: int) -> tuple[np.nda
     return keys.ravel(), blocks.ravel()
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _turn(nodes, step, stencils, gradients, volumes, axes, right):
     """Sum of volume x (exp(W) (I + S) F - F - dF) grad N over the elements, where dF F^-1 = S + W.
@@ -97,7 +98,7 @@ def _turn(nodes, step, stencils, gradients, volumes, axes, right):
                 right[node, i] += bent[i, 0] * p + bent[i, 1] * q + bent[i, 2] * r
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INNER)
 @no_type_check
 def _bend(x, y, z, S, bent):
     """(exp W - I - W) + (exp W - I) S, W the cross product with (x, y, z), by Rodrigues' formula."""
@@ -123,7 +124,7 @@ def _bend(x, y, z, S, bent):
             bent[i, j] += a * S[0, j] + b * S[1, j] + c * S[2, j]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INNER)
 @no_type_check
 def _divide(top, F):
     """Top <- top F^-1, of 3 x 3 matrices."""
