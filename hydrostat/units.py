@@ -35,6 +35,21 @@ ACCELERATION = Dimension("an acceleration", "m/s^2", "m/s^2", "9.81 m/s^2")
 VISCOSITY = Dimension("a viscosity", "Pa*s", "Pa s", "40 Pa s")
 TIME = Dimension("a time", "s", "s", "2 s")
 
+COMMON = {
+    (unit, dimension): Decimal(factor).normalize()
+    for dimension, factors in {
+        LENGTH: {"m": "1", "cm": "0.01", "mm": "0.001"},
+        PRESSURE: {"Pa": "1", "kPa": "1000", "MPa": "1000000"},
+        DENSITY: {"kg/m^3": "1"},
+        STIFFNESS: {"N/m": "1", "N/mm": "1000"},
+        ACCELERATION: {"m/s^2": "1"},
+        VISCOSITY: {"Pa s": "1"},
+        TIME: {"s": "1", "ms": "0.001"},
+    }.items()
+    for unit, factor in factors.items()
+}
+"""How many SI units the units are that stand in most files; with any other, pint is loaded, which takes 0.3 s."""
+
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([^\W\d_].*?)?\s*", re.DOTALL)
 _SYMBOL = r"[^\W\d_]+(?:\s*(?:\^|\*\*)\s*-?\d|[²³])?"
 _UNIT = re.compile(rf"{_SYMBOL}(?:\s*[*/ .·]\s*{_SYMBOL}){{0,3}}")
@@ -122,6 +137,8 @@ def unit_factor(unit: str, dimension: Dimension) -> Decimal:
     Raises:
         InputError: the unit is unknown or measures something else.
     """
+    if (unit, dimension) in COMMON:
+        return COMMON[unit, dimension]
     import pint
 
     if not _UNIT.fullmatch(unit):

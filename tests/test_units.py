@@ -4,6 +4,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.units import (
     ACCELERATION,
@@ -155,3 +156,12 @@ def test_plain(number: str, text: str) -> None:
 def test_quote(value: object, shown: str) -> None:
     """Oracle: by hand."""
     assert quote(value) == shown
+
+
+@pytest.mark.parametrize(("unit", "dimension"), units.COMMON)
+def test_the_common_units_are_those_of_pint(
+    unit: str, dimension: units.Dimension, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    known = units.COMMON[unit, dimension]
+    monkeypatch.setattr(units, "COMMON", {})
+    assert units.unit_factor.__wrapped__(unit, dimension) == known
