@@ -3,6 +3,7 @@
 Everything shown is computed here: the network is designed, its poses are solved.
 """
 
+import sys
 from io import BytesIO
 from pathlib import Path
 
@@ -10,8 +11,11 @@ import matplotlib.image
 from matplotlib.figure import Figure
 
 import hydrostat as hs
-from hydrostat.plot import draw_activation, draw_network, draw_portrait, draw_reached, save_png
+from hydrostat.plot import draw_activation, draw_network, draw_portrait, draw_pose, draw_reached, save_png
 from hydrostat.robot import gallery_folder, gallery_names
+
+sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
+from hand_body import hand_robot
 
 HERE = Path(__file__).parent / "pictures"
 PORTRAIT = 3.2
@@ -19,13 +23,21 @@ PORTRAIT = 3.2
 
 
 def main() -> None:
-    """Design the starfish and draw its stages, then all of the gallery."""
+    """Design the starfish and draw its stages, then all of the gallery and the hand."""
     robot = hs.load_robot(gallery_folder("starfish"))
     network = hs.design_cables(robot, [robot.poses["wave"]], winches=2, cables=6)
     save_png(draw_activation(robot, network.activations[0], title=""), HERE / "activation.png", dpi=110)
     save_png(draw_network(network.robot, title=""), HERE / "network.png", dpi=110)
     save_png(draw_reached(network.robot, network.reached[0], title=""), HERE / "reached.png", dpi=110)
     draw_gallery()
+    draw_hand()
+
+
+def draw_hand() -> None:
+    """The foam hand of the benchmarks, its five flexors taken in by a quarter."""
+    robot = hand_robot()
+    pulled = {cable.winch: 0.25 * cable.length for cable in robot.cables if cable.winch.endswith("flexor")}
+    save_png(draw_pose(robot, hs.Simulation(robot).solve(pulled)), HERE / "hand.png", dpi=90)
 
 
 def draw_gallery() -> None:
