@@ -91,6 +91,8 @@ class Row:
         least_j: of any element in any solve.
         made: CPU time to make robot and simulation [s].
         memory: most that the process held [MB].
+        hessian: CPU time to assemble one Hessian [ms].
+        factors: CPU time to factorise it [ms].
     """
 
     nodes: int = 0
@@ -102,6 +104,8 @@ class Row:
     least_j: float = np.inf
     made: float = np.nan
     memory: float = np.nan
+    hessian: float = np.nan
+    factors: float = np.nan
 
 
 def finger_steps(_robot: Any, _random: np.random.Generator, count: int) -> Iterator[Solve]:
@@ -196,7 +200,21 @@ def measure(name: str, folder: Path, count: int, profile: Profile | None = None)
             row.residual = max(row.residual, pose.result.residual / float(pose.tensions.max()))
             row.least_j = min(row.least_j, least_j(mesh, pose.nodes))
     row.memory = peak_memory()
+    row.hessian, row.factors = cost_of_factors(simulation, pose)
     return row
+
+
+def cost_of_factors(simulation: Any, pose: Any) -> tuple[float, float]:
+    """CPU time to assemble the Hessian at a pose, and to factorise it [ms]; the shorter of two."""
+    hessian = whole = np.inf
+    for _ in range(2):
+        began = time.process_time()
+        simulation.assembly.hessian(pose.nodes, pose.contractions)
+        hessian = min(hessian, 1e3 * (time.process_time() - began))
+        began = time.process_time()
+        simulation.assembly.stiffness(pose.nodes, pose.contractions)
+        whole = min(whole, 1e3 * (time.process_time() - began))
+    return hessian, whole - hessian
 
 
 def least_j(mesh: Any, nodes: np.ndarray) -> float:
@@ -277,7 +295,18 @@ def print_first_solve(folder: Path) -> None:
 
 def print_sizes(largest: int, folder: Path, *, quick: bool) -> None:
     """One cable of the hand, at several spacings."""
-    print_heads("nodes", "elements", "ms", "iterations", "ms each", "converged", "made s", "MB")
+    print_heads(
+        "nodes",
+        "elements",
+        "ms",
+        "iterations",
+        "ms each",
+        "a Hessian ms",
+        "its factors ms",
+        "converged",
+        "made s",
+        "MB",
+    )
     points = []
     for size, spacing in SIZES.items():
         if size > largest:
@@ -287,17 +316,18 @@ def print_sizes(largest: int, folder: Path, *, quick: bool) -> None:
             continue
         row = Row(**found)
         took, steps = float(np.median(row.times)), float(np.median(row.iterations))
-        points.append((row.nodes, took, took / max(steps, 1)))
+        points.append((row.nodes, took, row.hessian, row.factors))
         print(
             f"| {row.nodes} | {row.elements} | {took:.0f} | {steps:.0f} | {took / max(steps, 1):.1f} "
-            f"| {row.converged} of {len(row.times)} | {row.made:.1f} | {row.memory:.0f} |",
+            f"| {row.hessian:.1f} | {row.factors:.1f} | {row.converged} of {len(row.times)} "
+            f"| {row.made:.1f} | {row.memory:.0f} |",
             flush=True,
         )
     print("\nMade: CPU time to make mesh, robot and simulation. Contraction: 15 % of the cable, from rest.")
     if len(points) > 1:
         logs = np.log(points)
-        slopes = [np.polyfit(logs[:, 0], logs[:, column], 1)[0] for column in (1, 2)]
-        print(f"CPU time grows as nodes^{slopes[0]:.2f}, that of an iteration as nodes^{slopes[1]:.2f}.\n")
+        slopes = [np.polyfit(logs[:, 0], logs[:, column], 1)[0] for column in (1, 2, 3)]
+        print("CPU time grows as nodes^{:.2f}: of a Hessian ^{:.2f}, of its factors ^{:.2f}.\n".format(*slopes))
 
 
 def print_finger_tips(folder: Path) -> None:
