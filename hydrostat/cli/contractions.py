@@ -35,7 +35,7 @@ def check_contraction(robot: "Robot", name: str, value: float, *, option: str = 
     winch = robot.winch(name)
     if not -winch.release <= value <= winch.travel:
         print(
-            f"note: winch {name} can take in from {-1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
+            f"note: winch {name} can take in from {0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
             f"{1e3 * value:g} mm is beyond it"
         )
     shortest = min((cable.length for cable in robot.cables if cable.winch == name), default=float("inf"))

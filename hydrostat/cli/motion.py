@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from hydrostat.cli.contractions import check_contraction
 from hydrostat.cli.progress import progress_bar
 from hydrostat.errors import InputError
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.simulation import Motion, Profile, Simulation
@@ -23,7 +24,7 @@ def move(
     ramp: str,
     play: Path | None,
 ) -> list[Path]:
-    """Move a robot in time, print how it ended, and write all files; returns their paths."""
+    """Move a robot from where it rests at first, print how it ended, and write all files; returns their paths."""
     from hydrostat import __version__
     from hydrostat.plot import draw_motion, draw_pose, save_png
     from hydrostat.simulation import write_motion, write_pose
@@ -31,9 +32,10 @@ def move(
     profile = _profile(simulation, contractions, ramp, play)
     seconds = max(float(profile.times[-1]), 1.0) if duration is None else _seconds("--duration", duration)
     dt = _seconds("--step", step)
+    start = simulation.still(simulation.solve(profile.at(0.0)))
     began = time.process_time()
     with progress_bar() as tell:
-        motions = _told(simulation.play(profile, seconds, dt), seconds, tell)
+        motions = _told(simulation.play(profile, seconds, dt, start=start), seconds, tell)
         files, table, last = write_motion(simulation.robot, motions, out)
     spent = time.process_time() - began
     extra = {"time": last.time, "kinetic": last.kinetic, "seconds": spent, "version": __version__}
@@ -50,7 +52,10 @@ def move(
     for index, tension in enumerate(last.tensions):
         print(f"cable {index + 1:<10} {tension:8.3f} N")
     fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
-    print(f"{len(table.times) - 1} steps to {last.time:g} s, {spent:.1f} s of work; no node is faster than", end=" ")
+    print(
+        f"{counted(len(table.times) - 1, 'step')} to {last.time:g} s, {spent:.1f} s of work; no node is faster than",
+        end=" ",
+    )
     print(f"{fastest:.2g} mm/s at the end")
     return files
 
@@ -63,8 +68,9 @@ def _profile(simulation: "Simulation", contractions: Mapping[str, float], ramp: 
     if contractions:
         raise InputError("--play and --contract: give one of them")
     profile = read_profile(play, simulation.robot)
-    for winch, most in zip(simulation.robot.winches, profile.values.max(axis=0), strict=True):
-        check_contraction(simulation.robot, winch.name, float(most), option=f"--play {play}:")
+    for extreme in (profile.values.max(axis=0), profile.values.min(axis=0)):
+        for winch, most in zip(simulation.robot.winches, extreme, strict=True):
+            check_contraction(simulation.robot, winch.name, float(most), option=f"--play {play}:")
     return profile
 
 

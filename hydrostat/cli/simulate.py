@@ -9,6 +9,7 @@ import typer
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.contractions import check_contraction, contraction
 from hydrostat.cli.motion import move
+from hydrostat.cli.prepare import prepared
 from hydrostat.cli.profiling import profiled
 from hydrostat.errors import InputError
 
@@ -23,7 +24,9 @@ def simulate(
         list[str] | None, typer.Option(metavar="WINCH=LENGTH", help="Cable a winch takes in; may be repeated.")
     ] = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
-    dynamic: Annotated[bool, typer.Option("--dynamic", help="Move there in time, from rest.")] = False,
+    dynamic: Annotated[
+        bool, typer.Option("--dynamic", help="Move there in time, from where it rests at first.")
+    ] = False,
     duration: Annotated[
         str | None, typer.Option(metavar="TIME", help="How long; as --ramp or --play, at least 1 s, if left out.")
     ] = None,
@@ -43,12 +46,12 @@ def simulate(
     """
     from hydrostat import __version__
     from hydrostat.robot import load_robot
-    from hydrostat.simulation import Simulation, write_pose
+    from hydrostat.simulation import write_pose
 
     require_folder(out)
     with profiled(profile, "reading and preparing"):
         loaded = load_robot(robot)
-        simulation = Simulation(loaded)
+        simulation = prepared(loaded)
     contractions = dict(contraction(text) for text in contract or [])
     for name, value in contractions.items():
         check_contraction(loaded, name, value)

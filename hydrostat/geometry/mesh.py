@@ -6,6 +6,8 @@ from itertools import combinations
 
 import numpy as np
 from jaxtyping import Float, Int
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from hydrostat.arrays import Elements, Nodes
 from hydrostat.errors import InputError
@@ -50,6 +52,13 @@ class Mesh:
     def dim(self) -> int:
         """2 for triangles, 3 for tetrahedra."""
         return self.nodes.shape[1]
+
+    @cached_property
+    def parts(self) -> Int[np.ndarray, " nodes"]:
+        """Which part of the mesh each node belongs to: elements that share a node are of one part."""
+        ends = self.elements[:, :-1].ravel(), self.elements[:, 1:].ravel()
+        joins = coo_array((np.ones(len(ends[0])), ends), shape=(len(self.nodes), len(self.nodes)))
+        return connected_components(joins, directed=False)[1]
 
     @cached_property
     def volumes(self) -> Float[np.ndarray, " elements"]:

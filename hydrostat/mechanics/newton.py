@@ -7,7 +7,7 @@ from itertools import count
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
@@ -169,7 +169,7 @@ class _Descent:
                 found, reason = None, Reason.ITERATION_LIMIT
             else:
                 found, reason = self._advance(place, known, residual < _NEAR * scale), Reason.NO_DESCENT
-                known = None
+            known = None
             if found is None:
                 return self._result(place, reason, allowed, iteration)
             place = found
@@ -184,8 +184,9 @@ class _Descent:
             found = self._chord(place, self.last)
             if found is not None:
                 return found
-        stiffness = self._reuse(place.nodes, known) or self._definite(place.nodes)
-        self.last, self.sharp = (stiffness, near) if self.share == 0.0 else (None, False)
+        reused = self._reuse(place.nodes, known)
+        stiffness = reused or self._definite(place.nodes)
+        self.last, self.sharp = (stiffness, near and reused is None) if self.share == 0.0 else (None, False)
         return None if stiffness is None else self._search(place, stiffness)
 
     def _reuse(self, nodes: Nodes, known: Stiffness | None) -> Stiffness | None:
@@ -280,14 +281,14 @@ class _Descent:
 
     def _leave_saddle(self, place: _Place) -> _Place | None:
         """A place of lower energy along a falling mode; None at a minimum, or where none is found."""
-        if self.saddles == _SADDLES:
+        if self.saddles == _SADDLES or self.options.tolerance > _SHARP:
             return None
         stiffness = self._stiffness(place.nodes)
         if stiffness.definite or stiffness.singular:
             return None
         try:
             mode = _falling_mode(stiffness, place.gradient.size)
-        except ArpackNoConvergence:
+        except ArpackError:
             return None
         size = float(np.ptp(place.nodes, axis=0).max())
         trials = [self.bend(place.nodes, leap * size * mode) for leap in _LEAPS]
@@ -341,6 +342,9 @@ _LEAST_SHARE = 1 / 32
 
 _SHIFTS = tuple(np.logspace(-10, 1, 12))
 """What is added to the diagonal of the projected Hessian, if even that is singular: fractions of its largest entry."""
+
+_SHARP = 1e-4
+"""Only an equilibrium at least as sharp as this share of the largest applied force is told from a saddle."""
 
 _SADDLES = 3
 """So many saddles are left in one solve."""

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrostat.errors import InputError
 from hydrostat.mechanics import (
     CableEnergy,
     Energy,
@@ -57,12 +58,14 @@ def warp(robot: Robot, body: NeoHookean, pins: PinEnergy) -> Warp:
 
 
 def round_off(robot: Robot) -> RoundOff:
-    """What the rounding errors of the body's own forces hide."""
+    """What the rounding errors of the body's own forces, of pins and of cables hide."""
     body = robot.body
     mu, lame = body.material.lame
     scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
-    springs = max((pin.stiffness for pin in robot.pins), default=0.0) * body.mesh.size
-    return RoundOff(force=1e-14 * scale / body.mesh.size + 2e-16 * springs, energy=1e-15 * scale)
+    reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
+    springs = max((part.stiffness for part in (*robot.pins, *robot.cables)), default=0.0)
+    force = 1e-14 * scale / body.mesh.size * (reach / body.mesh.size) + 2e-16 * springs * reach
+    return RoundOff(force=force, energy=1e-15 * scale)
 
 
 def node_masses(robot: Robot) -> np.ndarray:
@@ -90,9 +93,20 @@ def _patch_volume(robot: Robot) -> PatchVolume:
 
 
 def pin_energy(robot: Robot) -> PinEnergy:
-    """The pins, each at the points that it holds."""
+    """The pins, each at the points that it holds.
+
+    Raises:
+        InputError: a part of the mesh that no pin holds.
+    """
     nodes = robot.body.mesh.nodes
     anchors = [pin.anchors(robot.body.mesh) for pin in robot.pins]
+    parts = robot.body.mesh.parts
+    loose = np.setdiff1d(parts, [parts[node] for held in anchors for node in held.stencils[:, 0]])
+    if loose.size:
+        raise InputError(
+            f"body: {loose.size} of the {parts.max() + 1} parts of the mesh are held by no pin, the first has "
+            f"{int((parts == loose[0]).sum())} nodes; join them to the rest (merge nodes at one place) or pin them"
+        )
     return PinEnergy(
         stencils=np.concatenate([held.stencils for held in anchors]),
         weights=np.concatenate([held.weights for held in anchors]),

@@ -39,7 +39,7 @@ class StepOptions:
         halvings: so often is a step cut in two if its minimisation fails.
 
     Raises:
-        InputError: an unknown scheme, or a negative drag.
+        InputError: an unknown scheme, a negative drag, or a negative number of halvings.
     """
 
     scheme: str = "sdirk2"
@@ -51,6 +51,8 @@ class StepOptions:
             raise InputError(f'there is no scheme "{self.scheme}"; there are: {", ".join(SCHEMES)}')
         if not (np.isfinite(self.drag) and self.drag >= 0):
             raise InputError(f"drag must be finite and not negative, not {self.drag:g}")
+        if self.halvings < 0:
+            raise InputError(f"halvings must be 0 or more, not {self.halvings}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +98,8 @@ class Dynamics:
     def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None) -> Motion:
         """A motion that begins at `nodes`, with all viscous branches settled there."""
         still = np.zeros_like(nodes)
+        if velocities is not None and not (velocities.shape == nodes.shape and np.isfinite(velocities).all()):
+            raise InputError(f"velocities must be finite, {nodes.shape}, not {velocities.shape}")
         state = _State(nodes, still if velocities is None else velocities, self.memory.settled(nodes))
         shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
         return self._motion(0.0, contractions, shifts, state, still, None)
@@ -127,8 +131,8 @@ class Dynamics:
                 return replace(at, time=motion.time + dt, result=replace(result, iterations=iterations))
         assert result is not None
         raise NotConvergedError(
-            f"no step found at {motion.time:.4g} s, not even one of {dt / 2**options.halvings:.2g} s: {result.reason} "
-            f"(force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
+            f"no step found at {motion.time:.4g} s, not even one of {dt / 2**options.halvings:.2g} s: {result.reason}; "
+            f"try another time step (force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
             result,
         )
 
@@ -212,13 +216,14 @@ class Dynamics:
         )
 
     def _noise(self, step: float) -> RoundOff:
-        """What rounding hides in a step, viscous forces included."""
-        if not len(self.memory):
-            return self._round_off
+        """What rounding hides in a step, inertia and viscous forces included."""
         body = self.robot.body
-        scale = 2 * self.memory.modulus(step) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+        scale = 0.0
+        if len(self.memory):
+            scale = 2 * self.memory.modulus(step) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+        inertia = 1e-15 * float(self.masses.max()) / step**2 * body.mesh.size
         return RoundOff(
-            force=self._round_off.force + 1e-13 * scale / body.mesh.size,
+            force=self._round_off.force + 1e-13 * scale / body.mesh.size + inertia,
             energy=self._round_off.energy + 1e-15 * scale,
         )
 

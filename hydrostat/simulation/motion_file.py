@@ -1,10 +1,12 @@
 """`write_motion`: a motion as motion.csv, and as motion.pvd with a mesh for each frame, which ParaView plays."""
 
 import csv
+import shutil
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from io import StringIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from jaxtyping import Float
@@ -38,7 +40,7 @@ class MotionTable:
 def write_motion(
     robot: Robot, motions: Iterable[Motion], folder: Path, *, frames_per_second: float = 30.0
 ) -> tuple[list[Path], MotionTable, Motion]:
-    """Write a motion while it is found; a motion that stops early is written as far as it got.
+    """Write a motion; one that stops early is written as far as it got. Nothing is replaced before it has ended.
 
     Args:
         robot: that moves.
@@ -52,21 +54,22 @@ def write_motion(
     Raises:
         NotConvergedError: from the motion, after all has been written.
     """
-    (folder / "frames").mkdir(parents=True, exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     frames: list[tuple[float, str]] = []
     seen: list[tuple] = []
     stopped, last = None, None
-    kept = _until_stopped(motions)
-    for motion in kept:
-        if isinstance(motion, NotConvergedError):
-            stopped = motion
-            break
-        last = motion
-        seen.append(_row(robot, motion))
-        if motion.time >= len(frames) / frames_per_second - 1e-9:
-            frames.append((motion.time, _write_frame(robot, motion, folder, len(frames))))
-    if last is None:
-        raise ValueError("a motion has at least one instant")
+    with TemporaryDirectory(dir=folder, prefix=".frames.") as part:
+        for motion in _until_stopped(motions):
+            if isinstance(motion, NotConvergedError):
+                stopped = motion
+                break
+            last = motion
+            seen.append(_row(robot, motion))
+            if motion.time >= len(frames) / frames_per_second - 1e-9:
+                frames.append((motion.time, _write_frame(robot, motion, Path(part), len(frames))))
+        if last is None:
+            raise ValueError("a motion has at least one instant")
+        _replace_folder(folder / "frames", Path(part))
     table = _table(robot, seen)
     files = [
         replace_file(folder / "motion.csv", _csv(robot, table).encode()),
@@ -102,11 +105,18 @@ def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
 
 
 def _write_frame(robot: Robot, motion: Motion, folder: Path, number: int) -> str:
-    name = f"frames/motion_{number:04d}.vtu"
-    part = folder / "frames" / ".motion.part.vtu"
-    write_mesh(part, robot.body.mesh, motion.nodes, {"rest": robot.body.mesh.nodes, "velocity": motion.velocities})
-    part.replace(folder / name)
-    return name
+    name = f"motion_{number:04d}.vtu"
+    data = {"rest": robot.body.mesh.nodes, "velocity": motion.velocities}
+    write_mesh(folder / name, robot.body.mesh, motion.nodes, data)
+    return f"frames/{name}"
+
+
+def _replace_folder(folder: Path, part: Path) -> None:
+    """Put the files of `part` in the place of what was in the folder before."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    for file in part.iterdir():
+        file.replace(folder / file.name)
 
 
 def _csv(robot: Robot, table: MotionTable) -> str:

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Stiffness, minimise
+from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, Stiffness, WeightEnergy, minimise
 from hydrostat.robot import Robot
 from hydrostat.simulation.build import body_energies, cable_energy, friction_energy, round_off, warp
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
@@ -86,6 +86,7 @@ class Simulation:
             NotConvergedError: the solver stopped early; its text says why.
         """
         goal = self.contractions(contractions)
+        self._check_start(start)
         slips = np.zeros(0)
         if self._path is not None:
             result, slips = self._path.solve(goal, start)
@@ -98,6 +99,11 @@ class Simulation:
                 result,
             )
         return self._solved(goal, result, slips)
+
+    def _check_start(self, start: SolvedPose | None) -> None:
+        shape = self.robot.body.mesh.nodes.shape
+        if start is not None and not (start.nodes.shape == shape and np.isfinite(start.nodes).all()):
+            raise InputError(f"start must be a pose of this robot with finite nodes, {shape}, not {start.nodes.shape}")
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
         """D nodes / d contractions at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
@@ -121,6 +127,9 @@ class Simulation:
             if np.abs(missing).max(initial=0.0) <= 1e-11 * np.abs(right).max(initial=0.0):
                 break
             moves += stiffness.solve(missing)
+        else:
+            stiffness = self.assembly.stiffness(pose.nodes, pose.contractions)
+            moves = stiffness.solve(right)
         return moves.reshape(*pose.nodes.shape, -1)
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
@@ -223,7 +232,7 @@ class Simulation:
         return self._last[1] if self._last is not None and self._last[0] is pose else None
 
     def _approach(self, goal: Vector, start: SolvedPose | None) -> NewtonResult:
-        """At once; failing that in load steps from `start`, and failing that from rest."""
+        """At once; failing that in load steps from `start`, then from rest, and last by patience alone."""
         rest, idle = self.robot.body.mesh.nodes, np.zeros_like(goal)
         begin = start.nodes if start else rest
         known = self._known_stiffness(start) if start else self._rest_stiffness
@@ -233,31 +242,51 @@ class Simulation:
             result = self._in_steps(begin, start.contractions, goal, known)
             spent += result.iterations
         if not result.converged:
-            result = self._in_steps(rest, idle, goal, self._rest_stiffness)
+            result = self._in_steps(rest, idle, goal, self._rest_stiffness, from_rest=True)
             spent += result.iterations
-        return replace(result if result.converged else direct, iterations=spent)
+        if not result.converged:
+            result = self._minimise(rest, goal, self._rest_stiffness)
+            spent += result.iterations
+            result = min(result, direct, key=lambda found: found.residual)
+        return replace(result, iterations=spent)
 
-    def _in_steps(self, nodes: Nodes, begin: Vector, goal: Vector, stiffness: Stiffness | None) -> NewtonResult:
+    def _in_steps(
+        self, nodes: Nodes, begin: Vector, goal: Vector, stiffness: Stiffness | None, *, from_rest: bool = False
+    ) -> NewtonResult:
         """By load steps that are halved where one fails and doubled where not; the last failure if they get too small.
 
-        A step on the way need not end sharp.
+        A step on the way need not end sharp. From rest the weight grows with the contractions.
         """
-        done, step, spent, buckled = 0.0, _FIRST_STEP, 0, False
-        while True:
+        done, step, spent = 0.0, _FIRST_STEP, 0
+        result, last = None, False
+        for _ in range(_MOST_STEPS):
             share = min(done + step, 1.0)
             last = share == 1.0
             iterations, tolerance = (None, None) if last else (_DIRECT_ITERATIONS, _LOOSE)
             controls = goal if last else begin + share * (goal - begin)
-            result = self._minimise(nodes, controls, stiffness, iterations=iterations, tolerance=tolerance)
+            assembly = self._lighter(share) if from_rest else self.assembly
+            result = self._minimise(
+                nodes, controls, stiffness, iterations=iterations, tolerance=tolerance, assembly=assembly
+            )
             spent += result.iterations
-            if result.converged:
-                buckled |= result.buckled
             if result.converged and not last:
                 nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
                 continue
             step *= 0.5
             if result.converged or step < _SMALLEST_STEP:
-                return replace(result, iterations=spent, buckled=buckled)
+                break
+        assert result is not None
+        return replace(result, iterations=spent, reason=result.reason if last else Reason.ITERATION_LIMIT)
+
+    def _lighter(self, share: float) -> Assembly:
+        """The physics with a share of the weight."""
+        energies = [
+            WeightEnergy(self.robot.body.mesh.nodes, share * energy.forces)
+            if isinstance(energy, WeightEnergy)
+            else energy
+            for energy in self.assembly.energies
+        ]
+        return self.assembly.with_energies(energies)
 
     def _minimise(
         self,
@@ -267,15 +296,16 @@ class Simulation:
         *,
         iterations: int | None = None,
         tolerance: float | None = None,
+        assembly: Assembly | None = None,
     ) -> NewtonResult:
-        """Newton with the simulation's options, or with fewer iterations or a looser tolerance."""
+        """Newton with the simulation's options and physics, or fewer iterations, a looser tolerance, another load."""
         options = self.options
         if iterations is not None:
             options = replace(options, iterations=min(iterations, options.iterations))
         if tolerance is not None:
             options = replace(options, tolerance=max(tolerance, options.tolerance))
         return minimise(
-            self.assembly,
+            assembly or self.assembly,
             nodes,
             contractions,
             force_scale=lambda nodes: float(self.tensions(nodes, contractions).max(initial=0.0)),
@@ -310,6 +340,9 @@ _FIRST_STEP = 0.25
 
 _LOOSE = 1e-2
 """What may be left over on the way, as a share of the largest applied force."""
+
+_MOST_STEPS = 100
+"""Load steps of one solve."""
 
 _SMALLEST_STEP = 2.0**-10
 """No load step is smaller than this share of a command."""
