@@ -1,13 +1,16 @@
 """A hand of foam, the robot in space that benchmarks are measured on: palm, five fingers, ten cables.
 
-    python benchmarks/hand_body.py [--spacing 9.755]
+    python benchmarks/hand_body.py [--spacing 9.755] [--out build/hand]
 
-prints its size, its quality and how its volume compares with that of the shape, as manifold3d meshes it.
+prints its size, its quality and how its volume compares with that of the shape, as manifold3d meshes it; with --out it
+writes the robot to a folder, an example of a robot in space.
 """
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import combinations
+from pathlib import Path
 
 from machine import machine
 
@@ -18,7 +21,8 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Elements, Nodes, Points, Vector
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.robot import Body, Cable, Marker, Pin, Point, Robot, Source, Winch, find_material
+from hydrostat.geometry.mesh_file import write_mesh
+from hydrostat.robot import Body, Cable, Marker, Pin, Point, Robot, Source, Winch, find_material, save_robot
 
 SPACING = 9.755e-3
 """Side of a cell of the lattice [m]: 916 nodes or so."""
@@ -244,11 +248,23 @@ def _inside(mesh: Mesh, points: Float[np.ndarray, "points 3"]) -> tuple[Point, .
     return tuple(tuple(float(value) for value in point) for point in locate(mesh, points).positions(mesh.nodes))
 
 
+def write_robot(robot: Robot, folder: Path) -> None:
+    """A folder with robot.toml and hand.vtu."""
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "hand.vtu"
+    write_mesh(file, robot.body.mesh, robot.body.mesh.nodes, {})
+    body = replace(robot.body, file=file.name, content=file.read_bytes())
+    save_robot(replace(robot, body=body, length_unit="m"), folder)
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--spacing", type=float, default=SPACING * 1e3, help="side of a cell of the lattice [mm]")
+    parser.add_argument("--out", type=Path, help="folder to write the robot to, for `hydrostat simulate`")
     options = parser.parse_args(arguments)
     robot = hand_robot(options.spacing * 1e-3)
+    if options.out is not None:
+        write_robot(robot, options.out)
     mesh, angles = robot.body.mesh, smallest_dihedral(robot.body.mesh.nodes, robot.body.mesh.elements)
     outside = np.abs(distance(mesh.nodes[mesh.boundary_nodes]))
     print(machine())
