@@ -110,9 +110,9 @@ class Factorisation:
         singular: whether a pivot was 0, too small or not finite; then `solve` must not be called.
     """
 
-    def __init__(self, factors: Factors | csc_array) -> None:
-        """What a back end made of a matrix, or a matrix still to be factorised by SuperLU."""
-        self._factors = SuperLUFactors(factors) if isinstance(factors, csc_array) else factors
+    def __init__(self, factors: Factors) -> None:
+        """What a back end made of a matrix."""
+        self._factors = factors
         self.negative = self._factors.negative
         self.singular = self._factors.singular
 

@@ -245,7 +245,7 @@ def test_one_off() -> None:
     _, graph = body(60, 2)
     matrix = shifted(elastic(graph, 2), 3)
     assert_right(factorise(matrix), matrix, 1e-7)
-    assert_right(Factorisation(matrix), matrix, 1e-7)
+    assert_right(factorise(matrix), matrix, 1e-7)
 
 
 def test_compiled_code_is_found_again_by_another_process() -> None:
