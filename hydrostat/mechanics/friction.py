@@ -360,7 +360,13 @@ def _relax(stretch, stiffness, smoothing, limits, starts, slips):
                 worst = max(worst, abs(force[span]))
             if worst <= noise:
                 break
-            _newton(start, end, stiffness, tangent, force, sign, step, work)
+            held = True
+            while held:  # a slip that would turn back at once stays where it is
+                held = False
+                _newton(start, end, stiffness, tangent, force, sign, step, work)
+                for span in range(start + 1, end):
+                    if sign[span] != 0.0 and slips[span] == 0.0 and step[span] * sign[span] < 0.0:
+                        sign[span], force[span], held = 0.0, 0.0, True
             length, better = 1.0, False
             for _ in range(60):
                 gain = 0.0
@@ -417,7 +423,7 @@ def _newton(start, end, stiffness, tangent, force, sign, step, work):
             step[span], before = 0.0, 0.0
             work[span] = 0.0
             continue
-        pivot = tangent[span - 1] + tangent[span] + 1e-12 * stiffness[span]
+        pivot = tangent[span - 1] + tangent[span] + 1e-6 * stiffness[span]
         right = force[span]
         if before > 0.0:
             ratio = tangent[span - 1] / before

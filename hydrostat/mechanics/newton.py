@@ -24,6 +24,7 @@ class Reason(StrEnum):
     ITERATION_LIMIT = "iteration limit reached"
     NO_DESCENT = "no step lowers the energy"
     BAD_START = "the start has an inverted element"
+    NO_BALANCE = "friction and the tensions of cables found no balance"
 
 
 @dataclass(frozen=True, kw_only=True)

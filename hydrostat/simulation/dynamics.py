@@ -221,10 +221,10 @@ class Dynamics:
         scale = 0.0
         if len(self.memory):
             scale = 2 * self.memory.modulus(step) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
-        inertia = 1e-15 * float(self.masses.max()) / step**2 * body.mesh.size
+        inertia = float(self.masses.max()) / step**2 * max(body.mesh.size, float(np.abs(body.mesh.nodes).max()))
         return RoundOff(
-            force=self._round_off.force + 1e-13 * scale / body.mesh.size + inertia,
-            energy=self._round_off.energy + 1e-15 * scale,
+            force=self._round_off.force + 1e-13 * scale / body.mesh.size + 1e-15 * inertia,
+            energy=self._round_off.energy + 1e-15 * scale + 1e-19 * inertia,
         )
 
     def _shifts(self, motion: Motion, given: PinShifts) -> Points:

@@ -131,7 +131,7 @@ class FrictionPath:
             if missing <= max(_TOLERANCE * largest, self._round_off.force) or not result.converged:
                 break
             if corrections == _CORRECTIONS:
-                result = replace(result, reason=Reason.ITERATION_LIMIT)
+                result = replace(result, reason=Reason.NO_BALANCE)
                 break
             if corrections < _NEWTON and stiffness is not None and not stiffness.singular:
                 wanted = cables.corrected(nodes, goal, stiffness)

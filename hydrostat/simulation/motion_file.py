@@ -46,7 +46,7 @@ def write_motion(
         robot: that moves.
         motions: its instants, at least one.
         folder: made if need be; the meshes go to `frames` in it.
-        frames_per_second: for the meshes: the nearest instants are taken.
+        frames_per_second: for the meshes: the first instants not before are taken.
 
     Returns:
         The paths of motion.csv and motion.pvd, the table, and the last instant.
@@ -65,7 +65,7 @@ def write_motion(
                 break
             last = motion
             seen.append(_row(robot, motion))
-            if motion.time >= len(frames) / frames_per_second - 1e-9:
+            if motion.time - seen[0][0] >= len(frames) / frames_per_second - 1e-9:
                 frames.append((motion.time, _write_frame(robot, motion, Path(part), len(frames))))
         if last is None:
             raise ValueError("a motion has at least one instant")

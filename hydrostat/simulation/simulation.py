@@ -104,6 +104,8 @@ class Simulation:
         shape = self.robot.body.mesh.nodes.shape
         if start is not None and not (start.nodes.shape == shape and np.isfinite(start.nodes).all()):
             raise InputError(f"start must be a pose of this robot with finite nodes, {shape}, not {start.nodes.shape}")
+        if start is not None and self.friction is not None and not len(start.slips):
+            raise InputError("start must be a pose of this robot with friction; it has no slips")
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
         """D nodes / d contractions at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
