@@ -1,6 +1,5 @@
 """`prepared`: a simulation whose first solve is not slowed by compiling."""
 
-import sys
 from threading import Timer
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,7 @@ def prepared(robot: "Robot") -> "Simulation":
     """The physics of a robot, after one solve; the first time on a machine this compiles the kernels."""
     from hydrostat.simulation import Simulation
 
-    word = Timer(PATIENCE, lambda: print("compiling, once for this machine: about 20 s ...", file=sys.stderr))
+    word = Timer(PATIENCE, lambda: print("compiling, once for this machine: about 20 s ..."))
     word.daemon = True
     word.start()
     try:

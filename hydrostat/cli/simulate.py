@@ -49,12 +49,13 @@ def simulate(
     from hydrostat.simulation import write_pose
 
     require_folder(out)
-    with profiled(profile, "reading and preparing"):
+    with profiled(profile, "reading"):
         loaded = load_robot(robot)
-        simulation = prepared(loaded)
     contractions = dict(contraction(text) for text in contract or [])
     for name, value in contractions.items():
         check_contraction(loaded, name, value)
+    with profiled(profile, "preparing"):
+        simulation = prepared(loaded)
     if dynamic:
         if jacobian:
             raise InputError("--jacobian: a motion has none; leave out --dynamic")
