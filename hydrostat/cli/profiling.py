@@ -20,6 +20,7 @@ PARTS = {
     "settle": "cables",
     "cable": "cables",
     "friction": "cables",
+    "chain_law": "cables",
     "friction_path": "cables",
     "turns": "cables",
     "viscous": "viscous branches",

@@ -1,15 +1,18 @@
 """Physics on plain arrays: energies, their assembly, Newton. It knows no robot."""
 
 from hydrostat.mechanics.assembly import Assembly
-from hydrostat.mechanics.cable import CableEnergy, TensionLaw
+from hydrostat.mechanics.cable import CableEnergy
+from hydrostat.mechanics.chain_law import ChainLaw
 from hydrostat.mechanics.energy import Energy, nearest_semidefinite
 from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
 from hydrostat.mechanics.fibre import FibreEnergy
-from hydrostat.mechanics.friction import ChainLaw, FrictionCableEnergy, Turns
+from hydrostat.mechanics.friction import FrictionCableEnergy
 from hydrostat.mechanics.neo_hookean import NeoHookean
 from hydrostat.mechanics.newton import NewtonOptions, NewtonResult, Reason, RoundOff, minimise
 from hydrostat.mechanics.pin import PinEnergy
 from hydrostat.mechanics.stiffness import Stiffness
+from hydrostat.mechanics.tension_law import TensionLaw
+from hydrostat.mechanics.turns import Turns
 from hydrostat.mechanics.warp import Warp
 from hydrostat.mechanics.weight import WeightEnergy
 

@@ -6,9 +6,9 @@ import numpy as np
 from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.mechanics.cable import TensionLaw
 from hydrostat.mechanics.kernel import INNER, KERNEL
 from hydrostat.mechanics.stiffness import Small
+from hydrostat.mechanics.tension_law import TensionLaw, spring
 
 
 def settle(law: TensionLaw, stretches: Vector, compliance: Small) -> Vector | None:
@@ -28,17 +28,6 @@ def settle(law: TensionLaw, stretches: Vector, compliance: Small) -> Vector | No
 
 _SETTLING = 30
 _HALVINGS = 12
-
-
-@njit(**INNER)
-@no_type_check
-def _law(k, eps, stretch):
-    """Energy, tension and its slope at one stretch; see `TensionLaw`."""
-    if stretch <= 0.0:
-        return 0.0, 0.0, 0.0
-    if stretch <= 2.0 * eps:
-        return k * stretch**3 / (12.0 * eps), k * stretch * stretch / (4.0 * eps), k * stretch / (2.0 * eps)
-    return 0.5 * k * (stretch - eps) ** 2 + k * eps * eps / 6.0, k * (stretch - eps), k
 
 
 @njit(**INNER)
@@ -80,11 +69,11 @@ def _settle(stiffness, smoothing, stretches, compliance, tensions):
     change, trial, remaining, slopes = np.empty(count), np.empty(count), stretches.copy(), np.empty(count)
     value = 0.0
     for cable in range(count):
-        value += _law(stiffness[cable], smoothing[cable], remaining[cable])[0]
+        value += spring(stiffness[cable], smoothing[cable], remaining[cable])[0]
     for _ in range(_SETTLING):
         largest = missing = 0.0
         for cable in range(count):
-            _, wanted, slopes[cable] = _law(stiffness[cable], smoothing[cable], remaining[cable])
+            _, wanted, slopes[cable] = spring(stiffness[cable], smoothing[cable], remaining[cable])
             change[cable] = wanted - tensions[cable]
             largest, missing = max(largest, wanted), max(missing, abs(change[cable]))
         if missing <= 1e-12 * largest:
@@ -109,7 +98,7 @@ def _settle(stiffness, smoothing, stretches, compliance, tensions):
                 for column in range(count):
                     yielded += compliance[row, column] * trial[column]
                 remaining[row] = stretches[row] - yielded
-                reached += 0.5 * trial[row] * yielded + _law(stiffness[row], smoothing[row], remaining[row])[0]
+                reached += 0.5 * trial[row] * yielded + spring(stiffness[row], smoothing[row], remaining[row])[0]
             if reached <= value + 1e-4 * length * slope + 1e-14 * abs(value):
                 found = True
                 break

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrostat.mechanics.friction import ChainLaw
+from hydrostat.mechanics import ChainLaw
 
 
 def test_springs_between_slack_ones_find_their_least_energy() -> None:
