@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hydrostat.cli.contractions import check_contraction
+from hydrostat.cli.places import print_places
 from hydrostat.cli.progress import progress_bar
 from hydrostat.errors import InputError
 from hydrostat.units import counted
@@ -47,10 +48,7 @@ def move(
         )
     )
     files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
-    for name, place in last.markers.items():
-        print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")
-    for index, tension in enumerate(last.tensions):
-        print(f"cable {index + 1:<10} {tension:8.3f} N")
+    print_places(last)
     fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
     print(
         f"{counted(len(table.times) - 1, 'step')} to {last.time:g} s, {spent:.1f} s of work; no node is faster than",

@@ -9,6 +9,7 @@ import typer
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.contractions import check_contraction, contraction
 from hydrostat.cli.motion import move
+from hydrostat.cli.places import print_places
 from hydrostat.cli.prepare import prepared
 from hydrostat.cli.profiling import profiled
 from hydrostat.errors import InputError
@@ -54,27 +55,24 @@ def simulate(
     contractions = dict(contraction(text) for text in contract or [])
     for name, value in contractions.items():
         check_contraction(loaded, name, value)
+    if dynamic and jacobian:
+        raise InputError("--jacobian: a motion has none; leave out --dynamic")
+    if not dynamic and (play is not None or duration is not None):
+        raise InputError("--play and --duration go with --dynamic; add it")
     with profiled(profile, "preparing"):
         simulation = prepared(loaded)
     if dynamic:
-        if jacobian:
-            raise InputError("--jacobian: a motion has none; leave out --dynamic")
         with profiled(profile, "moving"):
             files = move(simulation, contractions, out, duration=duration, step=step, ramp=ramp, play=play)
         print("Wrote " + ", ".join(str(file) for file in files))
         return
-    if play is not None or duration is not None:
-        raise InputError("--play and --duration go with --dynamic; add it")
     began = time.process_time()
     with profiled(profile, "finding the pose"):
         pose = simulation.solve(contractions, strict=False)
     seconds = time.process_time() - began
     files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
     files += _picture(simulation, pose, out)
-    for name, place in pose.markers.items():
-        print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")
-    for index, tension in enumerate(pose.tensions):
-        print(f"cable {index + 1:<10} {tension:8.3f} N")
+    print_places(pose)
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
     if pose.result.buckled:
         print("note: the body buckled on the way; it could as well have gone to another side")
