@@ -13,6 +13,10 @@ class OutlineError(InputError):
     """An outline cannot be a body: it is open, crosses itself, is empty or too thin."""
 
 
+class SurfaceError(InputError):
+    """A surface cannot be a body: it encloses nothing, is too thin for its elements, or is no surface at all."""
+
+
 class NotConvergedError(HydrostatError):
     """A solver stopped before it reached its tolerance.
 

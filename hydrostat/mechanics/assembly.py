@@ -12,7 +12,7 @@ from scipy.sparse import csc_array
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.energy import Energy
 from hydrostat.mechanics.factorisation import Analysis
-from hydrostat.mechanics.kernel import KERNEL
+from hydrostat.kernel import KERNEL
 from hydrostat.mechanics.stiffness import Stiffness
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit, types
 from numba.extending import get_cython_function_address
 
-from hydrostat.mechanics.kernel import INNER
+from hydrostat.kernel import INNER
 
 
 class Scratch(NamedTuple):

@@ -9,7 +9,7 @@ from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
-from hydrostat.mechanics.kernel import KERNEL
+from hydrostat.kernel import KERNEL
 from hydrostat.mechanics.tension_law import TensionLaw
 
 

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.mechanics.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.tension_law import TensionLaw, spring
 
 Small = Float[np.ndarray, "spans spans"]

@@ -9,7 +9,7 @@ from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
-from hydrostat.mechanics.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL
 
 
 class NeoHookean(Energy):

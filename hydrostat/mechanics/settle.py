@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.mechanics.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.stiffness import Small
 from hydrostat.mechanics.tension_law import TensionLaw, spring
 

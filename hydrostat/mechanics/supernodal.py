@@ -27,7 +27,7 @@ from hydrostat.mechanics.blas import (
     subtract_product,
     subtract_square,
 )
-from hydrostat.mechanics.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.symbolic import Tree, children
 
 BLOCK = 24

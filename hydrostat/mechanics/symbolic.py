@@ -13,7 +13,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.mechanics.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL
 
 FRONT = 1.5e-6
 ENTRY = 0.6e-9

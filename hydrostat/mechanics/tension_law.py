@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.mechanics.kernel import INNER
+from hydrostat.kernel import INNER
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,7 +10,7 @@ from numba import njit
 from hydrostat.arrays import Nodes
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.factorisation import Analysis
-from hydrostat.mechanics.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL
 
 
 class Warp:
