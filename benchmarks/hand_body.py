@@ -22,6 +22,7 @@ from hydrostat.arrays import Elements, Nodes, Points, Vector
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.mesh_file import write_mesh
+from hydrostat.geometry.quality import dihedral_angles
 from hydrostat.robot import Body, Cable, Marker, Pin, Point, Robot, Source, Winch, find_material, save_robot
 
 SPACING = 9.755e-3
@@ -90,19 +91,6 @@ def hand_robot(spacing: float = SPACING) -> Robot:
         markers=tuple(markers),
         poses={},
     )
-
-
-def smallest_dihedral(nodes: Nodes, elements: Elements) -> Vector:
-    """Smallest angle between two faces of each tetrahedron [degrees]; 0 where it is inverted."""
-    corners = nodes[elements]
-    spans = corners[:, 1:] - corners[:, :1]
-    volumes = np.linalg.det(spans)
-    inverse = np.linalg.inv(np.where(volumes[:, None, None] > 0, spans, np.eye(3)))
-    normals = np.concatenate([-inverse.sum(axis=2, keepdims=True), inverse], axis=2)
-    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
-    cosines = [-(normals[:, :, one] * normals[:, :, two]).sum(axis=1) for one, two in combinations(range(4), 2)]
-    angles = np.degrees(np.arccos(np.clip(np.max(cosines, axis=0), -1, 1)))
-    return np.where(volumes > 0, angles, 0.0)
 
 
 def surface_volume(edge: float = 2e-3) -> float:
@@ -228,7 +216,7 @@ def _moved(mesh: Mesh, goal: Nodes) -> Mesh:
     share = np.ones(len(mesh.nodes))
     for halving in range(8):
         nodes = mesh.nodes + share[:, None] * (goal - mesh.nodes)
-        flat = smallest_dihedral(nodes, mesh.elements) < LEAST_DIHEDRAL
+        flat = dihedral_angles(nodes, mesh.elements) < LEAST_DIHEDRAL
         if not flat.any():
             return Mesh(nodes, mesh.elements)
         share[mesh.elements[flat]] *= 0.5 if halving < 4 else 0.0
@@ -265,7 +253,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     robot = hand_robot(options.spacing * 1e-3)
     if options.out is not None:
         write_robot(robot, options.out)
-    mesh, angles = robot.body.mesh, smallest_dihedral(robot.body.mesh.nodes, robot.body.mesh.elements)
+    mesh, angles = robot.body.mesh, dihedral_angles(robot.body.mesh.nodes, robot.body.mesh.elements)
     outside = np.abs(distance(mesh.nodes[mesh.boundary_nodes]))
     print(machine())
     print(f"{len(mesh.nodes)} nodes, {len(mesh.elements)} elements, {len(robot.cables)} cables")

@@ -3,8 +3,8 @@
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.quality import smallest_angle
+from hydrostat.geometry.quality import dihedral_angles, smallest_angle
 from hydrostat.geometry.svg import read_svg
 from hydrostat.geometry.triangulate import triangulate
 
-__all__ = ["Anchors", "Mesh", "Outline", "locate", "read_svg", "smallest_angle", "triangulate"]
+__all__ = ["Anchors", "Mesh", "Outline", "dihedral_angles", "locate", "read_svg", "smallest_angle", "triangulate"]
