@@ -1,0 +1,75 @@
+"""`manifold`: tetrahedra whose boundary is a proper surface: every edge of it between two facets, one fan a node."""
+
+import numpy as np
+from jaxtyping import Int
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from hydrostat.arrays import Elements, Nodes
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.orient import signed_volumes
+
+_ROUNDS = 20
+
+
+def manifold(nodes: Nodes, elements: Elements) -> Mesh:
+    """The largest part that faces join, with a node of its own for each group of elements that faces join about it.
+
+    So what touches at an edge or a node only, such as two fingers, is parted. Where an edge is left between two groups
+    about it that are joined elsewhere, the smaller group goes. Nodes keep their order.
+    """
+    for _ in range(_ROUNDS):
+        elements = elements[_largest(elements)]
+        mesh = _parted(nodes, elements)
+        crowded = _crowded(mesh)
+        if not crowded.any():
+            break
+        nodes, elements = mesh.nodes, mesh.elements[~crowded]
+    return mesh
+
+
+def _joins(elements: Elements) -> Int[np.ndarray, "2 joins"]:
+    """Pairs of corners (4 x element + corner) that are the same node of a face that two elements share."""
+    corners = np.arange(elements.size).reshape(-1, 4)
+    corners = np.take_along_axis(corners, np.argsort(elements, axis=1), axis=1)
+    faces = np.concatenate([np.delete(corners, corner, axis=1) for corner in range(4)])
+    names = elements.ravel()[faces]
+    order = np.lexsort(names.T)
+    same = np.flatnonzero((names[order][1:] == names[order][:-1]).all(axis=1))
+    return np.stack([faces[order[same]].ravel(), faces[order[same + 1]].ravel()])
+
+
+def _groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarray, " count"]:
+    """Number of the group to which each of `count` things belongs that are joined in pairs."""
+    return connected_components(coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count)), directed=False)[1]
+
+
+def _largest(elements: Elements) -> Int[np.ndarray, " elements"]:
+    """Which elements are of the largest part that faces join."""
+    part = _groups(_joins(elements) // 4, len(elements))
+    return np.flatnonzero(part == np.argmax(np.bincount(part)))
+
+
+def _parted(nodes: Nodes, elements: Elements) -> Mesh:
+    """A node for every group of elements that faces join about it."""
+    group = _groups(_joins(elements), elements.size)
+    first = np.unique(group, return_index=True)[1]
+    origin = elements.ravel()[first]
+    order = np.lexsort((first, origin))
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[order] = np.arange(len(order))
+    return Mesh(nodes[origin[order]], rank[group].reshape(-1, 4))
+
+
+def _crowded(mesh: Mesh) -> np.ndarray:
+    """Which elements to leave out for edges of the boundary between more than two facets: the smaller groups there."""
+    sides = np.sort(np.concatenate([mesh.boundary[:, [0, 1]], mesh.boundary[:, [1, 2]], mesh.boundary[:, [2, 0]]]), axis=1)
+    edges, counts = np.unique(sides, axis=0, return_counts=True)
+    out = np.zeros(len(mesh.elements), dtype=bool)
+    for edge in edges[counts > 2]:
+        around = np.flatnonzero(np.isin(mesh.elements, edge).sum(axis=1) == 2)
+        group = _groups(_joins(mesh.elements[around]) // 4, len(around))
+        volumes = signed_volumes(mesh.nodes, mesh.elements[around])
+        sizes = np.bincount(group, weights=volumes)
+        out[around[group != np.argmax(sizes)]] = True
+    return out
