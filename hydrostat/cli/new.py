@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 def new(
     name: Annotated[Path, typer.Argument(metavar="NAME", help="Folder to make for the new robot.")],
     source: Annotated[
-        str, typer.Option("--from", metavar="SOURCE", help="gallery:NAME, or an SVG drawing of a closed outline.")
+        str,
+        typer.Option(
+            "--from", metavar="SOURCE", help="gallery:NAME, or a drawing of a closed outline: SVG, DXF, PNG, JPG."
+        ),
     ],
     size: Annotated[str | None, typer.Option(help='Longest side, for example "200 mm".')] = None,
     element_size: Annotated[str | None, typer.Option(help='Length of a mesh edge, for example "12 mm".')] = None,
@@ -27,8 +30,10 @@ def new(
 
     Example: hydrostat new my_starfish --from gallery:starfish
     """
+    from hydrostat.geometry.outline_file import OUTLINE_SUFFIXES, read_drawing
     from hydrostat.robot import find_risks, load_robot, save_robot, sketch_robot
 
+    notes: tuple[str, ...] = ()
     if name.exists() and (not name.is_dir() or any(name.iterdir())):
         raise InputError(f"{name}: exists already; choose another name or remove it")
     lengths = {
@@ -41,17 +46,19 @@ def new(
         _copy_gallery(source.removeprefix("gallery:"), name)
     else:
         drawing = Path(source)
-        if drawing.suffix.lower() != ".svg":
-            raise InputError(f"{source}: only SVG drawings and gallery:NAME can be read so far")
+        if drawing.suffix.lower() not in OUTLINE_SUFFIXES:
+            raise InputError(f"{source}: only gallery:NAME and SVG, DXF, PNG and JPG drawings can be read so far")
         if not drawing.is_file():
             raise InputError(f"{source}: there is no such file")
-        robot = sketch_robot(
-            drawing.read_bytes(), file=_file_name(drawing), name=name.resolve().name, material=material, **lengths
-        )
+        content, file = drawing.read_bytes(), _file_name(drawing)
+        notes = read_drawing(content, name=file, size=lengths["size"]).notes
+        robot = sketch_robot(content, file=file, name=name.resolve().name, material=material, **lengths)
         save_robot(robot, name)
     made = load_robot(name)
     _picture(made, name)
     print(f"Made {name}: {len(made.body.mesh.nodes)} nodes, poses: {', '.join(made.poses)}")
+    for note in notes:
+        print(f"drawing: {note}")
     for risk in find_risks(made):
         print(f"risky: {risk}")
     print(f"Edit {name / 'robot.toml'}; coordinates count from the middle of the drawing, see {name / 'rest.png'}")

@@ -6,18 +6,16 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from jaxtyping import Float
-from shapely import Polygon
 
-from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.outline import Outline, Ring, fault
-from hydrostat.geometry.svg_document import MOST_POINTS, SvgDocument, open_svg
+from hydrostat.errors import OutlineError
+from hydrostat.geometry.drawing import Drawing
+from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.geometry.rings import CHORD_ERROR, MOST_POINTS, body_and_holes, check_size, closed_rings, placed
+from hydrostat.geometry.svg_document import SvgDocument, open_svg
 
 if TYPE_CHECKING:
     from svgelements import Path
 
-_CHORD_ERROR = 2e-5
-_GAP = 1e-3
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError)
 
 
@@ -39,37 +37,19 @@ def read_svg(content: bytes, *, name: str, size: float | None = None) -> Outline
         OutlineError: the file is no SVG, or no body can be made of it; the message says where, in the drawing's units.
         InputError: `size` is not positive.
     """
-    if size is not None and not 0.0 < size < np.inf:
-        raise InputError(f"{name}: the size must be positive, not {size} m")
+    return svg_drawing(content, name=name, size=size).outline
+
+
+def svg_drawing(content: bytes, *, name: str, size: float | None = None) -> Drawing:
+    """Read the outline of a body, and in words what was left out; all else is as in `read_svg`."""
+    check_size(size, name)
     document = open_svg(content, name=name)
     if size is None and document.unit is None:
         raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): give its size")
-    body, holes = _body_and_holes(_closed_rings(document, name), name)
-    return _placed(body, holes, document.unit, size)
-
-
-def _closed_rings(document: SvgDocument, name: str) -> list[Ring]:
-    """The closed rings of a drawing in its own units, largest box first."""
-    rings, open_lines = [], []
-    count = 0
-    for line, closed in _lines(document, name):
-        count += len(line)
-        if count > MOST_POINTS:
-            raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing")
-        if not np.isfinite(line).all():
-            raise OutlineError(f"{name}: a coordinate is not a finite number: save the drawing again")
-        extent = float(np.ptp(line, axis=0).max())
-        closed = closed or float(np.linalg.norm(line[0] - line[-1])) <= _GAP * extent
-        (rings if closed else open_lines).append((extent, line))
-    largest = max((extent for extent, _ in rings), default=0.0)
-    extent, line = max(open_lines, key=lambda pair: pair[0], default=(0.0, np.zeros((2, 2))))
-    if extent > largest:
-        start, end = _place(line[0]), _place(line[-1])
-        gap = float(np.linalg.norm(line[0] - line[-1]))
-        raise OutlineError(f"{name}: the outline is open between {start} and {end}, a gap of {gap:.4g}: close the path")
-    if largest == 0.0:
-        raise OutlineError(f"{name}: no closed shape: draw the outline of the body as one closed path")
-    return [line for extent, line in rings if extent > 0.0]
+    rings, notes = closed_rings(_lines(document, name), name)
+    body, holes = body_and_holes(rings, name)
+    across, down = document.unit or (1.0, 1.0)
+    return Drawing(placed(body, holes, (across, -down), size), notes)
 
 
 def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
@@ -96,7 +76,7 @@ def _flatten(path: "Path") -> Ring:
         return np.zeros((0, 2))
     if not np.isfinite(box).all():
         return np.full((2, 2), np.nan)
-    tolerance = _CHORD_ERROR * max(box[2] - box[0], box[3] - box[1]) or 1.0
+    tolerance = CHORD_ERROR * max(box[2] - box[0], box[3] - box[1]) or 1.0
     pieces = [np.zeros((0, 2))]
     for segment in path:
         if type(segment).__name__ == "Move":
@@ -121,61 +101,3 @@ def _chords(segment: Any, tolerance: float) -> int:
         knots = [complex(point) for point in (segment.start, segment.control1, segment.control2, segment.end)]
         bend = 6.0 * max(abs(a - 2 * b + c) for a, b, c in zip(knots, knots[1:], knots[2:], strict=False))
     return int(min(max(np.ceil(np.sqrt(bend / (8.0 * tolerance))), 1), MOST_POINTS))
-
-
-MOST_SHAPES = 200
-"""A drawing may have this many closed shapes: the body and its holes."""
-
-
-def _body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
-    """The largest ring, and the rings inside it."""
-    shapes = []
-    for ring in rings:
-        polygon = Polygon(ring) if len(ring) >= 3 else None
-        if polygon is not None and not polygon.exterior.is_simple:
-            what, point = fault(polygon) or ("crosses itself", ring[0])
-            raise OutlineError(f"{name}: the outline {what} at {_place(point)}: redraw it there")
-        if polygon is not None and polygon.area > 0.0:
-            shapes.append(polygon)
-    if not shapes:
-        raise OutlineError(f"{name}: the outline has no area: draw the body as one closed path")
-    if len(shapes) > MOST_SHAPES:
-        raise OutlineError(f"{name}: has {len(shapes)} closed shapes, more than {MOST_SHAPES}: leave out some holes")
-    shapes.sort(key=lambda shape: shape.area, reverse=True)
-    body, holes = shapes[0], []
-    for shape in shapes[1:]:
-        if body.disjoint(shape):
-            raise OutlineError(
-                f"{name}: a second closed shape lies outside the body at {_place(shape.exterior.coords[0])}: "
-                "unite the shapes into one or delete it"
-            )
-        if any(shape.equals(other) for other in (body, *holes)):
-            continue
-        inside = next((hole for hole in holes if hole.contains(shape)), None)
-        if inside is not None:
-            raise OutlineError(
-                f"{name}: a closed shape at {_place(shape.exterior.coords[0])} lies inside a hole and so hangs on "
-                "nothing: delete it, or the hole"
-            )
-        crossing = next((other for other in (body, *holes) if other.exterior.intersects(shape.exterior)), None)
-        if crossing is not None:
-            point = crossing.exterior.intersection(shape.exterior).representative_point()
-            raise OutlineError(f"{name}: a hole crosses the outline at {_place((point.x, point.y))}: move it inside")
-        holes.append(shape)
-    return np.array(body.exterior.coords), [np.array(hole.exterior.coords) for hole in holes]
-
-
-def _placed(body: Ring, holes: list[Ring], unit: tuple[float, float] | None, size: float | None) -> Outline:
-    """The outline in metres, y up, its box centred at the origin."""
-    low, high = body.min(axis=0), body.max(axis=0)
-    scale = np.array(unit or (1.0, 1.0))
-    if size is not None:
-        scale = scale * size / float(((high - low) * scale).max())
-    scale = scale * [1.0, -1.0]
-    middle = 0.5 * (low + high)
-    return Outline((body - middle) * scale, tuple((hole - middle) * scale for hole in holes))
-
-
-def _place(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:
-    """A point of the drawing in words."""
-    return f"({point[0]:.4g}, {point[1]:.4g})"

@@ -6,12 +6,10 @@ from xml.etree import ElementTree
 from xml.parsers import expat
 
 from hydrostat.errors import OutlineError
+from hydrostat.geometry.rings import MOST_POINTS
 
 MOST_BYTES = 20_000_000
 """A drawing larger than this is refused."""
-
-MOST_POINTS = 200_000
-"""A drawing with more points, counting what it repeats, is refused."""
 
 _MOST_DEPTH = 200
 _NUMBER = re.compile(r"\d+\.?\d*|\.\d+")

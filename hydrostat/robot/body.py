@@ -95,16 +95,16 @@ def outline_body(
     size: float | None = None,
     volume: Volume = Volume.ELEMENT,
 ) -> Body:
-    """Body from the bytes of an SVG drawing.
+    """Body from the bytes of a drawing or picture: SVG, DXF, PNG or JPG by the name of the file.
 
     Raises:
         InputError: the drawing is no closed outline, or a number is out of its range.
     """
-    from hydrostat.geometry.svg import read_svg
+    from hydrostat.geometry.outline_file import read_outline
     from hydrostat.geometry.triangulate import triangulate
 
     _check_lengths(size=size, element_size=element_size)
-    outline = read_svg(content, name=file, size=size)
+    outline = read_outline(content, name=file, size=size)
     try:
         mesh = triangulate(outline, element_size)
     except OutlineError:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.geometry.svg import read_svg
+from hydrostat.geometry.outline_file import read_outline
 from hydrostat.robot.body import outline_body
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.material import find_material
@@ -21,16 +21,16 @@ def sketch_robot(
     thickness: float | None = None,
     material: str = "polyester fibre",
 ) -> Robot:
-    """Robot from the bytes of an SVG drawing, with sensible numbers where none are given.
+    """Robot from the bytes of a drawing (SVG, DXF, PNG, JPG), with sensible numbers where none are given.
 
     It is held round its deepest point; one marker sits near the point of the body farthest from there, with a pose
     that bends it sideways. Everything is meant to be changed.
 
     Args:
         content: the drawing.
-        file: name of the drawing in the robot's folder.
+        file: name of the drawing in the robot's folder; its ending says of what kind it is.
         name: of the robot.
-        size: longest side of the bounding box [m]; None: as the drawing says.
+        size: longest side of the bounding box [m]; None: as the drawing says, if it does.
         element_size: [m]; None: about 250 nodes.
         thickness: [m]; None: a seventh of the size.
         material: a name from the table.
@@ -41,7 +41,7 @@ def sketch_robot(
     from shapely import Point as ShapelyPoint
     from shapely import maximum_inscribed_circle
 
-    outline = read_svg(content, name=file, size=size)
+    outline = read_outline(content, name=file, size=size)
     body = outline_body(
         content,
         file=file,
