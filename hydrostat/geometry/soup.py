@@ -1,0 +1,105 @@
+"""`Soup`: what a surface file says, before it is a `Surface`; and what all readers of such files hold to."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from io import BytesIO
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.errors import SurfaceError
+
+MOST_BYTES = 120_000_000
+"""A surface file larger than this, or that unpacks to more, is refused."""
+
+MOST_TRIANGLES = 2_000_000
+"""A surface with more triangles is refused; of vertices it may have three times as many."""
+
+_LONGEST_LINE = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Soup:
+    """Triangles as they stand in a file.
+
+    Attributes:
+        vertices: places in the file's own unit.
+        triangles: indices of three vertices each, as declared and thus perhaps wrong.
+        unit: metres of one coordinate, None where the file has no unit.
+    """
+
+    vertices: Float[np.ndarray, "vertices 3"]
+    triangles: Int[np.ndarray, "triangles 3"]
+    unit: float | None = None
+
+
+def check_count(name: str, what: str, count: int, *, room: float, most: int = MOST_TRIANGLES) -> None:
+    """Refuse a declared count before anything is made of that size.
+
+    Args:
+        name: of the file.
+        what: is counted.
+        count: as declared.
+        room: for how many of them the file has bytes.
+        most: how many are allowed.
+
+    Raises:
+        SurfaceError: the count is negative, too large, or more than the file can hold.
+    """
+    if count < 0 or count > room:
+        raise SurfaceError(
+            f"{name}: declares {count} {what}, but has bytes for {max(int(room), 0)} at most: "
+            "the file is damaged or cut short, export or copy it again"
+        )
+    if count > most:
+        raise SurfaceError(
+            f"{name}: has {count} {what}, at most {most} are read: simplify the surface, such as to 100000 triangles"
+        )
+
+
+def lines(content: bytes, name: str) -> Iterator[tuple[int, bytes]]:
+    """Lines of a text file with their numbers, one after the other, so that no list of all is ever made.
+
+    Raises:
+        SurfaceError: a line is too long for text, as in a file that is none.
+    """
+    if b"\r" in content:
+        content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    for number, line in enumerate(BytesIO(content), start=1):
+        if len(line) > _LONGEST_LINE:
+            raise SurfaceError(f"{name}: line {number} is longer than {_LONGEST_LINE} characters: export it again")
+        yield number, line
+
+
+def fans(
+    corners: Int[np.ndarray, " corners"], counts: Int[np.ndarray, " polygons"], vertices: Float[np.ndarray, "_ 3"]
+) -> Int[np.ndarray, "triangles 3"]:
+    """Triangles of polygons, each a fan about its first corner; of four corners, about the one that folds nothing.
+
+    Args:
+        corners: vertex indices of all polygons, one after the other.
+        counts: corners of each polygon; those with fewer than three are left out.
+        vertices: what the indices count; indices out of range are let through, for others to refuse.
+    """
+    starts = np.cumsum(counts) - counts
+    fours = np.flatnonzero(counts == 4)
+    if len(fours):
+        corners = corners.copy()
+        places = starts[fours, None] + np.arange(4)
+        quads = corners[places]
+        whole = ((quads >= 0) & (quads < len(vertices))).all(axis=1)
+        turned = quads[whole]
+        folded = _folds(vertices[turned])
+        turned[folded] = np.roll(turned[folded], -1, axis=1)
+        corners[places[whole]] = turned
+    pieces = np.maximum(counts - 2, 0)
+    first = np.repeat(starts, pieces)
+    step = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    return corners[np.stack([first, first + step + 1, first + step + 2], axis=1)].astype(np.int64)
+
+
+def _folds(quads: Float[np.ndarray, "quads 4 3"]) -> np.ndarray:
+    """Whether the two halves of a quad, cut from its first corner to its third, look different ways."""
+    sides = quads[:, 1:] - quads[:, :1]
+    with np.errstate(all="ignore"):
+        return np.einsum("qd,qd->q", np.cross(sides[:, 0], sides[:, 1]), np.cross(sides[:, 1], sides[:, 2])) < 0.0
