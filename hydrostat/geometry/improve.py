@@ -90,13 +90,13 @@ def _planes(
     return normals.reshape(len(facets), -1, 3), offsets.reshape(len(facets), -1)
 
 
-_OTHERS = np.array([[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]])
-"""The other corners of a tetrahedron, so turned that (x - p) . ((q - p) x (r - p)) = 6 V."""
+_OTHERS = ((1, 3, 2), (0, 2, 3), (0, 3, 1), (0, 1, 2))
+"""The other corners p, q, r of a tetrahedron, so turned that (x - p) . ((q - p) x (r - p)) = 6 V."""
 
 
 @njit(**INNER)
 @no_type_check
-def _shape(x, node, elements, nodes, corner, others):
+def _shape(x, elements, nodes, corner, others):
     """Shape of a tetrahedron with a node at x, and what its derivatives need; infinite if it is turned over."""
     element, place = corner // 4, corner % 4
     p = nodes[elements[element, others[place, 0]]]
@@ -124,7 +124,7 @@ def _energy(x, node, nodes, elements, start, star, facets, begin, ring, normals,
     """What the tetrahedra and outer faces at a node sum up to when it is at x."""
     total = 0.0
     for place in range(start[node], start[node + 1]):
-        value = _shape(x, node, elements, nodes, star[place], others)[0]
+        value = _shape(x, elements, nodes, star[place], others)[0]
         if value == np.inf:
             return np.inf
         total += value**power
@@ -154,7 +154,7 @@ def _derivatives(
     total = 0.0
     first = np.empty(3)
     for place in range(start[node], start[node + 1]):
-        value, volume, squares, nx, ny, nz, sx, sy, sz = _shape(x, node, elements, nodes, star[place], others)
+        value, volume, squares, nx, ny, nz, sx, sy, sz = _shape(x, elements, nodes, star[place], others)
         if value == np.inf:
             return np.inf
         total += value**power
@@ -185,9 +185,7 @@ def _derivatives(
             for i in range(3):
                 slope[i] += 2.0 * pull * gap * weight * normals[facet, sample, i]
                 for j in range(3):
-                    bend[i, j] += (
-                        2.0 * pull * weight * weight * normals[facet, sample, i] * normals[facet, sample, j]
-                    )
+                    bend[i, j] += 2.0 * pull * weight * weight * normals[facet, sample, i] * normals[facet, sample, j]
     return total
 
 
@@ -195,7 +193,7 @@ def _derivatives(
 @no_type_check
 def _sweep(nodes, elements, start, star, facets, begin, ring, normals, offsets, samples, power, pull):
     """Each node in turn takes a step of Newton on what it alone can change, halved until that falls."""
-    others = np.array([[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]])
+    others = np.array(_OTHERS)
     slope, bend, x = np.empty(3), np.empty((3, 3)), np.empty(3)
     for node in range(nodes.shape[0]):
         before = _derivatives(

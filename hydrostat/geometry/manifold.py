@@ -9,8 +9,6 @@ from hydrostat.arrays import Elements, Nodes
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.orient import signed_volumes
 
-_ROUNDS = 20
-
 
 def manifold(nodes: Nodes, elements: Elements) -> Mesh:
     """The largest part that faces join, with a node of its own for each group of elements that faces join about it.
@@ -18,13 +16,10 @@ def manifold(nodes: Nodes, elements: Elements) -> Mesh:
     So what touches at an edge or a node only, such as two fingers, is parted. Where an edge is left between two groups
     about it that are joined elsewhere, the smaller group goes. Nodes keep their order.
     """
-    for _ in range(_ROUNDS):
-        elements = elements[_largest(elements)]
-        mesh = _parted(nodes, elements)
-        crowded = _crowded(mesh)
-        if not crowded.any():
-            break
-        nodes, elements = mesh.nodes, mesh.elements[~crowded]
+    mesh = _parted(nodes, elements[_largest(elements)])
+    while (crowded := _crowded(mesh)).any():
+        left = mesh.elements[~crowded]
+        mesh = _parted(mesh.nodes, left[_largest(left)])
     return mesh
 
 
@@ -63,7 +58,9 @@ def _parted(nodes: Nodes, elements: Elements) -> Mesh:
 
 def _crowded(mesh: Mesh) -> np.ndarray:
     """Which elements to leave out for edges of the boundary between more than two facets: the smaller groups there."""
-    sides = np.sort(np.concatenate([mesh.boundary[:, [0, 1]], mesh.boundary[:, [1, 2]], mesh.boundary[:, [2, 0]]]), axis=1)
+    sides = np.sort(
+        np.concatenate([mesh.boundary[:, [0, 1]], mesh.boundary[:, [1, 2]], mesh.boundary[:, [2, 0]]]), axis=1
+    )
     edges, counts = np.unique(sides, axis=0, return_counts=True)
     out = np.zeros(len(mesh.elements), dtype=bool)
     for edge in edges[counts > 2]:

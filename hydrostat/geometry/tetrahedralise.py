@@ -1,7 +1,13 @@
 """`tetrahedralise`: good tetrahedra from a closed surface."""
 
 import numpy as np
+from jaxtyping import Bool
 
+from hydrostat.arrays import Elements, Nodes, Points
+from hydrostat.errors import InputError
+from hydrostat.geometry.bisect import bisect
+from hydrostat.geometry.edges import PAIRS
+from hydrostat.geometry.fit import fit
 from hydrostat.geometry.improve import Stage, improve
 from hydrostat.geometry.lattice import MEAN_EDGE, lattice
 from hydrostat.geometry.manifold import manifold
@@ -10,16 +16,90 @@ from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.stuffing import stuff
 from hydrostat.geometry.surface import Surface
 
+CLOSE = 0.25
+"""The boundary of a mesh should be as near to the surface, in element sizes."""
+
 _STAGES = (
     Stage(rounds=4, sweeps=3, power=1.0, pull=30.0),
     Stage(rounds=6, sweeps=3, power=2.0, pull=300.0),
     Stage(rounds=8, sweeps=3, power=4.0, pull=5000.0),
 )
+"""From free to firm: first the shapes, then the surface."""
+
+_FINER = 3
+"""Rounds of finer elements where the boundary is not close."""
+
+_BISECTIONS = 3
+"""As many halve the edges of the lattice."""
+
+_FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
+"""Elements, and cells of the lattice over the bounding box: what fits into memory."""
 
 
 def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
-    """Fill a closed surface with tetrahedra."""
+    """Fill a closed surface with tetrahedra.
+
+    A lattice is cut along the surface (`stuffing.py`), then its nodes move until the elements are well shaped and their
+    outer faces lie on the surface (`improve.py`). Where that fails, as the body or a gap is thinner than the elements,
+    they are made smaller. The same surface and size give the same mesh.
+
+    Args:
+        surface: closed, oriented outward.
+        element_size: wanted mean length of the edges [m].
+
+    Raises:
+        InputError: so large that the body has too few elements, or so small that it has too many.
+    """
     solid = Solid(surface)
+    _check(surface, element_size)
     cell = element_size / MEAN_EDGE
-    nodes, elements = stuff(solid, *lattice(surface.box, cell), cell=cell)
-    return improve(manifold(nodes, elements), solid, element_size=element_size, stages=_STAGES)
+    nodes, elements = _near(solid, *lattice(surface.box, cell), cell)
+    mesh = _stuffed(solid, nodes, elements, element_size)
+    for finer in range(_FINER):
+        found = fit(mesh, solid, element_size / 3)
+        far = found.places[found.distances > CLOSE * element_size]
+        if not len(far):
+            break
+        for _ in range(_BISECTIONS):
+            nodes, elements = bisect(nodes, elements, _about(nodes, elements, far, element_size / 2**finer))
+        mesh = _stuffed(solid, nodes, elements, element_size)
+    return mesh
+
+
+def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> Mesh:
+    """A good mesh from a lattice."""
+    return improve(manifold(*stuff(solid, nodes, elements)), solid, element_size=element_size, stages=_STAGES)
+
+
+def _check(surface: Surface, element_size: float) -> None:
+    """Refuse element sizes that make too few or too many elements."""
+    if not 0.0 < element_size < np.inf:
+        raise InputError(f"the element size must be positive, not {element_size} m")
+    count = 8.5 * surface.volume / element_size**3
+    size = f"elements of {1e3 * element_size:.4g} mm"
+    if count < _FEWEST:
+        most = 0.9e3 * element_size * (count / _FEWEST) ** (1 / 3)
+        body = f"a body of {1e6 * surface.volume:.3g} cm^3"
+        raise InputError(f"{size} are too large for {body}: take {most:.2g} mm or less")
+    cells = float(np.prod(np.ptp(surface.box, axis=0) / element_size + 3))
+    if count > _MOST or cells > _MOST_CELLS:
+        least = 1.1e3 * element_size * max(count / _MOST, cells / _MOST_CELLS) ** (1 / 3)
+        raise InputError(f"{size} would be about {count:.2g}, at most {_MOST} are made: take {least:.2g} mm or more")
+
+
+def _near(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Nodes, Elements]:
+    """Those elements of which some node is inside or near, and the nodes they have."""
+    near = solid.distances(nodes)
+    used, kept = np.unique(elements[(near[elements] < cell).any(axis=1)], return_inverse=True)
+    return nodes[used], kept.reshape(-1, 4)
+
+
+def _about(nodes: Nodes, elements: Elements, places: Points, size: float) -> Bool[np.ndarray, " elements"]:
+    """Which elements about some places [m] have an edge longer than 0.6 of a size [m]."""
+    from scipy.spatial import KDTree
+
+    corners = nodes[elements]
+    middles = corners.mean(axis=1)
+    longest = np.max([np.linalg.norm(corners[:, one] - corners[:, two], axis=1) for one, two in PAIRS], axis=0)
+    distances = KDTree(places).query(middles, distance_upper_bound=size)[0]
+    return (distances < size) & (longest > 0.6 * size)
