@@ -43,7 +43,7 @@ def move(
     files += write_pose(simulation, last.pose, out, extra=extra)
     files.append(
         save_png(
-            draw_pose(simulation.robot, last.pose, title=f"{simulation.robot.name} after {last.time:g} s"),
+            draw_pose(simulation.robot, last.pose, note=f"after {last.time:g} s of motion"),
             out / "pose.png",
         )
     )

@@ -1,6 +1,6 @@
 """`Camera`: from where a body in space is seen, without perspective, so that lengths stay true."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
@@ -19,36 +19,64 @@ TURN = 58.0
 of the length, its cosine shows that there is depth."""
 
 
+FROM_ABOVE = 0.97
+"""What a view from above is worth beside one from the side that shows as much: there, up is not to be seen."""
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """An eye far away; z is up in every picture, unless seen from above.
+    """An eye far away; what is up stands upright in every picture, unless seen from above.
 
     Attributes:
         axes: unit vectors to the right, up and towards the eye, (3, 3), one row each.
+        up: unit vector of what is up for the body, where the sky is.
     """
 
     axes: Float[np.ndarray, "3 3"]
+    up: Float[np.ndarray, " 3"] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
 
     @classmethod
-    def towards(cls, eye: Float[np.ndarray, " 3"]) -> Self:
-        """A camera in the direction `eye` from the body; x runs to the right if that is straight above."""
-        near = eye / np.linalg.norm(eye)
+    def towards(cls, eye: Float[np.ndarray, " 3"], *, up: Float[np.ndarray, " 3"] | None = None) -> Self:
+        """A camera in the direction `eye` from the body; `up` is up, z if left out.
+
+        Where z is up and the eye straight above, x runs to the right.
+        """
+        turn = upright(np.array([0.0, 0.0, 1.0]) if up is None else up)
+        near = turn @ eye / np.linalg.norm(eye)
         right = np.array([-near[1], near[0], 0.0])
         right = np.array([1.0, 0.0, 0.0]) if np.linalg.norm(right) < 1e-9 else right / np.linalg.norm(right)
-        return cls(np.array([right, np.cross(near, right), near]))
+        return cls(np.array([right, np.cross(near, right), near]) @ turn, turn[2])
+
+    @property
+    def sky(self) -> Float[np.ndarray, " 3"]:
+        """The way up as the camera sees it."""
+        return self.axes @ self.up
 
     def see(self, points: Spots) -> Spots:
         """Points [m] as they are seen: to the right, up and towards the eye [mm]."""
         return MILLIMETRES * points @ self.axes.T
 
 
-def three_quarter(shape: Spots, shown: Spots) -> Camera:
+def upright(up: Float[np.ndarray, " 3"]) -> Float[np.ndarray, "3 3"]:
+    """The shortest turn that makes `up` point along z, as a matrix; about x where it is straight down."""
+    way = up / np.linalg.norm(up)
+    if way[2] < -1 + 1e-9:
+        return np.diag([1.0, -1.0, -1.0])
+    x, y, z = way
+    share = 1 / (1 + z)
+    return np.array([[1 - x * x * share, -x * y * share, -x], [-x * y * share, 1 - y * y * share, -y], [x, y, z]])
+
+
+def three_quarter(shape: Spots, shown: Spots, up: Float[np.ndarray, " 3"] | None = None) -> Camera:
     """The camera that shows the length of a body, some of its depth, and that side of it where most is to be seen.
 
     Args:
         shape: points all over the body at rest [m].
         shown: winches, cable points and markers [m]; may be empty.
+        up: what is up; z if left out.
     """
+    turn = np.eye(3) if up is None else upright(up)
+    shape, shown = shape @ turn.T, shown @ turn.T
     middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
     sides = np.ptp(shape, axis=0)
     flat = np.clip(1 - 2 * sides[2] / max(min(sides[0], sides[1]), 1e-12), 0, 1)
@@ -58,30 +86,39 @@ def three_quarter(shape: Spots, shown: Spots) -> Camera:
     eyes = np.column_stack([np.cos(height) * np.cos(turns), np.cos(height) * np.sin(turns), np.full(4, np.sin(height))])
     facing = (shown - middle).mean(axis=0) @ eyes.T / max(sides.max(), 1e-12) if len(shown) else np.zeros(4)
     score = np.round(facing, 3) - 0.02 * np.round(eyes[:, 1], 3) + 0.005 * np.round(eyes[:, 0], 3)
-    return Camera.towards(eyes[int(np.argmax(score))])
+    return Camera.towards(eyes[int(np.argmax(score))] @ turn, up=turn[2])
 
 
-def along_an_axis(shape: Spots, shown: Spots, ways: Spots) -> Camera:
+def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray, " 3"] | None = None) -> Camera:
     """The camera along x, y or z that shows most of the body and of where its points go.
 
     Args:
         shape: points all over the body [m].
         shown: winches, cable points and markers [m], which decide from which side; may be empty.
         ways: how points of the body move [m].
+        up: what is up; z if left out. Of x, y and z, whichever is nearest to it stands upright.
     """
+    turn = np.eye(3) if up is None else upright(_nearest_axis(up))
+    shape, shown, ways = shape @ turn.T, shown @ turn.T, ways @ turn.T
     sides = np.ptp(shape, axis=0)
     moved = (ways**2).sum(axis=0)
     scores = []
     for axis in range(3):
         others = [other for other in range(3) if other != axis]
         share = moved[others].sum() / moved.sum() if moved.sum() > 0 else 1.0
-        scores.append(share * np.sqrt(np.prod(sides[others])))
+        scores.append(share * np.sqrt(np.prod(sides[others])) * (FROM_ABOVE if axis == 2 else 1.0))
     axis = int(np.argmax(np.round(np.array(scores) / max(scores), 4)))
     middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
     lean = float((shown - middle).mean(axis=0)[axis]) if len(shown) else 0.0
     usual = (1.0, -1.0, 1.0)[axis]
     sign = np.sign(lean) if abs(lean) > 0.02 * sides.max() and axis != 2 else usual
-    return Camera.towards(sign * np.eye(3)[axis])
+    return Camera.towards(sign * np.eye(3)[axis] @ turn, up=turn[2])
+
+
+def _nearest_axis(way: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " 3"]:
+    """The one of x, y, z and their opposites that is nearest to a way; z if several are."""
+    axis = 2 - int(np.argmax(np.round(np.abs(way[::-1]) / np.linalg.norm(way), 9)))
+    return np.sign(way[axis]) * np.eye(3)[axis]
 
 
 def _long_way(points: Float[np.ndarray, "_ 2"]) -> float:

@@ -5,14 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.geometry.anchors import locate
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.palette import DARK, FELT, LIGHT, mix, winch_colours
 from hydrostat.plot.places import Place, Places, Spread
+from hydrostat.plot.rigging import Rigging
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
 from hydrostat.plot.surface import Run
 from hydrostat.robot import Mount, Robot, Winch
-from hydrostat.robot.point import Point
 
 SHARES = np.linspace(0.3, 0.9, 13)
 """Shares of a cable's length where its number may stand."""
@@ -20,21 +19,12 @@ SHARES = np.linspace(0.3, 0.9, 13)
 
 def cable_points(robot: Robot, nodes: Nodes) -> list[Spread]:
     """Where the points of each cable are [m] when the nodes are at `nodes` [m]."""
-    points = [point for cable in robot.cables for point in cable.points]
-    fixed = [
-        place == 0 and robot.winch(cable.winch).mount is Mount.WORLD
-        for cable in robot.cables
-        for place in range(len(cable.points))
-    ]
-    moved = _moved(robot, points, fixed, nodes)
-    ends = np.cumsum([len(cable.points) for cable in robot.cables])
-    return np.split(moved, ends[:-1]) if robot.cables else []
+    return Rigging(robot).cables(nodes)
 
 
 def winch_points(robot: Robot, nodes: Nodes) -> Points:
     """Where each winch is [m] when the nodes are at `nodes` [m]."""
-    fixed = [winch.mount is Mount.WORLD for winch in robot.winches]
-    return _moved(robot, [winch.at for winch in robot.winches], fixed, nodes)
+    return Rigging(robot).winches(nodes)
 
 
 def spool_size(winch: Winch, scale: float) -> float:
@@ -74,11 +64,19 @@ def draw_cables(
         _draw_stopper(sheet, run, colour, width)
 
 
-def draw_winches(sheet: Sheet, robot: Robot, centres: Places, fades: Vector) -> None:
-    """A spool for each winch at its centre [mm], faded where the body covers it."""
+def draw_winches(
+    sheet: Sheet, robot: Robot, centres: Places, fades: Vector, *, contractions: Vector | None = None
+) -> None:
+    """A spool for each winch at its centre [mm], faded where the body covers it; a hand tells how far it has turned.
+
+    There are hands only where `contractions` [m] are given.
+    """
     colours = winch_colours(robot)
-    for winch, centre, fade in zip(robot.winches, centres, fades, strict=True):
+    for index, (winch, centre, fade) in enumerate(zip(robot.winches, centres, fades, strict=True)):
         _draw_spool(sheet, winch, centre, colours[winch.name], float(fade))
+        if contractions is not None:
+            turn = float(contractions[index]) / winch.spool_radius
+            _draw_hand(sheet, winch, centre, turn, _faded(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
 
 
 def name_winches(labels: Labels, robot: Robot, centres: Places, notes: Sequence[str] = ()) -> None:
@@ -125,14 +123,6 @@ def _beads(runs: list[Places], gap: float) -> list[Place]:
     return beads
 
 
-def _moved(robot: Robot, points: Sequence[Point], fixed: Sequence[bool], nodes: Nodes) -> Points:
-    """Points [m] that the body takes with it, but for those that are fixed in space."""
-    places = np.array(points, dtype=float).reshape(len(points), robot.body.mesh.dim)
-    moving = ~np.array(fixed, dtype=bool)
-    places[moving] = locate(robot.body.mesh, places[moving]).positions(nodes)
-    return places
-
-
 def _length(run: Places) -> float:
     return float(np.linalg.norm(np.diff(run, axis=0), axis=1).sum())
 
@@ -156,6 +146,13 @@ def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str, fade: fl
     sheet.dots(centre[None], size, color=colour, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
     sheet.dots(centre[None], 0.58 * size, color=mix(colour, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
     sheet.dots(centre[None], 0.2 * size, color=colour, markeredgecolor="none", zorder=order + 1.2)
+
+
+def _draw_hand(sheet: Sheet, winch: Winch, centre: Place, turn: float, colour: str, order: float) -> None:
+    """A hand on a spool, upright at rest, that goes round to the right by `turn` [rad]."""
+    reach = 0.44 * spool_size(winch, sheet.scale) * sheet.scale
+    end = centre + reach * np.array([np.sin(turn), np.cos(turn)])
+    sheet.curve(np.array([centre, end]), color=colour, linewidth=1.2, zorder=order)
 
 
 def _draw_sheath(sheet: Sheet, pipe: Places, colour: str, width: float, fade: float) -> None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hydrostat.arrays import Vector
 from hydrostat.plot.camera import Camera, along_an_axis, three_quarter
 from hydrostat.plot.compass import SIDES, draw_compass, draw_rules
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
@@ -83,7 +84,15 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
     shown = np.array([*shown, *(part.at for part in (*robot.winches, *robot.markers))], dtype=float).reshape(-1, 3)
     corners = np.concatenate([mesh.nodes[outer], *(nodes[outer] for nodes in shapes)])
     ways = corners - np.tile(mesh.nodes[outer], (1 + len(shapes), 1))
-    return [three_quarter(mesh.nodes[outer], shown), along_an_axis(corners, shown, ways)]
+    up = way_up(robot)
+    return [three_quarter(mesh.nodes[outer], shown, up), along_an_axis(corners, shown, ways, up)]
+
+
+def way_up(robot: Robot) -> Vector:
+    """What is up for a robot in space, a unit vector: against gravity; z where there is none."""
+    if robot.gravity is None or not any(robot.gravity):
+        return np.array([0.0, 0.0, 1.0])
+    return -np.array(robot.gravity) / np.linalg.norm(robot.gravity)
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,11 +68,13 @@ class SpacePane:
         robot: to draw.
         camera: that sees it.
         shift: what is added to its places on the sheet [mm].
+        dpi: pixels of the image of the body to an inch.
     """
 
     robot: Robot
     camera: Camera
     shift: Place
+    dpi: float = DPI
 
     def places(self, points: Points) -> Places:
         """Where points [m] lie on the sheet [mm]."""
@@ -86,7 +88,7 @@ class SpacePane:
         """The rest shape, as a faint shadow."""
         mesh = self.robot.body.mesh
         spots = self.camera.see(mesh.nodes)
-        image = render(spots, mesh.boundary, pixel=_pixel(sheet, spots), shaded=False)
+        image = render(spots, mesh.boundary, pixel=self._pixel(sheet, spots), shaded=False)
         rings = [ring + self.shift for ring in image.rings()]
         sheet.area(rings, facecolor=GHOST_FILL, edgecolor=GHOST, linewidth=0.8, joinstyle="round", zorder=2)
 
@@ -97,7 +99,7 @@ class SpacePane:
         body = self.robot.body.mesh
         spots = self.camera.see(nodes)
         image = render(
-            spots, body.boundary, pixel=_pixel(sheet, spots), up=self.camera.axes[:, 2], pale=0.6 * pale,
+            spots, body.boundary, pixel=self._pixel(sheet, spots), up=self.camera.sky, pale=0.6 * pale,
             held=_held(self.robot) if pins else None, lines=_density(self.robot, sheet) if mesh else 0.0,
             point=sheet.scale,
         )  # fmt: skip
@@ -113,13 +115,12 @@ class SpacePane:
         thickness = MILLIMETRES * float(np.ptp(body.nodes, axis=0).min())
         return Surface(rings, (self.camera, self.shift, image, thickness))
 
+    def _pixel(self, sheet: Sheet, spots: Spots) -> float:
+        """Side of a pixel [mm] of an image of spots [mm]."""
+        return max(72 / self.dpi * sheet.scale, float(np.sqrt(np.ptp(spots[:, :2], axis=0).prod() / MOST_PIXELS)))
+
 
 Pane = FlatPane | SpacePane
-
-
-def _pixel(sheet: Sheet, spots: Spots) -> float:
-    """Side of a pixel [mm] of an image of spots [mm]."""
-    return max(72 / DPI * sheet.scale, float(np.sqrt(np.ptp(spots[:, :2], axis=0).prod() / MOST_PIXELS)))
 
 
 def _held(robot: Robot) -> Vector:

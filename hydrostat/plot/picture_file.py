@@ -25,7 +25,7 @@ def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
 
     path = Path(path)
     buffer = io.BytesIO()
-    with _settings(), _haloed(figure):
+    with drawing(), _haloed(figure):
         figure.savefig(buffer, format="png", dpi=dpi, facecolor=PAPER, metadata={"Software": None})
     part = path.with_name(f".{path.name}.part")
     part.write_bytes(buffer.getvalue())
@@ -44,7 +44,7 @@ def inline_svg(figure: Figure, *, name: str, label: str) -> str:
     import html
 
     buffer = io.StringIO()
-    with _settings(salt=name), _sharp(figure):
+    with drawing(salt=name), _sharp(figure):
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
@@ -85,7 +85,7 @@ def _shorter(match: re.Match[str]) -> str:
 
 
 @contextmanager
-def _settings(salt: str = "hydrostat") -> Iterator[None]:
+def drawing(salt: str = "hydrostat") -> Iterator[None]:
     """Settings for drawing; a letter that the font lacks is drawn as a box, without a warning."""
     settings: Any = {
         "svg.fonttype": "none",

@@ -28,18 +28,21 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import SolvedPose
 
 
-def draw_pose(robot: Robot, pose: SolvedPose, *, title: str | None = None, width: float = WIDTH) -> Figure:
+def draw_pose(
+    robot: Robot, pose: SolvedPose, *, title: str | None = None, note: str | None = None, width: float = WIDTH
+) -> Figure:
     """A simulated pose over the ghost of the rest shape; cables coloured by tension, winches with their contraction.
 
     Args:
         robot: to draw.
-        pose: its equilibrium.
+        pose: its equilibrium, or an instant of a motion.
         title: above the picture; the robot's name if left out, nothing if empty.
+        note: below the title; whether it rests under its contractions if left out.
         width: of the picture [inch].
     """
     head = shorten(robot.name) if title is None else title
-    note = f"under the given contractions: {pose.result.reason}"
-    sheet, panes, labels = _in_pose(robot, pose, head, note, width, targets={})
+    line = _rests(pose) if note is None else note
+    sheet, panes, labels = _in_pose(robot, pose, head, line, width, targets={})
     for pane in panes:
         draw_markers(sheet, pane.named(pose.markers))
     for name, place in panes[0].named(pose.markers).items():
@@ -137,6 +140,13 @@ def _tell_tensions(
     name_winches(labels, robot, winches, [_note(contraction) for contraction in pose.contractions])
     for bead, tension in zip(beads, pose.tensions, strict=True):
         labels.place(bead, f"{tension:.1f} N" if tension > 0 else "slack", size=6.5, weight="bold", outside=0.1)
+
+
+def _rests(pose: SolvedPose) -> str:
+    """Whether a pose is an equilibrium, in words."""
+    if not pose.result.converged:
+        return f"not at rest under the given contractions: {pose.result.reason}"
+    return "at rest under the given contractions" + ("" if pose.result.stable else ", on a saddle")
 
 
 def _note(contraction: float) -> str:

@@ -1,0 +1,57 @@
+"""`Frame`: a robot at one instant of an animation."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Motion, SolvedPose
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """What is to be seen at one instant.
+
+    Attributes:
+        nodes: positions of the nodes [m].
+        tensions: of each cable [N].
+        contractions: cable taken in by each winch [m]; without, no winch is seen to turn.
+        target: the pose that is approached, whose targets are shown.
+        words: what happens, in a line.
+    """
+
+    nodes: Nodes
+    tensions: Vector
+    contractions: Vector | None = None
+    target: Pose | None = None
+    words: str = ""
+
+    @classmethod
+    def of(cls, found: SolvedPose | Motion, *, target: Pose | None = None, words: str = "") -> Self:
+        """The frame that shows an equilibrium, or an instant of a motion."""
+        return cls(
+            nodes=found.nodes, tensions=found.tensions, contractions=found.contractions, target=target, words=words
+        )
+
+
+def check_frames(robot: Robot, frames: Sequence[Frame]) -> None:
+    """Before long work begins: the frames fit the robot.
+
+    Raises:
+        InputError: no frame, or one whose numbers are too many, too few or not finite.
+    """
+    if not frames:
+        raise InputError("an animation needs at least one frame")
+    for index, frame in enumerate(frames):
+        wanted = {
+            "nodes": (frame.nodes, robot.body.mesh.nodes.shape),
+            "tensions": (frame.tensions, (len(robot.cables),)),
+            "contractions": (frame.contractions, (len(robot.winches),)),
+        }
+        for name, (values, shape) in wanted.items():
+            if values is not None and not (np.shape(values) == shape and np.isfinite(values).all()):
+                raise InputError(f"frame {index}: its {name} must be finite, {shape}, not {np.shape(values)}")

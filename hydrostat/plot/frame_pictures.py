@@ -1,0 +1,128 @@
+"""`FramePictures`: frames of an animation as pixels, all seen by one eye in one frame."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import UInt8
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from hydrostat.plot.frame import Frame
+from hydrostat.plot.hardware import draw_cables, draw_winches
+from hydrostat.plot.labels import shorten
+from hydrostat.plot.open_sheet import open_sheet
+from hydrostat.plot.palette import PAPER
+from hydrostat.plot.pane import SpacePane
+from hydrostat.plot.picture_file import drawing
+from hydrostat.plot.places import Spread
+from hydrostat.plot.rigging import Rigging
+from hydrostat.plot.skin import Skin
+from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places, target_points
+from hydrostat.plot.tension_scale import TensionScale
+from hydrostat.robot import Robot
+
+Picture = UInt8[np.ndarray, "height width 3"]
+"""Red, green and blue of each pixel, the top row first."""
+
+INCHES = 6.4
+"""Width of the drawing, whatever its pixels: words and lines keep their share of it."""
+
+FINER = 1.25
+"""Pixels of the image of a body for one of the picture: edges of its parts stay smooth as they move."""
+
+
+class FramePictures:
+    """A sheet on which one frame after another is drawn; camera, frame and colours of tension are those of all."""
+
+    def __init__(self, robot: Robot, frames: Sequence[Frame], *, width: int) -> None:
+        """Room for all of the frames.
+
+        Args:
+            robot: to draw.
+            frames: all that will be drawn.
+            width: of a picture [pixels].
+        """
+        self._robot, self._rigging = robot, Rigging(robot)
+        self._scale = TensionScale.of(np.concatenate([frame.tensions for frame in frames]))
+        points = _seen(robot, self._rigging, frames)
+        self._sheet, panes = open_sheet(
+            robot, [], [points], title=shorten(robot.name), subtitle=" ", width=INCHES, bar=True, ruled=False
+        )
+        self._dpi = width / INCHES
+        pane = panes[0]
+        self._pane = replace(pane, dpi=FINER * self._dpi) if isinstance(pane, SpacePane) else pane
+        self._sheet.figure.set_facecolor(PAPER)
+        self._sheet.figure.set_dpi(self._dpi)
+        if robot.cables:
+            self._scale.draw_bar(self._sheet, of="cable tension")
+        self._still = set(self._artists())
+        self._last: tuple[Frame, Picture] | None = None
+
+    def draw(self, frame: Frame) -> Picture:
+        """The picture of a frame; one that shows the same as the frame before is not drawn again."""
+        if self._last is not None and _alike(self._last[0], frame):
+            return self._last[1]
+        for artist in self._artists():
+            if artist not in self._still:
+                artist.remove()
+        self._sheet.figure.texts[1].set_text(frame.words)
+        self._draw(frame)
+        canvas = self._sheet.figure.canvas
+        assert isinstance(canvas, FigureCanvasAgg)
+        with drawing():
+            canvas.draw()
+        picture = np.asarray(canvas.buffer_rgba())[..., :3].copy()
+        self._last = frame, picture
+        return picture
+
+    def _artists(self) -> list[Artist]:
+        """All that is drawn in the axes of the body."""
+        axes = self._sheet.axes
+        return [*axes.lines, *axes.patches, *axes.images, *axes.texts]
+
+    def _draw(self, frame: Frame) -> None:
+        sheet, pane, robot, rigging = self._sheet, self._pane, self._robot, self._rigging
+        surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True)
+        colours = [self._scale.colour(float(tension)) for tension in frame.tensions]
+        draw_cables(
+            sheet, robot, [surface.run(points) for points in rigging.cables(frame.nodes)], colours=colours, width=2.6
+        )
+        winches = rigging.winches(frame.nodes)
+        draw_winches(sheet, robot, pane.places(winches), surface.fades(winches), contractions=frame.contractions)
+        names = [marker.name for marker in robot.markers]
+        markers = pane.named(dict(zip(names, rigging.markers(frame.nodes), strict=True)))
+        if frame.target is not None:
+            targets = pane.named(target_places(frame.target))
+            draw_errors(sheet, markers, targets)
+            draw_crosses(sheet, targets)
+        draw_markers(sheet, markers)
+
+
+def _seen(robot: Robot, rigging: Rigging, frames: Sequence[Frame]) -> Spread:
+    """Points that every picture must hold [m]: body, cables and winches of all frames, and all targets."""
+    mesh = robot.body.mesh
+    skin = Skin.of(robot.body) if mesh.dim == 2 else None
+    parts: list[Spread] = []
+    for nodes in {id(frame.nodes): frame.nodes for frame in frames}.values():
+        outside = nodes[mesh.boundary_nodes] if skin is None else skin.shape(nodes)[0]
+        parts += [outside, *rigging.cables(nodes), rigging.winches(nodes)]
+    parts += [target_points(frame.target) for frame in frames if frame.target is not None]
+    return np.concatenate(parts)
+
+
+def _alike(one: Frame, two: Frame) -> bool:
+    """Whether two frames look the same."""
+    if one is two:
+        return True
+    return (
+        one.words == two.words
+        and one.target == two.target
+        and np.array_equal(one.nodes, two.nodes)
+        and np.array_equal(one.tensions, two.tensions)
+        and np.array_equal(_or_none(one.contractions), _or_none(two.contractions))
+    )
+
+
+def _or_none(values: np.ndarray | None) -> np.ndarray:
+    return np.zeros(0) if values is None else values
