@@ -8,6 +8,7 @@ import typer
 from hydrostat.cli.check import check
 from hydrostat.cli.design import design
 from hydrostat.cli.fabricate import fabricate
+from hydrostat.cli.materials import materials
 from hydrostat.cli.new import new
 from hydrostat.cli.pose import pose
 from hydrostat.cli.simulate import simulate
@@ -23,7 +24,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (new, check, simulate, pose, design, fabricate):
+for command in (new, check, simulate, pose, design, fabricate, materials):
     app.command()(command)
 
 

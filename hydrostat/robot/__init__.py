@@ -5,7 +5,8 @@ from hydrostat.robot.cable import Cable
 from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.gravity import STANDARD_GRAVITY
 from hydrostat.robot.marker import Marker
-from hydrostat.robot.material import MATERIALS, Material, find_material
+from hydrostat.robot.material import Material
+from hydrostat.robot.materials import MATERIALS, find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.point import Point
 from hydrostat.robot.pose import Pose

@@ -1,13 +1,12 @@
-"""`Material`, and the table of materials known by name."""
+"""`Material`: what a body is made of."""
 
+import math
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import Self
 
 from hydrostat.errors import InputError
 from hydrostat.robot.checks import check_not_negative, check_positive
 from hydrostat.robot.relaxation import MOST_BRANCHES, Relaxation
-from hydrostat.units import quote
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,8 +19,12 @@ class Material:
         density: mass density [kg/m^3].
         viscosity: shear viscosity of a dashpot beside the elastic material (Kelvin-Voigt) [Pa s].
         relaxation: Maxwell branches beside the elastic material, together a Prony series.
+        largest_stretch: longest length over rest length for which the numbers were fitted or are believed; None: unknown.
+        largest_squeeze: share of its length by which it can be squeezed before the numbers are of no use, for a foam
+            because its walls touch; None: unknown.
         name: name in the table, empty for a material given by its numbers.
         source: where the numbers come from.
+        note: what they do not say, and who disagrees.
 
     Raises:
         InputError: a number out of its range.
@@ -32,8 +35,11 @@ class Material:
     density: float
     viscosity: float = 0.0
     relaxation: tuple[Relaxation, ...] = ()
+    largest_stretch: float | None = None
+    largest_squeeze: float | None = None
     name: str = ""
     source: str = ""
+    note: str = ""
 
     def __post_init__(self) -> None:
         check_positive("young", self.young, "Pa")
@@ -45,6 +51,12 @@ class Material:
         check_not_negative("viscosity", self.viscosity, "Pa s")
         if len(self.relaxation) > MOST_BRANCHES:
             raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
+        if self.largest_stretch is not None and not 1 < self.largest_stretch < math.inf:
+            raise InputError(
+                f"largest_stretch must be above 1, as of twice the length is 2, not {self.largest_stretch:g}"
+            )
+        if self.largest_squeeze is not None and not 0 < self.largest_squeeze < 1:
+            raise InputError(f"largest_squeeze must be above 0 and below 1, not {self.largest_squeeze:g}")
 
     @property
     def elastic(self) -> Self:
@@ -56,38 +68,3 @@ class Material:
         """Lame's parameters mu and lambda [Pa] (R22, E9)."""
         mu = self.young / (2 * (1 + self.poisson))
         return mu, self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
-
-
-_TABLE = (
-    Material(
-        name="polyester fibre",
-        young=30e3,
-        poisson=0.3,
-        density=40,
-        source="assumed: loosely stuffed toy filling in a felt skin; the thesis gives no value (M1)",
-    ),
-    Material(
-        name="flexfoam-it x",
-        young=60e3,
-        poisson=0.3,
-        density=160,
-        source="density from the thesis's table (N5); modulus and Poisson's ratio assumed, none is published (E30)",
-    ),
-)
-
-MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
-"""Materials by name."""
-
-
-def find_material(name: str) -> Material:
-    """Material of the table.
-
-    Raises:
-        InputError: no material has this name.
-    """
-    material = MATERIALS.get(name.lower())
-    if material is None:
-        raise InputError(
-            f"unknown material {quote(name)}; known are: {', '.join(MATERIALS)}; or give its young, poisson and density"
-        )
-    return material

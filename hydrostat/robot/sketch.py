@@ -5,7 +5,7 @@ import numpy as np
 from hydrostat.geometry.outline_file import read_outline
 from hydrostat.robot.body import outline_body
 from hydrostat.robot.marker import Marker
-from hydrostat.robot.material import find_material
+from hydrostat.robot.materials import find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.pose import Pose
 from hydrostat.robot.robot import Robot

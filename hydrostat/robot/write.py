@@ -12,7 +12,8 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.gravity import direction_of
-from hydrostat.robot.material import MATERIALS, Material
+from hydrostat.robot.material import Material
+from hydrostat.robot.materials import MATERIALS
 from hydrostat.robot.name import check_name
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.point import Point

@@ -89,7 +89,7 @@ LINES = [
     (
         '"polyester fibre"',
         '"steel"',
-        'line 9: body.material: unknown material "steel"; known are: polyester fibre, flex',
+        'line 9: body.material: unknown material "steel"; `hydrostat materials` lists',
     ),
     ('"polyester fibre"', "5", "line 9: body.material: 5 is not text"),
     (
@@ -191,7 +191,7 @@ LINES = [
     (
         '"polyester fibre"',
         '{ name = "steel", viscosity = "1 Pa s" }',
-        'line 9: body.material: unknown material "steel"; known',
+        'line 9: body.material: unknown material "steel"; `hydro',
     ),
     (
         '"polyester fibre"',

@@ -1,0 +1,54 @@
+"""`hydrostat materials`."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from hydrostat.robot import Material
+
+
+def materials(
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="A material of the table.")] = None,
+) -> None:
+    """List the materials known by name, or say where the numbers of one come from.
+
+    Example: hydrostat materials "ecoflex 00-30"
+    """
+    from hydrostat.robot import MATERIALS, find_material
+
+    if name is not None:
+        _print_one(find_material(name))
+        return
+    width = max(map(len, MATERIALS))
+    print(f"{'':<{width}}  {'kg/m^3':>7}  {'Young':>9}  {'Poisson':>7}  range")
+    for material in MATERIALS.values():
+        print(
+            f"{material.name:<{width}}  {material.density:>7.0f}  {young_text(material):>9}  {material.poisson:>7.2f}"
+            f"  {range_text(material)}"
+        )
+    print('Where the numbers come from: hydrostat materials "ecoflex 00-30"')
+
+
+def _print_one(material: "Material") -> None:
+    from textwrap import fill
+
+    print(material.name)
+    print(f"  density          {material.density:.0f} kg/m^3")
+    print(f"  Young's modulus  {young_text(material)}")
+    print(f"  Poisson's ratio  {material.poisson:.2f}")
+    print(f"  range            {range_text(material)}")
+    for title, text in (("source", material.source), ("note", material.note)):
+        print(fill(text, width=100, initial_indent=f"  {title:<17}", subsequent_indent=" " * 19))
+
+
+def young_text(material: "Material") -> str:
+    """Young's modulus to three digits, such as "30 kPa"."""
+    return f"{material.young / 1e6:.3g} MPa" if material.young >= 1e6 else f"{material.young / 1e3:.3g} kPa"
+
+
+def range_text(material: "Material") -> str:
+    """How far it may be squeezed and stretched, in percent of its length."""
+    squeeze = "" if material.largest_squeeze is None else f"{-100 * material.largest_squeeze:.0f}"
+    stretch = "" if material.largest_stretch is None else f"{100 * (material.largest_stretch - 1):+.0f}"
+    return f"{squeeze or '?'} to {stretch or '?'} %"

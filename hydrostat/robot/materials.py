@@ -1,0 +1,254 @@
+"""The table of materials known by name, each with where its numbers come from.
+
+Rubbers are given by their 100 % modulus, as data sheets are: Young's modulus is such that a Neo-Hookean material has
+that stress at twice its length. Foams are given by what is known of them, which is little. docs/materials.md is printed
+from this table.
+"""
+
+from types import MappingProxyType
+
+from hydrostat.errors import InputError
+from hydrostat.robot.material import Material
+from hydrostat.units import quote
+
+PSI = 6894.757
+"""Pascals in a pound per square inch: data sheets give stresses in these."""
+
+POUND_PER_CUBIC_FOOT = 16.01846
+"""[kg/m^3]: castable foams are named after their density in these."""
+
+RUBBER_POISSON = 0.49
+"""Of rubbers: they hardly change their volume (0.4999); nearer to 0.5 only the cost of solving grows."""
+
+FOAM_POISSON = 0.3
+FOAM_SQUEEZE = 0.6
+
+_BULLETIN = "density, stress at 100 % and break: technical bulletin of the maker (Smooth-On)"
+_MARECHAL = "L. Marechal et al., Toward a common framework and database of materials for soft robotics, Soft Robotics 8(3), 2021"
+_HAHN = "D. Hahn, P. Banzet, J. M. Bern, S. Coros, Real2Sim, ACM Trans. Graphics 38(6), 2019"
+_GIBSON = "L. J. Gibson, M. F. Ashby, Cellular Solids, Cambridge, 1997"
+
+
+def young_of_rubber(stress: float) -> float:
+    """Young's modulus [Pa] of an incompressible Neo-Hookean material whose stress at twice its length is `stress` [Pa].
+
+    Stress there is mu (2 - 1/4), and Young's modulus 3 mu.
+    """
+    return 3 * stress / (2 - 1 / 4)
+
+
+def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measured: float) -> Material:
+    """A castable silicone: specific gravity, 100 % modulus [psi], elongation at break [%], and a second opinion [kPa]."""
+    stress = modulus * PSI
+    return Material(
+        name=name,
+        young=round(young_of_rubber(stress), -3),
+        poisson=RUBBER_POISSON,
+        density=1e3 * gravity,
+        largest_stretch=2.0,
+        largest_squeeze=0.5,
+        source=f"{_BULLETIN}, {modulus:g} psi and {breaks:g} %; Poisson's ratio assumed",
+        note=(
+            f"Stress at twice its length: {stress / 1e3:.0f} kPa in the bulletin, {measured:.0f} kPa in the tensile test"
+            f" published with {_MARECHAL}, where strain is the motion of the grips and so is overrated; by that test"
+            f" Young's modulus is {young_of_rubber(1e3 * measured) / 1e3:.0f} kPa. Stiffens beyond twice its length,"
+            f" softer after the first pull (Mullins)."
+        ),
+    )
+
+
+def _castable_foam(numeral: str, pounds: int, source: str, young: float, note: str) -> Material:
+    """A castable foam of the FlexFoam-iT! series, named after its density in pounds per cubic foot."""
+    return Material(
+        name=f"flexfoam-it {numeral}",
+        young=young,
+        poisson=FOAM_POISSON,
+        density=round(pounds * POUND_PER_CUBIC_FOOT),
+        largest_stretch=1.5,
+        largest_squeeze=FOAM_SQUEEZE,
+        source=f"density from its name, {pounds} lb/ft^3; {source}; Poisson's ratio and range assumed",
+        note=note,
+    )
+
+
+def _lattice(solid: Material, share: float) -> Material:
+    """A printed gyroid that fills a share of its volume: stiffness falls with the square of density (open cells)."""
+    return Material(
+        name=f"{solid.name} gyroid {100 * share:.0f}%",
+        young=solid.young * share**2,
+        poisson=FOAM_POISSON,
+        density=solid.density * share,
+        largest_stretch=1.3,
+        largest_squeeze=0.5,
+        source=f"scaled from {solid.name}: E = E_solid (relative density)^2 ({_GIBSON}); Poisson's ratio and range assumed",
+        note=(
+            "Not a measurement. The law is that of cells whose walls bend; sheets that also stretch are up to several"
+            " times stiffer, thin walls that buckle are softer, and a printer's lines make it stiffer along one axis."
+            " D. W. Holmes et al., Additive Manufacturing 50, 102555, 2022, measured such gyroids as a replacement for"
+            " padding foams. For another infill use young = E_solid x share^2 and density = density_solid x share."
+        ),
+    )
+
+
+_TPU = Material(
+    name="tpu 85a",
+    young=12e6,
+    poisson=0.48,
+    density=1190,
+    largest_stretch=1.6,
+    largest_squeeze=0.5,
+    source="tensile modulus and density: data sheet of NinjaFlex, 85 Shore A (NinjaTek, 2016); Poisson's ratio assumed",
+    note="Solid. Yields at 65 % and breaks at 660 %; what a printer makes of it is softer across its layers.",
+)
+
+_TABLE = (
+    Material(
+        name="polyester fibre",
+        young=30e3,
+        poisson=0.3,
+        density=40,
+        largest_stretch=1.5,
+        largest_squeeze=FOAM_SQUEEZE,
+        source="assumed: loosely stuffed toy filling in a felt skin; the thesis gives no value (M1)",
+        note=(
+            "No measured modulus of a stuffed body was found. Loose filling has none of its own: its thickness under a"
+            " pressure p falls as a power of p, so it stiffens from almost nothing as it is stuffed tighter. 30 kPa is"
+            " that of a soft cushion; a tightly stuffed toy may have several times that. Poses reached by cables hardly"
+            " depend on it, tensions are proportional to it."
+        ),
+    ),
+    _castable_foam(
+        "iii",
+        3,
+        f"modulus assumed, scaled with the square of density from flexfoam-it v ({_GIBSON})",
+        110e3,
+        "None measured. Foams are stiff for the first 5 to 10 % of squeeze and then give way; see flexfoam-it v.",
+    ),
+    Material(
+        name="flexfoam-it v",
+        young=306e3,
+        poisson=0.10,
+        density=80,
+        largest_stretch=1.5,
+        largest_squeeze=FOAM_SQUEEZE,
+        source=(
+            "density from its name, 5 lb/ft^3; lambda 34.5 kPa and mu 139.1 kPa (with 6.5 Pa s), fitted to the motion of a"
+            f" sample, as noted in a public program taken to be that of {_HAHN}; range assumed"
+        ),
+        note=(
+            "Fitted to fast and small motion; slow and large squeezes are softer, for the walls of a foam buckle."
+            " The one modulus of this series that was found."
+        ),
+    ),
+    _castable_foam(
+        "vii",
+        7,
+        f"modulus assumed, scaled with the square of density from flexfoam-it v ({_GIBSON})",
+        600e3,
+        "None measured. Foams are stiff for the first 5 to 10 % of squeeze and then give way; see flexfoam-it v.",
+    ),
+    Material(
+        name="flexfoam-it x",
+        young=60e3,
+        poisson=0.3,
+        density=160,
+        largest_stretch=1.5,
+        largest_squeeze=FOAM_SQUEEZE,
+        source="density from the thesis's table (N5); modulus, Poisson's ratio and range assumed, none is published (E30)",
+        note=(
+            "60 kPa is a guess, kept so that saved robots keep their tensions, and probably low: the square law takes"
+            " flexfoam-it v to 1.2 MPa at this density, and the thesis's other foam, 240 kg/m^3 with 77 psi = 0.531 MPa"
+            " (N6), to 0.24 MPa. That 0.531 MPa is not this foam's: its density differs, and in the thesis the number"
+            " stands beside coffee of 445 kg/m^3 as of similar density (E30). Measure before believing a tension."
+        ),
+    ),
+    Material(
+        name="polyurethane foam",
+        young=40e3,
+        poisson=FOAM_POISSON,
+        density=30,
+        largest_stretch=1.5,
+        largest_squeeze=FOAM_SQUEEZE,
+        source=(
+            "assumed, between what small fast vibration gives (33 kg/m^3, 130 kPa, Poisson's ratio 0.3: J. F. Allard,"
+            " N. Atalla, Propagation of Sound in Porous Media, 2009, table 11.3) and what a cushion's hardness gives"
+            " (3 to 4 kPa at 40 % squeeze, 8 to 10 kPa)"
+        ),
+        note=(
+            "Upholstery and mattresses. Firmness does not follow density: at 30 kg/m^3 it varies threefold. Stiff for the"
+            " first 5 to 10 %, then nearly flat up to 60 %, then stiff again. Poisson's ratio was measured from 0.5 at 5 %"
+            " to -0.05 at 66 % of squeeze (R. D. Widdle, A. K. Bajaj, P. Davies, Int. J. Eng. Science 46, 2008)."
+        ),
+    ),
+    Material(
+        name="polyethylene foam",
+        young=160e3,
+        poisson=FOAM_POISSON,
+        density=33,
+        largest_stretch=1.5,
+        largest_squeeze=FOAM_SQUEEZE,
+        source="Plastazote LD33, data sheet (Zotefoams): 40 kPa at 25 % squeeze, breaks at 135 %; Poisson's ratio assumed",
+        note="Closed cells: the secant at 25 % is 160 kPa, at 50 % 230 kPa; it keeps part of a long squeeze.",
+    ),
+    _silicone("ecoflex 00-10", gravity=1.04, modulus=8, breaks=800, measured=14.8),
+    _silicone("ecoflex 00-30", gravity=1.07, modulus=10, breaks=900, measured=29.7),
+    _silicone("ecoflex 00-50", gravity=1.07, modulus=12, breaks=980, measured=41.0),
+    _silicone("dragon skin 10", gravity=1.07, modulus=22, breaks=1000, measured=113.0),
+    _silicone("dragon skin 20", gravity=1.08, modulus=49, breaks=620, measured=318.4),
+    _silicone("dragon skin 30", gravity=1.08, modulus=86, breaks=364, measured=437.1),
+    Material(
+        name="mold max 30",
+        young=1.14e6,
+        poisson=RUBBER_POISSON,
+        density=1180,
+        largest_stretch=1.5,
+        largest_squeeze=0.5,
+        source=(
+            "hardness 30 Shore A and density: technical bulletin of the maker (Smooth-On); Young's modulus from the hardness"
+            " (A. N. Gent, Rubber Chem. Technol. 31, 1958); Poisson's ratio and range assumed"
+        ),
+        note="The thesis's moulds are cast of it (R52), not its robots. A hardness fixes the modulus to 20 % at best.",
+    ),
+    Material(
+        name="pdms",
+        young=1.32e6,
+        poisson=RUBBER_POISSON,
+        density=1030,
+        largest_stretch=1.4,
+        largest_squeeze=0.4,
+        source=(
+            "Sylgard 184, 10:1, cured at 25 C: I. D. Johnston et al., J. Micromech. Microeng. 24, 035017, 2014;"
+            " density from the thesis's table (N5) and the maker (Dow); Poisson's ratio and range assumed"
+        ),
+        note=(
+            "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C (Johnston 2014); 20 MPa / ratio, so 2 MPa at 10:1, in"
+            " compression (Z. Wang, A. A. Volinsky, N. D. Gallant, J. Appl. Polym. Sci. 131, 41050, 2014). Over nine kinds of"
+            " test it spreads over two decades (H. Varner, T. Cohen, Soft Matter 20, 2024). Breaks at 100 to 140 %."
+        ),
+    ),
+    _TPU,
+    _lattice(_TPU, 0.1),
+    _lattice(_TPU, 0.2),
+)
+
+MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
+"""Materials by name."""
+
+
+def find_material(name: str) -> Material:
+    """Material of the table; capitals do not matter.
+
+    Raises:
+        InputError: no material has this name.
+    """
+    material = MATERIALS.get(name.lower())
+    if material is None:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name.lower(), MATERIALS, n=1)
+        hint = f'did you mean "{near[0]}"? ' if near else ""
+        raise InputError(
+            f"unknown material {quote(name)}; {hint}`hydrostat materials` lists all {len(MATERIALS)}; "
+            f"or give its young, poisson and density"
+        )
+    return material

@@ -1,0 +1,137 @@
+"""The table of materials. Oracles: physical bounds, stresses of data sheets, the page in docs/, the files of robots."""
+
+import sys
+from dataclasses import replace
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import numpy as np
+import pytest
+from robot_files import GOOD, edit, load
+
+from hydrostat.cli.main import main
+from hydrostat.errors import InputError
+from hydrostat.robot import MATERIALS, Material, Volume, find_material, robot_text
+from hydrostat.simulation import Simulation
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+@pytest.mark.parametrize("material", MATERIALS.values(), ids=lambda material: material.name)
+def test_bounds(material: Material) -> None:
+    """Oracle: what soft solids can be: lighter than 1.5 g/cm^3, softer than 20 MPa, with a source that has words."""
+    assert 10 < material.density < 1500
+    assert 1e3 < material.young < 20e6
+    assert 0 <= material.poisson < 0.5
+    assert material.largest_stretch is not None
+    assert 1 < material.largest_stretch <= 4
+    assert material.largest_squeeze is not None
+    assert 0 < material.largest_squeeze < 0.9
+    assert len(material.source) > 30
+    assert len(material.note) > 30
+    assert material.name == material.name.lower()
+    assert not material.source.endswith(".")  # the page adds it
+
+
+def test_what_saved_robots_rest_on() -> None:
+    """Oracle: the numbers with which the examples were posed."""
+    fibre, foam = MATERIALS["polyester fibre"], MATERIALS["flexfoam-it x"]
+    assert (fibre.young, fibre.poisson, fibre.density) == (30e3, 0.3, 40)
+    assert (foam.young, foam.poisson, foam.density) == (60e3, 0.3, 160)
+    assert "0.531 MPa is not this foam's" in foam.note
+
+
+@pytest.mark.parametrize(("name", "psi"), [("ecoflex 00-30", 10), ("dragon skin 20", 49), ("dragon skin 30", 86)])
+def test_stress_of_rubbers_at_twice_their_length(name: str, psi: float) -> None:
+    """Oracle: the 100 % modulus of the data sheet, 1 psi = 6.895 kPa; stress is force over the area at rest.
+
+    The Neo-Hookean energy of the body (ARCHITECTURE.md) at stretch 2, sideways free: slightly compressible at 0.49.
+    """
+    mu, lam = find_material(name).lame
+    sideways = np.linspace(0.5, 1.0, 200_001)
+    volume = 2 * sideways**2
+    energy = mu / 2 * (4 + 2 * sideways**2 - 3) - mu * np.log(volume) + lam / 2 * np.log(volume) ** 2
+    free = sideways[np.argmin(energy)]
+    stress = mu * (2 - 1 / 2) + lam * np.log(2 * free**2) / 2
+    assert stress == pytest.approx(6895 * psi, rel=0.02)
+
+
+def test_lattices_scale_with_the_square_of_density() -> None:
+    """Oracle: Gibson and Ashby's law for open cells."""
+    solid, thin, thick = (find_material(f"tpu 85a{share}") for share in ("", " gyroid 10%", " gyroid 20%"))
+    for lattice in (thin, thick):
+        assert lattice.young / solid.young == pytest.approx((lattice.density / solid.density) ** 2)
+    assert thick.young / thin.young == pytest.approx(4)
+
+
+def test_page_is_in_step() -> None:
+    """Oracle: docs/materials.md is what docs/materials.py prints."""
+    spec = spec_from_file_location("docs_materials", DOCS / "materials.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert (DOCS / "materials.md").read_text(encoding="utf-8") == module.page()
+    for name in MATERIALS:
+        assert f"| {name} |" in module.page()
+
+
+def test_every_name_can_stand_in_a_file(tmp_path: Path) -> None:
+    """Oracle: read from robot.toml and written back, the name is still a name."""
+    robot = load(tmp_path, GOOD)
+    for name, material in MATERIALS.items():
+        made = replace(robot, body=replace(robot.body, material=material))
+        assert f'material = "{name}"' in robot_text(made)
+    assert load(tmp_path, edit(GOOD, "polyester fibre", "Ecoflex 00-30")).body.material == MATERIALS["ecoflex 00-30"]
+
+
+def test_rubber_can_be_simulated(tmp_path: Path) -> None:
+    """Oracle: at Poisson's ratio 0.49, with patches, area is kept to 2 % while a cable bends the body."""
+    robot = load(tmp_path, edit(GOOD, 'material = "polyester fibre"', 'material = "ecoflex 00-30"\nvolume = "patch"'))
+    assert robot.body.volume is Volume.PATCH
+    pose = Simulation(robot).solve({"left": 0.004})
+    corners = pose.nodes[robot.body.mesh.elements]
+    areas = np.linalg.det(corners[:, 1:] - corners[:, :1]) / 2
+    assert areas.sum() == pytest.approx(robot.body.mesh.volumes.sum(), rel=0.02)
+    assert np.linalg.norm(pose.markers["tip"] - [0.025, 0]) > 1e-3
+
+
+def test_unknown_name_suggests_the_nearest() -> None:
+    """Oracle: a misspelt name and one that is like none."""
+    with pytest.raises(InputError, match='did you mean "dragon skin 10"'):
+        find_material("Dragonskin 10")
+    with pytest.raises(InputError, match='^unknown material "granite"; `hydrostat materials` lists all'):
+        find_material("granite")
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "words"),
+    [
+        ("largest_stretch", 1.0, "largest_stretch must be above 1"),
+        ("largest_stretch", float("nan"), "largest_stretch must be above 1"),
+        ("largest_squeeze", 1.0, "largest_squeeze must be above 0 and below 1"),
+    ],
+)
+def test_ranges_are_checked(field: str, value: float, words: str) -> None:
+    """Oracle: a range that cannot be is refused by its field's name."""
+    with pytest.raises(InputError, match=words):
+        Material(young=1e3, poisson=0.3, density=40, **{field: value})
+
+
+def test_command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: every name with its modulus; one of them with its source, whatever its capitals."""
+
+    def run(*words: str) -> str:
+        monkeypatch.setattr(sys, "argv", ["hydrostat", "materials", *words])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        assert stop.value.code == 0
+        return capsys.readouterr().out
+
+    table = run()
+    for name in MATERIALS:
+        assert name in table
+    assert "1.32 MPa" in table
+    one = run("Polyester Fibre")
+    for words in ("30 kPa", "40 kg/m^3", "0.30", "-60 to +50 %", "assumed: loosely stuffed toy filling"):
+        assert words in one
