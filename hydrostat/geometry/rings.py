@@ -1,6 +1,6 @@
 """Which of the lines of a drawing are the body and which its holes: the same for every kind of drawing."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 from jaxtyping import Float
@@ -19,6 +19,7 @@ CHORD_ERROR = 2e-5
 """Curves become chords that stray at most this part of their box."""
 
 _GAP = 1e-3
+_ROUNDING = 1e-6
 
 
 def check_size(size: float | None, name: str) -> None:
@@ -45,15 +46,12 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
         OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
     """
     rings, open_lines = [], []
-    count = 0
-    for line, closed in lines:
-        count += len(line)
-        if count > MOST_POINTS:
-            raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing")
-        if not np.isfinite(line).all():
-            raise OutlineError(f"{name}: a coordinate is not a finite number: save the drawing again")
+    for line, closed in checked(lines, name):
         extent = float(np.ptp(line, axis=0).max())
-        closed = closed or float(np.linalg.norm(line[0] - line[-1])) <= _GAP * extent
+        gap = float(np.linalg.norm(line[0] - line[-1]))
+        closed = closed or gap <= _GAP * extent
+        if 0.0 < gap <= _ROUNDING * extent:
+            line = np.concatenate([line[:-1], line[:1]])
         (rings if closed else open_lines).append((extent, line))
     largest = max((extent for extent, _ in rings), default=0.0)
     extent, line = max(open_lines, key=lambda pair: pair[0], default=(0.0, np.zeros((2, 2))))
@@ -65,6 +63,18 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
         raise OutlineError(f"{name}: no closed shape: draw the outline of the body as one closed path")
     left_out = (f"left out {counted(len(open_lines), 'open line')}, the largest at {place(line[0])}",)
     return [line for extent, line in rings if extent > 0.0], left_out if open_lines else ()
+
+
+def checked(lines: Iterable[tuple[Ring, bool]], name: str) -> Iterator[tuple[Ring, bool]]:
+    """The lines as they come, until there are too many points or one is not finite, which is an OutlineError."""
+    count = 0
+    for line, closed in lines:
+        count += len(line)
+        if count > MOST_POINTS:
+            raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing")
+        if not (np.abs(line) < 1e100).all():
+            raise OutlineError(f"{name}: a coordinate is not a finite number: save the drawing again")
+        yield line, closed
 
 
 def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
