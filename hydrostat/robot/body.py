@@ -3,15 +3,17 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.errors import InputError, OutlineError
+from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
+from hydrostat.geometry.solid import Solid
 from hydrostat.robot.checks import check_positive
 from hydrostat.robot.material import Material
 
@@ -20,6 +22,7 @@ class Source(StrEnum):
     """What kind of file a body comes from; also its key in robot.toml."""
 
     OUTLINE = "outline"
+    SURFACE = "surface"
     MESH = "mesh"
 
 
@@ -48,6 +51,7 @@ class Body:
         volume: how its change of volume is measured.
         mesh: nodes and elements.
         outline: of a flat body that was drawn.
+        healing: of a body in space that came as a surface: that surface closed, and what that took.
     """
 
     source: Source
@@ -60,6 +64,7 @@ class Body:
     volume: Volume = Volume.ELEMENT
     mesh: Mesh = field(compare=False, repr=False)
     outline: Outline | None = field(default=None, compare=False, repr=False)
+    healing: Any = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.mesh.dim == 2 and self.thickness is None:
@@ -69,8 +74,10 @@ class Body:
         _check_lengths(size=self.size, element_size=self.element_size, thickness=self.thickness)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
-        """How far points lie outside the body [m], 0 inside its drawing or its mesh."""
+        """How far points lie outside the body [m], 0 inside its drawing, its surface or its mesh."""
         distances = locate(self.mesh, points).distances
+        if self.healing is not None:
+            return np.where(distances > 0, np.maximum(Solid(self.healing.surface).distances(points), 0.0), 0.0)
         if self.outline is None:
             return distances
         from shapely import distance
@@ -122,6 +129,59 @@ def outline_body(
         volume=volume,
         mesh=mesh,
         outline=outline,
+    )
+
+
+def surface_body(
+    content: bytes,
+    *,
+    file: str,
+    unit: float,
+    material: Material,
+    element_size: float,
+    size: float | None = None,
+    thickness: float | None = None,
+    volume: Volume = Volume.ELEMENT,
+) -> Body:
+    """Body in space from the bytes of a scan or CAD model, healed if need be.
+
+    Args:
+        content: of the file: STL, OBJ, PLY, OFF or 3MF.
+        file: its name.
+        unit: metres that a coordinate counts, if the file does not say.
+        material: what it is made of.
+        element_size: mean length of a mesh edge [m].
+        size: longest side of the bounding box [m] to scale to; None: as the file says.
+        thickness: must be None; refused as bodies in space have none.
+        volume: how its change of volume is measured.
+
+    Raises:
+        InputError: the file holds no surface, it encloses no body, or a number is out of its range.
+    """
+    from hydrostat.geometry.heal import heal
+    from hydrostat.geometry.surface_file import read_surface
+    from hydrostat.geometry.tetrahedralise import tetrahedralise
+
+    _check_lengths(size=size, element_size=element_size, thickness=thickness)
+    surface = read_surface(content, name=file, unit=unit, size=size)
+    healing = heal(surface, resolution=element_size / 4)
+    try:
+        mesh = tetrahedralise(healing.surface, element_size)
+    except SurfaceError:
+        raise
+    except InputError as error:
+        raise InputError(f"element_size: {error}") from None
+    return Body(
+        source=Source.SURFACE,
+        file=file,
+        content=content,
+        material=material,
+        size=size,
+        element_size=element_size,
+        thickness=thickness,
+        volume=volume,
+        mesh=mesh,
+        healing=healing,
     )
 
 

@@ -12,7 +12,7 @@ from typing import Any, NoReturn, TypeVar
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.robot.body import Body, Source, mesh_body, outline_body
+from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.lines import find_line
@@ -170,25 +170,36 @@ class _Reader:
         entry = self.table.body
         sources = [source for source in Source if getattr(entry, source) is not None]
         if len(sources) != 1:
-            self._fail("body", "give either outline (a drawing) or mesh (a ready mesh)")
+            self._fail("body", "give one of outline (a drawing), surface (a scan or CAD model) or mesh (a ready mesh)")
         source = sources[0]
         file = self._file(f"body.{source}", getattr(entry, source))
         material = self._at("body.material", lambda: _material(entry.material))
+        unit = units.scale_up(Decimal(1), self.unit, units.LENGTH)
         if source is Source.MESH:
             if entry.element_size is not None:
                 self._fail("body.element_size", "a ready mesh has its own element size; remove the key")
-            make = partial(mesh_body, file, unit=units.scale_up(Decimal(1), self.unit, units.LENGTH))
+            make = partial(mesh_body, file, unit=unit)
         else:
-            for key, example in (("element_size", "12 mm"), ("thickness", "40 mm")):
-                if getattr(entry, key) is None:
-                    self._fail("body", f'the key "{key}" is missing; a flat body needs it: {key} = "{example}"')
+            self._need(entry, source)
             content = self._at(f"body.{source}", lambda: _read_bytes(file, file.name, LARGEST_FILE))
-            make = partial(outline_body, content, file=file.name, element_size=entry.element_size)
+            given = {"file": file.name, "element_size": entry.element_size}
+            if source is Source.SURFACE:
+                make = partial(surface_body, content, unit=unit, **given)
+            else:
+                make = partial(outline_body, content, **given)
         return self._at(
             "body",
             lambda: make(material=material, size=entry.size, thickness=entry.thickness, **_given(entry, "volume")),
             otherwise=f"body.{source}",
         )
+
+    def _need(self, entry: Any, source: Source) -> None:
+        """Refuse a body without the sizes that it needs."""
+        keys = [("element_size", "12 mm"), ("thickness", "40 mm")]
+        for key, example in keys if source is Source.OUTLINE else keys[:1]:
+            if getattr(entry, key) is None:
+                kind = "a flat body" if source is Source.OUTLINE else "a body from a surface"
+                self._fail("body", f'the key "{key}" is missing; {kind} needs it: {key} = "{example}"')
 
     def _file(self, key: str, name: str) -> Path:
         file = self.file.parent / name

@@ -133,6 +133,7 @@ class BodyTable(Table):
     """[body]."""
 
     outline: Text | None = None
+    surface: Text | None = None
     mesh: Text | None = None
     size: Length | None = None
     element_size: Length | None = None

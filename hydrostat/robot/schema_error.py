@@ -11,7 +11,6 @@ from hydrostat.units import quote
 _NAMED = "a material with a name has its own; remove this key, or the name"
 _VISCOUS = 'material = { name = "polyester fibre", viscosity = "40 Pa s" }'
 REFUSED = {
-    "body.surface": "surfaces are not meshed yet; give an outline (a drawing) or a mesh (a ready mesh)",
     "body.gravity": "gravity stands at the top of the file, before [body]; move it there",
     "body.viscosity": "it belongs to the material; write " + _VISCOUS,
     "body.relaxation": "it belongs to the material; write " + _VISCOUS,

@@ -23,10 +23,10 @@ LINES = [
     ('"body.svg"', f'"{"語" * 199}"', "line 6: body.outline: there is no file"),
     ('"body.svg"', f'"{"x" * 201}"', "line 6: body.outline: ", "at most 200 characters"),
     ('outline = "body.svg"', 'outline = ""', "line 6: body.outline: must not be empty"),
-    ('outline = "body.svg"\n', "", "line 5: body: give either outline (a drawing) or mesh"),
-    ('outline = "body.svg"', 'outline = "body.svg"\nmesh = "body.svg"', "line 5: body: give either outline"),
+    ('outline = "body.svg"\n', "", "line 5: body: give one of outline (a drawing), surface (a scan"),
+    ('outline = "body.svg"', 'outline = "body.svg"\nmesh = "body.svg"', "line 5: body: give one of outline"),
     ('outline = "body.svg"', 'mesh = "body.svg"', "line 7: body.element_size: a ready mesh has its own"),
-    ('outline = "body.svg"', 'surface = "hand.stl"', "line 6: body.surface: surfaces are not meshed yet; give"),
+    ('outline = "body.svg"', 'surface = "hand.stl"', 'line 6: body.surface: there is no file "hand.stl"'),
     # keys
     ("format = 1", "format = 2", "line 2: format: 2 is not known; this version reads format = 1"),
     ("format = 1", 'format = "1"', 'line 2: format: "1" is not known'),
@@ -39,7 +39,7 @@ LINES = [
     (
         "[body]",
         "[body]\ncolour = 1",
-        'line 6: body.colour: unknown key "colour"; allowed here are: outline, mesh, size',
+        'line 6: body.colour: unknown key "colour"; allowed here are: outline, surface, mesh',
     ),
     ("[body]", "[boddy]", 'line 5: boddy: unknown key "boddy", did you mean body? allowed here are: format, name'),
     ("radius = 12", "radios = 12", 'line 13: pin[0].radios: unknown key "radios", did you mean radius?'),
