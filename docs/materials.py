@@ -27,8 +27,8 @@ difference between two sources for the same material. Measure a sample before be
 `volume = "patch"` ([decision 0012](decisions/0012-locking.md)).
 
 **What was read.** The tensile curves, the abstracts of the papers and the 100 % moduli of the silicones were looked up;
-elongations at break, NinjaFlex and the density of Mold Max 30 are quoted without the data sheet at hand. What is assumed
-is called so.
+elongations at break, NinjaFlex and the density of Mold Max 30 are quoted without the data sheet at hand. What is
+assumed is called so.
 
 Names such as R52, N5 and E30 refer to the thesis ([references](references.md)).
 """
@@ -50,4 +50,3 @@ def page() -> str:
 
 if __name__ == "__main__":
     PAGE.write_text(page(), encoding="utf-8")
-    print(f"wrote {PAGE.name}: {len(MATERIALS)} materials")

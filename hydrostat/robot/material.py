@@ -19,7 +19,7 @@ class Material:
         density: mass density [kg/m^3].
         viscosity: shear viscosity of a dashpot beside the elastic material (Kelvin-Voigt) [Pa s].
         relaxation: Maxwell branches beside the elastic material, together a Prony series.
-        largest_stretch: longest length over rest length for which the numbers were fitted or are believed; None: unknown.
+        largest_stretch: longest length over rest length for which the numbers are believed; None: unknown.
         largest_squeeze: share of its length by which it can be squeezed before the numbers are of no use, for a foam
             because its walls touch; None: unknown.
         name: name in the table, empty for a material given by its numbers.
@@ -52,9 +52,7 @@ class Material:
         if len(self.relaxation) > MOST_BRANCHES:
             raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
         if self.largest_stretch is not None and not 1 < self.largest_stretch < math.inf:
-            raise InputError(
-                f"largest_stretch must be above 1, as of twice the length is 2, not {self.largest_stretch:g}"
-            )
+            raise InputError(f"largest_stretch must be above 1 (twice the length is 2), not {self.largest_stretch:g}")
         if self.largest_squeeze is not None and not 0 < self.largest_squeeze < 1:
             raise InputError(f"largest_squeeze must be above 0 and below 1, not {self.largest_squeeze:g}")
 

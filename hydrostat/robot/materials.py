@@ -24,7 +24,7 @@ FOAM_POISSON = 0.3
 FOAM_SQUEEZE = 0.6
 
 _BULLETIN = "density, stress at 100 % and break: technical bulletin of the maker (Smooth-On)"
-_MARECHAL = "L. Marechal et al., Toward a common framework and database of materials for soft robotics, Soft Robotics 8(3), 2021"
+_MARECHAL = "L. Marechal et al., Toward a common framework and database of materials, Soft Robotics 8(3), 2021"
 _HAHN = "D. Hahn, P. Banzet, J. M. Bern, S. Coros, Real2Sim, ACM Trans. Graphics 38(6), 2019"
 _GIBSON = "L. J. Gibson, M. F. Ashby, Cellular Solids, Cambridge, 1997"
 
@@ -38,7 +38,7 @@ def young_of_rubber(stress: float) -> float:
 
 
 def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measured: float) -> Material:
-    """A castable silicone: specific gravity, 100 % modulus [psi], elongation at break [%], and a second opinion [kPa]."""
+    """A castable silicone: specific gravity, 100 % modulus [psi], elongation at break [%], a second opinion [kPa]."""
     stress = modulus * PSI
     return Material(
         name=name,
@@ -49,8 +49,8 @@ def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measu
         largest_squeeze=0.5,
         source=f"{_BULLETIN}, {modulus:g} psi and {breaks:g} %; Poisson's ratio assumed",
         note=(
-            f"Stress at twice its length: {stress / 1e3:.0f} kPa in the bulletin, {measured:.0f} kPa in the tensile test"
-            f" published with {_MARECHAL}, where strain is the motion of the grips and so is overrated; by that test"
+            f"Stress at twice its length: {stress / 1e3:.0f} kPa in the bulletin, {measured:.0f} kPa in the tensile"
+            f" test published with {_MARECHAL}, where strain is the motion of the grips and so is overrated; by that test"
             f" Young's modulus is {young_of_rubber(1e3 * measured) / 1e3:.0f} kPa. Stiffens beyond twice its length,"
             f" softer after the first pull (Mullins)."
         ),
@@ -80,7 +80,7 @@ def _lattice(solid: Material, share: float) -> Material:
         density=solid.density * share,
         largest_stretch=1.3,
         largest_squeeze=0.5,
-        source=f"scaled from {solid.name}: E = E_solid (relative density)^2 ({_GIBSON}); Poisson's ratio and range assumed",
+        source=f"scaled from {solid.name}: E = E_solid (relative density)^2, {_GIBSON}; Poisson's ratio, range assumed",
         note=(
             "Not a measurement. The law is that of cells whose walls bend; sheets that also stretch are up to several"
             " times stiffer, thin walls that buckle are softer, and a printer's lines make it stiffer along one axis."
@@ -132,8 +132,8 @@ _TABLE = (
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
         source=(
-            "density from its name, 5 lb/ft^3; lambda 34.5 kPa and mu 139.1 kPa (with 6.5 Pa s), fitted to the motion of a"
-            f" sample, as noted in a public program taken to be that of {_HAHN}; range assumed"
+            "density from its name, 5 lb/ft^3; lambda 34.5 kPa and mu 139.1 kPa (with 6.5 Pa s), fitted to the motion of"
+            f" a sample, as noted in a public program taken to be that of {_HAHN}; range assumed"
         ),
         note=(
             "Fitted to fast and small motion; slow and large squeezes are softer, for the walls of a foam buckle."
@@ -154,7 +154,7 @@ _TABLE = (
         density=160,
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
-        source="density from the thesis's table (N5); modulus, Poisson's ratio and range assumed, none is published (E30)",
+        source="density from the thesis's table (N5); all else assumed, no modulus is published (E30)",
         note=(
             "60 kPa is a guess, kept so that saved robots keep their tensions, and probably low: the square law takes"
             " flexfoam-it v to 1.2 MPa at this density, and the thesis's other foam, 240 kg/m^3 with 77 psi = 0.531 MPa"
@@ -175,9 +175,9 @@ _TABLE = (
             " (3 to 4 kPa at 40 % squeeze, 8 to 10 kPa)"
         ),
         note=(
-            "Upholstery and mattresses. Firmness does not follow density: at 30 kg/m^3 it varies threefold. Stiff for the"
-            " first 5 to 10 %, then nearly flat up to 60 %, then stiff again. Poisson's ratio was measured from 0.5 at 5 %"
-            " to -0.05 at 66 % of squeeze (R. D. Widdle, A. K. Bajaj, P. Davies, Int. J. Eng. Science 46, 2008)."
+            "Upholstery and mattresses. Firmness does not follow density: at 30 kg/m^3 it varies threefold. Stiff for"
+            " the first 5 to 10 %, then nearly flat up to 60 %, then stiff again. Poisson's ratio was measured from"
+            " 0.5 at 5 % to -0.05 at 66 % of squeeze (R. D. Widdle, A. K. Bajaj, P. Davies, Int. J. Eng. Science 46, 2008)."
         ),
     ),
     Material(
@@ -187,7 +187,7 @@ _TABLE = (
         density=33,
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
-        source="Plastazote LD33, data sheet (Zotefoams): 40 kPa at 25 % squeeze, breaks at 135 %; Poisson's ratio assumed",
+        source="Plastazote LD33, data sheet (Zotefoams): 40 kPa at 25 % squeeze, breaks at 135 %; rest assumed",
         note="Closed cells: the secant at 25 % is 160 kPa, at 50 % 230 kPa; it keeps part of a long squeeze.",
     ),
     _silicone("ecoflex 00-10", gravity=1.04, modulus=8, breaks=800, measured=14.8),
@@ -204,8 +204,8 @@ _TABLE = (
         largest_stretch=1.5,
         largest_squeeze=0.5,
         source=(
-            "hardness 30 Shore A and density: technical bulletin of the maker (Smooth-On); Young's modulus from the hardness"
-            " (A. N. Gent, Rubber Chem. Technol. 31, 1958); Poisson's ratio and range assumed"
+            "hardness 30 Shore A and density: technical bulletin of the maker (Smooth-On); Young's modulus from the"
+            " hardness (A. N. Gent, Rubber Chem. Technol. 31, 1958); Poisson's ratio and range assumed"
         ),
         note="The thesis's moulds are cast of it (R52), not its robots. A hardness fixes the modulus to 20 % at best.",
     ),
@@ -221,9 +221,9 @@ _TABLE = (
             " density from the thesis's table (N5) and the maker (Dow); Poisson's ratio and range assumed"
         ),
         note=(
-            "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C (Johnston 2014); 20 MPa / ratio, so 2 MPa at 10:1, in"
-            " compression (Z. Wang, A. A. Volinsky, N. D. Gallant, J. Appl. Polym. Sci. 131, 41050, 2014). Over nine kinds of"
-            " test it spreads over two decades (H. Varner, T. Cohen, Soft Matter 20, 2024). Breaks at 100 to 140 %."
+            "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C (Johnston 2014); 20 MPa / ratio, so 2 MPa at 10:1,"
+            " in compression (Z. Wang, A. A. Volinsky, N. D. Gallant, J. Appl. Polym. Sci. 131, 41050, 2014). Over nine"
+            " kinds of test it spreads over two decades (H. Varner, T. Cohen, Soft Matter 20, 2024). Breaks at 100 to 140 %."
         ),
     ),
     _TPU,

@@ -100,22 +100,22 @@ def test_unknown_name_suggests_the_nearest() -> None:
     """Oracle: a misspelt name and one that is like none."""
     with pytest.raises(InputError, match='did you mean "dragon skin 10"'):
         find_material("Dragonskin 10")
-    with pytest.raises(InputError, match='^unknown material "granite"; `hydrostat materials` lists all'):
+    with pytest.raises(InputError, match='unknown material "granite"; `hydrostat materials` lists all'):
         find_material("granite")
 
 
 @pytest.mark.parametrize(
-    ("field", "value", "words"),
+    ("stretch", "squeeze", "words"),
     [
-        ("largest_stretch", 1.0, "largest_stretch must be above 1"),
-        ("largest_stretch", float("nan"), "largest_stretch must be above 1"),
-        ("largest_squeeze", 1.0, "largest_squeeze must be above 0 and below 1"),
+        (1.0, None, "largest_stretch must be above 1"),
+        (float("nan"), None, "largest_stretch must be above 1"),
+        (None, 1.0, "largest_squeeze must be above 0 and below 1"),
     ],
 )
-def test_ranges_are_checked(field: str, value: float, words: str) -> None:
+def test_ranges_are_checked(stretch: float | None, squeeze: float | None, words: str) -> None:
     """Oracle: a range that cannot be is refused by its field's name."""
     with pytest.raises(InputError, match=words):
-        Material(young=1e3, poisson=0.3, density=40, **{field: value})
+        Material(young=1e3, poisson=0.3, density=40, largest_stretch=stretch, largest_squeeze=squeeze)
 
 
 def test_command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
