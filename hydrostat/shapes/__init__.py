@@ -1,0 +1,51 @@
+"""Shapes to begin from: signed distances, limbs, and the bodies of the gallery."""
+
+from hydrostat.shapes.field import (
+    Field,
+    Place,
+    chain,
+    ellipsoid,
+    half_space,
+    intersection,
+    placed,
+    round_cone,
+    rounded_box,
+    turn_about,
+    union,
+)
+from hydrostat.shapes.gripper import BASE, SIDES, caging_gripper
+from hydrostat.shapes.hand import CUPPING, EXTENDED, FOREARM, Posture, cupping_hand, extended_hand, hand
+from hydrostat.shapes.hydrostats import fish_tail, octopus_arm, tongue, trunk
+from hydrostat.shapes.limb import Limb, limb
+from hydrostat.shapes.shape import Shape
+
+__all__ = [
+    "BASE",
+    "CUPPING",
+    "EXTENDED",
+    "FOREARM",
+    "SIDES",
+    "Field",
+    "Limb",
+    "Place",
+    "Posture",
+    "Shape",
+    "caging_gripper",
+    "chain",
+    "cupping_hand",
+    "ellipsoid",
+    "extended_hand",
+    "fish_tail",
+    "half_space",
+    "hand",
+    "intersection",
+    "limb",
+    "octopus_arm",
+    "placed",
+    "round_cone",
+    "rounded_box",
+    "tongue",
+    "trunk",
+    "turn_about",
+    "union",
+]

@@ -1,0 +1,185 @@
+"""`Limb`: a soft limb along a curve, its sections ellipses with a back and a belly of their own depth."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.shapes.field import Place, ellipsoidal
+
+_SPACING = 4e-3
+"""Stations along the spine of a limb are about this far apart [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Limb:
+    """A finger, an arm, a trunk: sections across a spine.
+
+    Attributes:
+        spine: stations from the root to the tip [m], (stations, 3).
+        sides: unit vector across the limb at each station; back = direction of the spine x side.
+        breadths: from the spine to the side [m], (stations,).
+        backs: from the spine to the back [m].
+        bellies: from the spine to the belly, the side to which the limb bends [m].
+        caps: length of the rounded ends at root and tip [m].
+        joints: landmarks along the limb from root to tip [m], (joints, 3).
+    """
+
+    spine: Float[np.ndarray, "stations 3"]
+    sides: Float[np.ndarray, "stations 3"]
+    breadths: Vector
+    backs: Vector
+    bellies: Vector
+    caps: tuple[float, float]
+    joints: Float[np.ndarray, "joints 3"]
+
+    @cached_property
+    def stations(self) -> Vector:
+        """Arc length of each station from the root [m]."""
+        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.spine, axis=0), axis=1))])
+
+    @property
+    def length(self) -> float:
+        """Length of the spine [m]; the rounded ends come on top."""
+        return float(self.stations[-1])
+
+    @property
+    def tip(self) -> Float[np.ndarray, " 3"]:
+        """The outermost place at the tip [m]."""
+        return self.spine[-1] + self.caps[1] * self._directions[-1]
+
+    def at(self, share: float, across: float = 0.0, up: float = 0.0) -> tuple[float, float, float]:
+        """A place in the limb [m].
+
+        Args:
+            share: how far along the spine, 0 at its root, 1 at its end.
+            across: to the side, in half breadths.
+            up: towards the back, in half depths; negative towards the belly.
+        """
+        station = share * self.length
+        side, back = self._frame(np.array([station]))
+        depth = np.interp(station, self.stations, self.backs if up > 0 else self.bellies)
+        breadth = np.interp(station, self.stations, self.breadths)
+        middle = [np.interp(station, self.stations, column) for column in self.spine.T]
+        x, y, z = middle + across * breadth * side[0] + up * depth * back[0]
+        return float(x), float(y), float(z)
+
+    def share_of(self, joint: int) -> float:
+        """Share of the length at which a landmark lies."""
+        segments, shares = self._feet(self.joints[[joint]])
+        return float(self._stations_at(segments, shares)[0] / self.length)
+
+    def distance(self, points: Points) -> Vector:
+        """About how far points are outside the limb [m]; nearly right close to its surface if it tapers gently."""
+        segments, shares = self._feet(points)
+        stations = self._stations_at(segments, shares)
+        middles = np.stack([np.interp(stations, self.stations, column) for column in self.spine.T], axis=1)
+        side, back = self._frame(stations)
+        offset = points - middles
+        along = np.where(stations > 0, offset @ self._directions[-1], -offset @ self._directions[0])
+        ends = (stations <= 0) | (stations >= self.length)
+        beyond = np.where(ends, np.maximum(along, 0.0), 0.0)
+        up = (offset * back).sum(axis=1)
+        depths = np.where(up > 0, *(np.interp(stations, self.stations, half) for half in (self.backs, self.bellies)))
+        axes = np.stack(
+            [np.interp(stations, self.stations, self.breadths), depths, np.where(stations > 0, *self.caps[::-1])],
+            axis=1,
+        )
+        local = np.stack([(offset * side).sum(axis=1), up, beyond], axis=1) / axes
+        return ellipsoidal(local, axes)
+
+    @cached_property
+    def _directions(self) -> Float[np.ndarray, "stations 3"]:
+        """Unit direction of the spine at each station."""
+        steps = np.diff(self.spine, axis=0)
+        steps = steps / np.linalg.norm(steps, axis=1, keepdims=True)
+        means = np.concatenate([steps[:1], steps[:-1] + steps[1:], steps[-1:]])
+        return means / np.linalg.norm(means, axis=1, keepdims=True)
+
+    def _frame(self, stations: Vector) -> tuple[Points, Points]:
+        """Unit vectors to the side and to the back at stations."""
+        side, way = (
+            np.stack([np.interp(stations, self.stations, column) for column in vectors.T], axis=1)
+            for vectors in (self.sides, self._directions)
+        )
+        way = way / np.linalg.norm(way, axis=1, keepdims=True)
+        side = side - (side * way).sum(axis=1, keepdims=True) * way
+        side = side / np.linalg.norm(side, axis=1, keepdims=True)
+        return side, np.cross(way, side)
+
+    def _feet(self, points: Points) -> tuple[Int[np.ndarray, " points"], Vector]:
+        """Segment of the spine nearest to each point, and where on it, from 0 to 1."""
+        best = np.full(len(points), np.inf)
+        segments, shares = np.zeros(len(points), dtype=np.int64), np.zeros(len(points))
+        for segment, (start, end) in enumerate(pairwise(self.spine)):
+            axis = end - start
+            share = np.clip((points - start) @ axis / (axis @ axis), 0.0, 1.0)
+            away = ((points - start - share[:, None] * axis) ** 2).sum(axis=1)
+            nearer = away < best
+            best[nearer], segments[nearer], shares[nearer] = away[nearer], segment, share[nearer]
+        return segments, shares
+
+    def _stations_at(self, segments: Int[np.ndarray, " points"], shares: Vector) -> Vector:
+        return self.stations[segments] + shares * np.diff(self.stations)[segments]
+
+
+def limb(
+    joints: Iterable[Place],
+    *,
+    side: Place,
+    breadths: Sequence[float],
+    backs: Sequence[float],
+    bellies: Sequence[float] | None = None,
+    caps: tuple[float, float] | None = None,
+    bend: float = 8e-3,
+) -> Limb:
+    """A limb through joints [m], with its half breadth and depths given at each of them [m].
+
+    Args:
+        joints: from the root to the end of the spine.
+        side: about the direction across the limb; what of it lies along the spine does not count.
+        breadths: half the breadth at each joint.
+        backs: depth of the back at each joint.
+        bellies: depth of the belly; as the back if left out.
+        caps: length of the rounded ends; as round as the belly if left out.
+        bend: how far from a joint the spine leaves the straight line [m].
+    """
+    corners = np.array(list(joints), dtype=float)
+    bellies = backs if bellies is None else bellies
+    spine = _smooth(corners, bend)
+    stations = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(spine, axis=0), axis=1))])
+    at = [stations[np.argmin(((spine - corner) ** 2).sum(axis=1))] for corner in corners]
+    # Imported here: only shapes need it.
+    from scipy.interpolate import PchipInterpolator
+
+    halves = [PchipInterpolator(at, half)(stations) for half in (breadths, backs, bellies)]
+    return Limb(
+        spine,
+        np.tile(np.array(side, dtype=float), (len(spine), 1)),
+        *halves,
+        caps=(bellies[0], bellies[-1]) if caps is None else caps,
+        joints=corners,
+    )
+
+
+def _smooth(corners: Float[np.ndarray, "joints 3"], bend: float) -> Float[np.ndarray, "stations 3"]:
+    """Stations along a polyline whose corners are rounded by parabolas that begin `bend` [m] from them."""
+    places = [corners[0]]
+    for before, corner, after in zip(corners, corners[1:], corners[2:], strict=False):
+        ways = [before - corner, after - corner]
+        lengths = [float(np.linalg.norm(way)) for way in ways]
+        start, end = (corner + min(bend / length, 0.45) * way for way, length in zip(ways, lengths, strict=True))
+        places.extend(
+            (1 - share) ** 2 * start + 2 * share * (1 - share) * corner + share**2 * end
+            for share in np.linspace(0, 1, 5)
+        )
+    places.append(corners[-1])
+    stations = [places[0]]
+    for start, end in pairwise(places):
+        count = max(round(float(np.linalg.norm(end - start)) / _SPACING), 1)
+        stations.extend(start + share * (end - start) for share in np.arange(1, count + 1) / count)
+    return np.array(stations)
