@@ -5,6 +5,7 @@ import sys
 
 import typer
 
+from hydrostat.cli.animate import animate
 from hydrostat.cli.check import check
 from hydrostat.cli.design import design
 from hydrostat.cli.fabricate import fabricate
@@ -24,7 +25,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (new, check, simulate, pose, design, fabricate, materials):
+for command in (new, check, simulate, pose, animate, design, fabricate, materials):
     app.command()(command)
 
 

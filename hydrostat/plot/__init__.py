@@ -1,14 +1,22 @@
 """Pictures and the report: how robots, poses and designs look."""
 
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
+from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
+from hydrostat.plot.film import Film, Stop, film, pose_stops, winch_stops
+from hydrostat.plot.frame import Frame
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion
 from hydrostat.plot.picture_file import inline_svg, save_png
 from hydrostat.plot.pose_figures import draw_portrait, draw_pose, draw_reached
 from hydrostat.plot.report import report_text, write_report
 from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
+from hydrostat.plot.scene import save_glb
 
 __all__ = [
+    "WIDTHS",
+    "Film",
+    "Frame",
+    "Stop",
     "draw_activation",
     "draw_candidates",
     "draw_motion",
@@ -19,10 +27,17 @@ __all__ = [
     "draw_rest",
     "draw_target",
     "draw_trees",
+    "film",
+    "find_ffmpeg",
     "inline_svg",
     "motion_frames",
     "motion_svg",
+    "pose_stops",
     "report_text",
+    "save_gif",
+    "save_glb",
+    "save_mp4",
     "save_png",
+    "winch_stops",
     "write_report",
 ]

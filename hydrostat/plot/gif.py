@@ -54,7 +54,7 @@ def _nearest(picture: Picture, palette: Palette) -> Indices:
     values, places = np.unique(packed, return_inverse=True)
     colours = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=1)
     nearest = KDTree(palette.astype(float)).query(colours.astype(float))[1].astype(np.uint8)
-    return nearest[places].reshape(picture.shape[:2])
+    return np.take(nearest, places).reshape(picture.shape[:2])
 
 
 def _changed(indices: Indices, last: Indices, clear: int) -> tuple[tuple[int, int, int, int], Indices]:

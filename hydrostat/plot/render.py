@@ -98,7 +98,7 @@ def render(
     origin = np.array([low[0], low[1], 0.0])
     corners = ((spots - origin) / fine)[facets]
     held = np.zeros(len(spots)) if held is None else held
-    normals = _normals(corners, facets) if shaded else np.empty((*facets.shape, 0))
+    normals = facet_normals(corners, facets) if shaded else np.empty((*facets.shape, 0))
     values = np.concatenate([normals, held[facets][..., None]], axis=2)
     depth, shown, rim = rasterise(corners, values, FINER * width, FINER * height)
     middle = depth[FINER // 2 :: FINER, FINER // 2 :: FINER] * fine
@@ -114,7 +114,10 @@ def render(
     return Render(paint(depth, shown, rim, sky, look, _table(pale), inks, shares), middle, low, pixel)
 
 
-def _normals(corners: Float[np.ndarray, "facets 3 3"], facets: Int[np.ndarray, "facets 3"]) -> np.ndarray:
+def facet_normals(
+    corners: Float[np.ndarray, "facets 3 3"], facets: Int[np.ndarray, "facets 3"]
+) -> Float[np.ndarray, "facets 3 3"]:
+    """Unit normal at each corner of each facet: smooth, but for creases."""
     order = np.argsort(facets.ravel(), kind="stable")
     starts = np.concatenate([[0], np.cumsum(np.bincount(facets.ravel()))])
     return corner_normals(np.ascontiguousarray(corners), facets, starts, order // 3, float(np.cos(np.radians(CREASE))))

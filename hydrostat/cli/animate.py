@@ -1,0 +1,118 @@
+"""`hydrostat animate`."""
+
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.prepare import prepared
+from hydrostat.cli.progress import progress_bar
+from hydrostat.errors import InputError
+from hydrostat.units import counted
+
+if TYPE_CHECKING:
+    from hydrostat.plot import Film, Stop
+    from hydrostat.simulation import Simulation
+
+LONGEST = 60.0
+"""Of a film [s]."""
+
+EACH_WAY, USUAL = 2.0, 12.0
+"""Time from one pose to the next, and most of a whole film [s], unless told otherwise."""
+
+
+class Format(StrEnum):
+    """What a film can be written as."""
+
+    GIF = "gif"
+    GLB = "glb"
+    MP4 = "mp4"
+
+
+def animate(
+    robot: RobotFolder,
+    out: OutFolder,
+    name: Annotated[
+        list[str] | None, typer.Option("--pose", metavar="NAME", help="A pose; may be repeated; all if left out.")
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Length of the film; 2 s a way, 12 s at most, if left out.")
+    ] = None,
+    format: Annotated[
+        list[Format] | None, typer.Option(metavar="gif|glb|mp4", help="May be repeated; gif and glb if left out.")
+    ] = None,
+    width: Annotated[int, typer.Option(metavar="PIXELS", help="Width of the pictures.")] = 640,
+) -> None:
+    """Film a robot as it goes from rest to one pose after another and back.
+
+    Writes animation.gif, and animation.glb for Blender, browsers and 3D viewers; with --format mp4 animation.mp4.
+    A robot without poses takes in one winch after the other.
+
+    Example: hydrostat animate examples/starfish --pose wave --out build/wave
+    """
+    from hydrostat.plot import WIDTHS, film, find_ffmpeg
+    from hydrostat.robot import load_robot
+
+    require_folder(out)
+    formats = list(dict.fromkeys(format or (Format.GIF, Format.GLB)))
+    if Format.MP4 in formats:
+        find_ffmpeg()
+    if seconds is not None and not 0 < seconds <= LONGEST:
+        raise InputError(f"--seconds {seconds:g}: must be above 0 and at most {LONGEST:g}")
+    if not WIDTHS[0] <= width <= WIDTHS[1]:
+        raise InputError(f"--width {width}: must be {WIDTHS[0]} to {WIDTHS[1]}")
+    loaded = load_robot(robot)
+    for pose in name or []:
+        loaded.pose(pose)
+    if not loaded.cables:
+        raise InputError(f"{robot}: no cable can move it; add winches and cables, or let `hydrostat design` find them")
+    simulation = prepared(loaded)
+    with progress_bar() as tell:
+        stops = _stops(simulation, name or list(loaded.poses), tell)
+        length = min(EACH_WAY * (len(stops) + 1), USUAL) if seconds is None else seconds
+        made = film(simulation, stops, seconds=length, tell=tell)
+        files = [_write(simulation, made, out, kind, width, tell) for kind in formats]
+    print(f"{counted(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")
+    if made.missing:
+        print(
+            f"note: {counted(len(made.missing), 'frame')} without an equilibrium, the first after "
+            f"{made.missing[0] * made.step:.1f} s; the frame before stands in their place"
+        )
+    print("Wrote " + ", ".join(str(file) for file in files))
+
+
+def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int, int], None]) -> "list[Stop]":
+    """What the winches reach of each pose; without poses one winch after the other."""
+    from hydrostat.ik import solve_ik
+    from hydrostat.plot import pose_stops, winch_stops
+
+    if not names:
+        return winch_stops(simulation.robot)
+    reached = []
+    for index, pose in enumerate(names):
+        reached.append(solve_ik(simulation, simulation.robot.pose(pose)))
+        tell("finding poses", index + 1, len(names))
+    for found in reached:
+        print(f"{found.target.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.reason}")
+    return pose_stops(reached)
+
+
+def _write(
+    simulation: "Simulation",
+    made: "Film",
+    out: Path,
+    kind: Format,
+    width: int,
+    tell: Callable[[str, int, int], None],
+) -> Path:
+    from hydrostat.plot import save_gif, save_glb, save_mp4
+
+    out.mkdir(parents=True, exist_ok=True)
+    robot, path = simulation.robot, out / f"animation.{kind}"
+    if kind is Format.GLB:
+        return save_glb(robot, made.frames, path, step=made.step)
+    save = save_gif if kind is Format.GIF else save_mp4
+    return save(robot, made.frames, path, step=made.step, width=width, tell=tell)

@@ -1,0 +1,156 @@
+"""Films: a robot goes from rest to one stop after another and back, every frame an equilibrium."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.ik import ReachedPose
+from hydrostat.plot.animation import Tell
+from hydrostat.plot.frame import Frame
+from hydrostat.plot.labels import shorten
+from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Simulation, SolvedPose
+
+STILL = 0.25
+"""Share of the time from one stop to the next in which the robot stays there."""
+
+FEWEST = 4
+"""Frames from one stop to the next."""
+
+LEAST_LEFT = 0.7
+"""No winch is taken in so far that less than this share of its shortest cable is left."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stop:
+    """Where a film goes.
+
+    Attributes:
+        name: of the pose, or what is done.
+        contractions: cable taken in by each winch [m].
+        target: whose targets are shown on the way.
+        words: shown while the robot stays there.
+    """
+
+    name: str
+    contractions: Vector
+    target: Pose | None = None
+    words: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Film:
+    """Frames at equal times.
+
+    Attributes:
+        frames: the first and the last at rest.
+        step: time of a frame [s].
+        missing: numbers of the frames where no equilibrium was found; the one before stands in their place.
+    """
+
+    frames: tuple[Frame, ...]
+    step: float
+    missing: tuple[int, ...]
+
+
+def pose_stops(reached: Iterable[ReachedPose]) -> list[Stop]:
+    """A stop for each pose that inverse kinematics found."""
+    return [
+        Stop(
+            name=shorten(found.target.name),
+            contractions=found.pose.contractions,
+            target=found.target,
+            words=f"{shorten(found.target.name)}: marker error {MILLIMETRES * found.rms_error:.1f} mm rms",
+        )
+        for found in reached
+    ]
+
+
+def winch_stops(robot: Robot) -> list[Stop]:
+    """Each winch in turn taken in by half its travel; less where its cables are too short for that."""
+    stops = []
+    for index, winch in enumerate(robot.winches):
+        lengths = [cable.length for cable in robot.cables if cable.winch == winch.name]
+        taken = np.zeros(len(robot.winches))
+        taken[index] = min([winch.travel / 2, *((1 - LEAST_LEFT) * length for length in lengths)])
+        words = f"{shorten(winch.name)} {MILLIMETRES * taken[index]:.0f} mm"
+        stops.append(Stop(name=words, contractions=taken, words=words))
+    return stops
+
+
+def film(
+    simulation: Simulation, stops: Sequence[Stop], *, seconds: float, step: float = 0.08, tell: Tell | None = None
+) -> Film:
+    """The equilibria from rest through all stops and back to rest; it starts and stops gently.
+
+    A frame that has no equilibrium, or in which an element would be inverted, shows the one before.
+
+    Args:
+        simulation: the robot's physics.
+        stops: where it goes, one after the other.
+        seconds: length of the film [s].
+        step: about the time of a frame [s].
+        tell: is told how far the work is.
+
+    Raises:
+        InputError: no stop, or so little time that a way would have fewer than four frames.
+        NotConvergedError: the robot has no equilibrium at rest.
+    """
+    ways = len(stops) + 1
+    if not stops:
+        raise InputError("a film needs a stop to go to")
+    count = round(seconds / step)
+    if count < 1 + FEWEST * ways:
+        raise InputError(f"{seconds:g} s are too short for {ways} ways; at least {(1 + FEWEST * ways) * step:.2g} s")
+    ends = 1 + np.round((count - 1) * np.arange(ways + 1) / ways).astype(int)
+    rest = simulation.solve({})
+    home = Stop(name="rest", contractions=rest.contractions, words="at rest")
+    shot = _Shot(simulation, rest, count, tell)
+    begin = home
+    for stop, frames in zip([*stops, home], np.diff(ends), strict=True):
+        shot.go(begin, stop, int(frames))
+        begin = stop
+    return Film(frames=tuple(shot.frames), step=seconds / count, missing=tuple(shot.missing))
+
+
+class _Shot:
+    """Frames as they are made."""
+
+    def __init__(self, simulation: Simulation, rest: SolvedPose, count: int, tell: Tell | None) -> None:
+        self.frames = [Frame.of(rest, words="at rest")]
+        self.missing: list[int] = []
+        self._simulation, self._last, self._count, self._tell = simulation, rest, count, tell
+
+    def go(self, begin: Stop, end: Stop, count: int) -> None:
+        """Go from one stop to the next in so many frames, the last of them still."""
+        still = max(1, round(STILL * count))
+        words = "back to rest" if end.name == "rest" else f"to {end.name}"
+        for number in range(1, count - still + 1):
+            share = 0.5 - 0.5 * np.cos(np.pi * number / (count - still))
+            goal = begin.contractions + share * (end.contractions - begin.contractions)
+            self._take(goal, end, words)
+        self.frames += [replace(self.frames[-1], words=end.words)] * still
+        self._told()
+
+    def _take(self, goal: Vector, end: Stop, words: str) -> None:
+        pose = self._simulation.solve(goal, start=self._last, strict=False)
+        if pose.result.converged and _upright(self._simulation.robot, pose):
+            self._last = pose
+        else:
+            self.missing.append(len(self.frames))
+        self.frames.append(Frame.of(self._last, target=end.target, words=words))
+        self._told()
+
+    def _told(self) -> None:
+        if self._tell is not None:
+            self._tell("solving", len(self.frames), self._count)
+
+
+def _upright(robot: Robot, pose: SolvedPose) -> bool:
+    """Whether no element is inverted."""
+    corners = pose.nodes[robot.body.mesh.elements]
+    return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())

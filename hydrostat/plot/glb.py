@@ -1,0 +1,152 @@
+"""`Glb`: a binary glTF 2.0 file, which Blender, browsers, three.js and Windows open."""
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+FLOAT, UNSIGNED = 5126, 5125
+"""Kinds of numbers in glTF: 32 bits each."""
+
+VERTICES, INDICES = 34962, 34963
+"""What an array is used for."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Shape:
+    """A thing of triangles that changes its shape.
+
+    Attributes:
+        name: that a program shows.
+        triangles: corners of each, counter-clockwise seen from outside, (triangles, 3).
+        places: of the vertices in every key, (keys, vertices, 3) [m].
+        normals: of length 1, (keys, vertices, 3).
+        colours: of the vertices, linear red, green and blue, in every key, or in one for all, (keys or 1, vertices, 3).
+        opacity: 1, or less for what things within shine through.
+    """
+
+    name: str
+    triangles: Int[np.ndarray, "triangles 3"]
+    places: Float[np.ndarray, "keys vertices 3"]
+    normals: Float[np.ndarray, "keys vertices 3"]
+    colours: Float[np.ndarray, "some vertices 3"]
+    opacity: float = 1.0
+
+
+class Glb:
+    """A scene with one animation, built part by part.
+
+    The first key is the mesh itself; each further key is a morph target, of which an animation mixes one after the
+    other. Lengths are metres, and y is up after the turn of the scene.
+    """
+
+    def __init__(self, name: str, *, turn: tuple[float, float, float, float]) -> None:
+        """An empty scene.
+
+        Args:
+            name: of its root.
+            turn: of the whole scene, as a quaternion (x, y, z, w).
+        """
+        self._bytes = bytearray()
+        self._document: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": "hydrostat"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"name": name, "rotation": list(turn), "children": []}],
+            "meshes": [],
+            "materials": [],
+            "accessors": [],
+            "bufferViews": [],
+        }
+
+    def add(self, shape: Shape) -> None:
+        """Put a shape into the scene."""
+        attributes = {
+            "POSITION": self._array(shape.places[0], bounds=True),
+            "NORMAL": self._array(shape.normals[0]),
+            "COLOR_0": self._array(shape.colours[0]),
+        }
+        mesh: dict[str, Any] = {
+            "name": shape.name,
+            "primitives": [
+                {"attributes": attributes, "indices": self._indices(shape.triangles), "material": self._material(shape)}
+            ],
+        }
+        if len(shape.places) > 1:
+            mesh["primitives"][0]["targets"] = [self._target(shape, key) for key in range(1, len(shape.places))]
+            mesh["weights"] = [0.0] * (len(shape.places) - 1)
+        nodes = self._document["nodes"]
+        nodes[0]["children"].append(len(nodes))
+        nodes.append({"name": shape.name, "mesh": len(self._document["meshes"])})
+        self._document["meshes"].append(mesh)
+
+    def animate(
+        self, times: Float[np.ndarray, " instants"], weights: Float[np.ndarray, "instants targets"], *, name: str
+    ) -> None:
+        """Mix the morph targets of all shapes in time [s], evenly between instants."""
+        source = self._array(times[:, None], bounds=True, use=None)
+        mixed = self._array(weights.reshape(-1, 1), use=None)
+        moved = range(1, len(self._document["nodes"]))
+        self._document["animations"] = [
+            {
+                "name": name,
+                "samplers": [{"input": source, "interpolation": "LINEAR", "output": mixed}],
+                "channels": [{"sampler": 0, "target": {"node": node, "path": "weights"}} for node in moved],
+            }
+        ]
+
+    def content(self) -> bytes:
+        """The whole file: a head, the description as JSON, and the numbers."""
+        document = {**self._document, "buffers": [{"byteLength": len(self._bytes)}]}
+        words = json.dumps(document, separators=(",", ":"), ensure_ascii=True).encode()
+        words += b" " * (-len(words) % 4)
+        length = 12 + 8 + len(words) + 8 + len(self._bytes)
+        sizes = [np.uint32(size).tobytes() for size in (2, length, len(words), len(self._bytes))]
+        return b"".join([b"glTF", *sizes[:2], sizes[2], b"JSON", words, sizes[3], b"BIN\0", bytes(self._bytes)])
+
+    def _target(self, shape: Shape, key: int) -> dict[str, int]:
+        """What a key adds to the mesh."""
+        base = shape.places[0].astype(np.float32)
+        target = {
+            "POSITION": self._array(shape.places[key] - base, bounds=True),
+            "NORMAL": self._array(shape.normals[key] - shape.normals[0].astype(np.float32)),
+        }
+        if len(shape.colours) > 1:
+            target["COLOR_0"] = self._array(shape.colours[key] - shape.colours[0].astype(np.float32))
+        return target
+
+    def _material(self, shape: Shape) -> int:
+        look = {"baseColorFactor": [1.0, 1.0, 1.0, shape.opacity], "metallicFactor": 0.0, "roughnessFactor": 0.85}
+        material: dict[str, Any] = {"name": shape.name, "pbrMetallicRoughness": look}
+        if shape.opacity < 1:
+            material["alphaMode"] = "BLEND"
+        self._document["materials"].append(material)
+        return len(self._document["materials"]) - 1
+
+    def _array(self, values: np.ndarray, *, bounds: bool = False, use: int | None = VERTICES) -> int:
+        numbers = np.ascontiguousarray(values, dtype="<f4") + np.float32(0)
+        return self._accessor(numbers, FLOAT, bounds=bounds, use=use)
+
+    def _indices(self, triangles: Int[np.ndarray, "triangles 3"]) -> int:
+        return self._accessor(triangles.astype("<u4").reshape(-1, 1), UNSIGNED, bounds=False, use=INDICES)
+
+    def _accessor(self, numbers: np.ndarray, kind: int, *, bounds: bool, use: int | None) -> int:
+        """Append numbers, all of 4 bytes and so in step, and describe them."""
+        view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self._bytes), "byteLength": numbers.nbytes}
+        if use is not None:
+            view["target"] = use
+        self._bytes += numbers.tobytes()
+        self._document["bufferViews"].append(view)
+        accessor: dict[str, Any] = {
+            "bufferView": len(self._document["bufferViews"]) - 1,
+            "componentType": kind,
+            "count": len(numbers),
+            "type": "SCALAR" if numbers.shape[1] == 1 else "VEC3",
+        }
+        if bounds:
+            accessor["min"] = [float(value) for value in numbers.min(axis=0)]
+            accessor["max"] = [float(value) for value in numbers.max(axis=0)]
+        self._document["accessors"].append(accessor)
+        return len(self._document["accessors"]) - 1

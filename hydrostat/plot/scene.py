@@ -1,0 +1,224 @@
+"""`save_glb`: an animation of a robot as a scene that can be turned and walked about."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.plot.camera import upright
+from hydrostat.plot.frame import Frame, check_frames
+from hydrostat.plot.glb import Glb, Shape
+from hydrostat.plot.open_sheet import way_up
+from hydrostat.plot.palette import DARK, FELT, LIGHT, winch_colours
+from hydrostat.plot.rigging import Rigging
+from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
+from hydrostat.plot.tension_scale import TensionScale
+from hydrostat.robot import Robot, replace_file
+
+MOST_KEYS = 120
+"""A film of more different frames has every second, third ... of them as a key: programs hold them all at once."""
+
+SAME = 1e-5
+"""Two frames are one key where no node differs by more than this, in sizes of the body."""
+
+CABLE, MARKER, TARGET = 0.0045, 0.011, 0.05
+"""Radius of a cable and of a marker, and length of a target's cross, in sizes of the body."""
+
+SPOOL = (0.012, 0.045)
+"""Least and largest radius of a spool that is shown, in sizes of the body."""
+
+OPACITY = 0.72
+"""Of a body that has cables: they run inside, mostly."""
+
+
+def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float) -> Path:
+    """Write frames as a binary glTF 2.0 scene, whole or not at all; returns its path.
+
+    Body, cables, winches, markers and targets are a mesh each; every frame that differs is a morph target of all of
+    them, and an animation goes from one to the next. Cables are coloured by tension, targets grow where a pose is
+    approached, a flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
+
+    Args:
+        robot: to show.
+        frames: at equal times.
+        path: of the file.
+        step: time between frames [s].
+
+    Raises:
+        InputError: frames that do not fit the robot, a time that is not above 0, a file that cannot be written.
+    """
+    check_frames(robot, frames)
+    if not 0 < step < np.inf:
+        raise InputError(f"the time of a frame must be above 0 s, not {step:g} s")
+    film = _Film.of(robot, frames)
+    glb = Glb(robot.name, turn=_turn(robot))
+    for shape in (_body(film), _cables(film), _winches(film), _markers(film), _targets(film)):
+        if shape is not None:
+            glb.add(shape)
+    if len(film.keys) > 1:
+        times, order = _instants(film.order, step)
+        weights = np.eye(len(film.keys))[order][:, 1:]
+        glb.animate(times, weights, name="poses")
+    return replace_file(Path(path), glb.content())
+
+
+@dataclass(frozen=True, eq=False)
+class _Film:
+    """Frames without those that repeat another.
+
+    Attributes:
+        robot: that moves.
+        keys: frames that differ.
+        order: the key of every frame, -1 where it is between two.
+        nodes: positions of the nodes in every key [m].
+    """
+
+    robot: Robot
+    keys: list[Frame]
+    order: list[int]
+    nodes: Float[np.ndarray, "keys nodes dim"]
+
+    @classmethod
+    def of(cls, robot: Robot, frames: Sequence[Frame]) -> Self:
+        keys, order = _distinct(robot, frames)
+        if len(keys) > MOST_KEYS:
+            stride = -(-len(frames) // MOST_KEYS)
+            kept = [index for index in range(len(frames)) if index % stride == 0 or index == len(frames) - 1]
+            keys, some = _distinct(robot, [frames[index] for index in kept])
+            order = [-1] * len(frames)
+            for index, key in zip(kept, some, strict=True):
+                order[index] = key
+        return cls(robot, keys, order, np.stack([key.nodes for key in keys]))
+
+
+def _distinct(robot: Robot, frames: Sequence[Frame]) -> tuple[list[Frame], list[int]]:
+    """Frames that differ, and which of them each frame is."""
+    near = SAME * robot.body.mesh.size
+    most = max(float(frame.tensions.max(initial=0.0)) for frame in frames)
+    keys: list[Frame] = []
+    order: list[int] = []
+    for frame in frames:
+        for index, key in enumerate(keys):
+            if (
+                key.target == frame.target
+                and np.abs(key.nodes - frame.nodes).max() <= near
+                and np.abs(key.tensions - frame.tensions).max(initial=0.0) <= 1e-3 * most
+            ):
+                order.append(index)
+                break
+        else:
+            order.append(len(keys))
+            keys.append(frame)
+    return keys, order
+
+
+def _instants(order: Sequence[int], step: float) -> tuple[Float[np.ndarray, " instants"], list[int]]:
+    """Times [s] and keys, without instants between others of the same key."""
+    known = [index for index, key in enumerate(order) if key >= 0]
+    kept = [
+        place
+        for number, place in enumerate(known)
+        if number in (0, len(known) - 1)
+        or not order[known[number - 1]] == order[place] == order[known[number + 1]]
+    ]  # fmt: skip
+    return step * np.array(kept, dtype=float), [order[place] for place in kept]
+
+
+def _turn(robot: Robot) -> tuple[float, float, float, float]:
+    """The turn that brings what is up for a robot to y, as a quaternion (x, y, z, w)."""
+    from scipy.spatial.transform import Rotation
+
+    if robot.body.mesh.dim == 2:
+        return 0.0, 0.0, 0.0, 1.0
+    to_y = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+    x, y, z, w = Rotation.from_matrix(to_y @ upright(way_up(robot))).as_quat()
+    return float(x), float(y), float(z), float(w)
+
+
+def _body(film: _Film) -> Shape:
+    body = film.robot.body
+    solid = skin(body.mesh, film.nodes) if body.mesh.dim == 3 else slab(body.mesh, film.nodes, body.thickness or 0.0)
+    return _shape("body", solid, [FELT], opacity=OPACITY if film.robot.cables else 1.0)
+
+
+def _cables(film: _Film) -> Shape | None:
+    """A tube for each cable with a ball as its stopper, in the colours of tension."""
+    rigging, size = Rigging(film.robot), film.robot.body.mesh.size
+    runs = [[_in_space(points) for points in rigging.cables(nodes)] for nodes in film.nodes]
+    scale = TensionScale.of(np.concatenate([key.tensions for key in film.keys]))
+    solids, colours = [], []
+    for index in range(len(film.robot.cables)):
+        points = np.stack([run[index] for run in runs])
+        solids.append(joined([tube(points, CABLE * size), sphere(points[:, -1], 2.2 * CABLE * size)]))
+        shades = np.array([_linear(scale.colour(float(key.tensions[index]))) for key in film.keys])
+        colours.append(np.repeat(shades[:, None], solids[-1][1].shape[1], axis=1))
+    if not solids:
+        return None
+    triangles, places, normals = joined(solids)
+    every = np.concatenate(colours, axis=1)
+    return Shape(name="cables", triangles=triangles, places=places, normals=normals, colours=every)
+
+
+def _winches(film: _Film) -> Shape | None:
+    rigging, size = Rigging(film.robot), film.robot.body.mesh.size
+    centres = np.stack([_in_space(rigging.winches(nodes)) for nodes in film.nodes])
+    ways = {winch.name: np.array([1.0, 0.0, 0.0]) for winch in film.robot.winches}
+    for cable in reversed(film.robot.cables):
+        ends = _in_space(np.array(cable.points[:2], dtype=float))
+        ways[cable.winch] = ends[1] - ends[0]
+    radii = [min(max(winch.spool_radius, SPOOL[0] * size), SPOOL[1] * size) for winch in film.robot.winches]
+    solids = [
+        spool(centres[:, index], ways[winch.name], radii[index]) for index, winch in enumerate(film.robot.winches)
+    ]
+    return _grouped("winches", solids, list(winch_colours(film.robot).values()))
+
+
+def _markers(film: _Film) -> Shape | None:
+    rigging, size = Rigging(film.robot), film.robot.body.mesh.size
+    centres = np.stack([_in_space(rigging.markers(nodes)) for nodes in film.nodes])
+    solids = [sphere(centres[:, index], MARKER * size) for index in range(len(film.robot.markers))]
+    return _grouped("markers", solids, [LIGHT] * len(solids))
+
+
+def _targets(film: _Film) -> Shape | None:
+    """A cross at each target of a pose, of full size in keys that approach it and of none in others."""
+    size = film.robot.body.mesh.size
+    poses = {key.target.name: key.target for key in film.keys if key.target is not None}
+    solids = []
+    for pose in poses.values():
+        sizes = np.array([TARGET * size if key.target == pose else 0.0 for key in film.keys])
+        for target in pose.targets.values():
+            centre = _in_space(np.array([target], dtype=float))
+            solids.append(cross(np.repeat(centre, len(film.keys), axis=0), sizes))
+    return _grouped("targets", solids, [DARK] * len(solids))
+
+
+def _grouped(name: str, solids: list[Solid], colours: Sequence[str]) -> Shape | None:
+    """Solids as one shape, each in its colour; nothing if there are none."""
+    return _shape(name, joined(solids), colours, counts=[solid[1].shape[1] for solid in solids]) if solids else None
+
+
+def _shape(
+    name: str, solid: Solid, colours: Sequence[str], *, counts: Sequence[int] | None = None, opacity: float = 1.0
+) -> Shape:
+    triangles, places, normals = solid
+    told = np.repeat(np.array([_linear(colour) for colour in colours]), counts or [places.shape[1]], axis=0)
+    return Shape(
+        name=name, triangles=triangles, places=places, normals=normals, colours=told[None], opacity=opacity
+    )  # fmt: skip
+
+
+def _in_space(points: Points) -> Points:
+    """Points in the plane as points in space, in the middle of the body's thickness."""
+    return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
+
+
+def _linear(colour: str) -> Vector:
+    """A colour of a screen (sRGB) as shares of light, which glTF wants."""
+    shares = np.array([int(colour[start : start + 2], 16) for start in (1, 3, 5)]) / 255
+    return np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
