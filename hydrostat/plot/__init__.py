@@ -2,8 +2,10 @@
 
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
+from hydrostat.plot.contact_sheet import draw_sheet
 from hydrostat.plot.film import Film, Stop, film, pose_stops, winch_stops
 from hydrostat.plot.frame import Frame
+from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion
 from hydrostat.plot.picture_file import inline_svg, save_png
@@ -19,12 +21,14 @@ __all__ = [
     "Stop",
     "draw_activation",
     "draw_candidates",
+    "draw_healing",
     "draw_motion",
     "draw_network",
     "draw_portrait",
     "draw_pose",
     "draw_reached",
     "draw_rest",
+    "draw_sheet",
     "draw_target",
     "draw_trees",
     "film",

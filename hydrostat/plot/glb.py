@@ -1,11 +1,12 @@
 """`Glb`: a binary glTF 2.0 file, which Blender, browsers, three.js and Windows open."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 FLOAT, UNSIGNED = 5126, 5125
 """Kinds of numbers in glTF: 32 bits each."""
@@ -50,6 +51,8 @@ class Glb:
             turn: of the whole scene, as a quaternion (x, y, z, w).
         """
         self._bytes = bytearray()
+        self._moved: list[int] = []
+        self._copies: list[int] = []
         self._document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": "hydrostat"},
             "scene": 0,
@@ -63,6 +66,23 @@ class Glb:
 
     def add(self, shape: Shape) -> None:
         """Put a shape into the scene."""
+        self._moved.append(self._node({"name": shape.name, "mesh": self._mesh(shape)}))
+
+    def add_copies(self, shape: Shape, places: Float[np.ndarray, "copies 3"], names: Sequence[str]) -> None:
+        """Put a shape that stays as it is to several places [m]; `show` tells when they are seen."""
+        mesh = self._mesh(shape)
+        for name, place in zip(names, places, strict=True):
+            self._copies.append(
+                self._node({"name": name, "mesh": mesh, "translation": [float(value) for value in place]})
+            )
+
+    def _node(self, node: dict[str, Any]) -> int:
+        nodes = self._document["nodes"]
+        nodes[0]["children"].append(len(nodes))
+        nodes.append(node)
+        return len(nodes) - 1
+
+    def _mesh(self, shape: Shape) -> int:
         attributes = {
             "POSITION": self._array(shape.places[0], bounds=True),
             "NORMAL": self._array(shape.normals[0]),
@@ -77,25 +97,28 @@ class Glb:
         if len(shape.places) > 1:
             mesh["primitives"][0]["targets"] = [self._target(shape, key) for key in range(1, len(shape.places))]
             mesh["weights"] = [0.0] * (len(shape.places) - 1)
-        nodes = self._document["nodes"]
-        nodes[0]["children"].append(len(nodes))
-        nodes.append({"name": shape.name, "mesh": len(self._document["meshes"])})
         self._document["meshes"].append(mesh)
+        return len(self._document["meshes"]) - 1
 
     def animate(
-        self, times: Float[np.ndarray, " instants"], weights: Float[np.ndarray, "instants targets"], *, name: str
+        self,
+        times: Float[np.ndarray, " instants"],
+        weights: Float[np.ndarray, "instants targets"],
+        seen: Bool[np.ndarray, "instants copies"],
+        *,
+        name: str,
     ) -> None:
-        """Mix the morph targets of all shapes in time [s], evenly between instants."""
+        """Mix the morph targets of all shapes in time [s], evenly between instants; copies are there or not."""
         source = self._array(times[:, None], bounds=True, use=None)
-        mixed = self._array(weights.reshape(-1, 1), use=None)
-        moved = range(1, len(self._document["nodes"]))
-        self._document["animations"] = [
-            {
-                "name": name,
-                "samplers": [{"input": source, "interpolation": "LINEAR", "output": mixed}],
-                "channels": [{"sampler": 0, "target": {"node": node, "path": "weights"}} for node in moved],
-            }
+        samplers = [
+            {"input": source, "interpolation": "LINEAR", "output": self._array(weights.reshape(-1, 1), use=None)}
         ]
+        channels = [{"sampler": 0, "target": {"node": node, "path": "weights"}} for node in self._moved]
+        for node, shown in zip(self._copies, seen.T, strict=True):
+            sizes = self._array(np.repeat(shown[:, None], 3, axis=1), use=None)
+            channels.append({"sampler": len(samplers), "target": {"node": node, "path": "scale"}})
+            samplers.append({"input": source, "interpolation": "STEP", "output": sizes})
+        self._document["animations"] = [{"name": name, "samplers": samplers, "channels": channels}]
 
     def content(self) -> bytes:
         """The whole file: a head, the description as JSON, and the numbers."""

@@ -10,7 +10,7 @@ from hydrostat.plot.camera import Camera, Spots
 from hydrostat.plot.felt import draw_felt, draw_ghost, draw_mesh, draw_pins
 from hydrostat.plot.palette import GHOST, GHOST_FILL, SEAM, mix
 from hydrostat.plot.places import Place, Places
-from hydrostat.plot.render import render
+from hydrostat.plot.render import Render, render
 from hydrostat.plot.sheet import BODY, MILLIMETRES, Sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.surface import Surface
@@ -103,12 +103,7 @@ class SpacePane:
             held=_held(self.robot) if pins else None, lines=_density(self.robot, sheet) if mesh else 0.0,
             point=sheet.scale,
         )  # fmt: skip
-        x, y = self.shift
-        left, right, low, high = image.extent
-        sheet.axes.imshow(
-            image.colours, extent=(left + x, right + x, low + y, high + y), origin="lower", aspect="auto", zorder=3,
-            interpolation="antialiased", clip_on=False, label=BODY,
-        )  # fmt: skip
+        lay_image(sheet, image, self.shift)
         rings = [ring + self.shift for ring in image.rings()]
         seam = mix(SEAM, "#ffffff", 0.6 * pale)
         sheet.area(rings, facecolor="none", edgecolor=seam, linewidth=0.9, joinstyle="round", zorder=3.1)
@@ -121,6 +116,16 @@ class SpacePane:
 
 
 Pane = FlatPane | SpacePane
+
+
+def lay_image(sheet: Sheet, image: Render, shift: Place) -> None:
+    """Put the image of a body on a sheet, moved by a shift [mm]."""
+    x, y = shift
+    left, right, low, high = image.extent
+    sheet.axes.imshow(
+        image.colours, extent=(left + x, right + x, low + y, high + y), origin="lower", aspect="auto", zorder=3,
+        interpolation="antialiased", clip_on=False, label=BODY,
+    )  # fmt: skip
 
 
 def _held(robot: Robot) -> Vector:

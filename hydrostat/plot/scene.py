@@ -17,8 +17,9 @@ from hydrostat.plot.open_sheet import way_up
 from hydrostat.plot.palette import DARK, FELT, LIGHT, winch_colours
 from hydrostat.plot.rigging import Rigging
 from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
+from hydrostat.plot.targets import target_points
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Robot, replace_file
+from hydrostat.robot import Pose, Robot, replace_file
 
 MOST_KEYS = 120
 """A film of more different frames has every second, third ... of them as a key: programs hold them all at once."""
@@ -39,9 +40,9 @@ OPACITY = 0.72
 def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float) -> Path:
     """Write frames as a binary glTF 2.0 scene, whole or not at all; returns its path.
 
-    Body, cables, winches, markers and targets are a mesh each; every frame that differs is a morph target of all of
-    them, and an animation goes from one to the next. Cables are coloured by tension, targets grow where a pose is
-    approached, a flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
+    Body, cables, winches and markers are a mesh each; every frame that differs is a morph target of all of them, and an
+    animation goes from one to the next. Cables are coloured by tension, targets are there while a pose is approached, a
+    flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
 
     Args:
         robot: to show.
@@ -57,13 +58,18 @@ def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: f
         raise InputError(f"the time of a frame must be above 0 s, not {step:g} s")
     film = _Film.of(robot, frames)
     glb = Glb(robot.name, turn=_turn(robot))
-    for shape in (_body(film), _cables(film), _winches(film), _markers(film), _targets(film)):
+    for shape in (_body(film), _cables(film), _winches(film), _markers(film)):
         if shape is not None:
             glb.add(shape)
+    poses = list({frame.target.name: frame.target for frame in frames if frame.target is not None}.values())
+    _add_targets(glb, robot, poses)
     if len(film.keys) > 1:
-        times, order = _instants(film.order, step)
-        weights = np.eye(len(film.keys))[order][:, 1:]
-        glb.animate(times, weights, name="poses")
+        kept = _instants(film.order, [frame.target for frame in frames])
+        weights = np.eye(len(film.keys))[[film.order[place] for place in kept]][:, 1:]
+        seen = [[frames[place].target == pose for pose in poses for _ in pose.targets] for place in kept]
+        glb.animate(
+            step * np.array(kept, dtype=float), weights, np.array(seen, dtype=bool).reshape(len(kept), -1), name="poses"
+        )
     return replace_file(Path(path), glb.content())
 
 
@@ -105,8 +111,7 @@ def _distinct(robot: Robot, frames: Sequence[Frame]) -> tuple[list[Frame], list[
     for frame in frames:
         for index, key in enumerate(keys):
             if (
-                key.target == frame.target
-                and np.abs(key.nodes - frame.nodes).max() <= near
+                np.abs(key.nodes - frame.nodes).max() <= near
                 and np.abs(key.tensions - frame.tensions).max(initial=0.0) <= 1e-3 * most
             ):
                 order.append(index)
@@ -117,16 +122,15 @@ def _distinct(robot: Robot, frames: Sequence[Frame]) -> tuple[list[Frame], list[
     return keys, order
 
 
-def _instants(order: Sequence[int], step: float) -> tuple[Float[np.ndarray, " instants"], list[int]]:
-    """Times [s] and keys, without instants between others of the same key."""
-    known = [index for index, key in enumerate(order) if key >= 0]
-    kept = [
-        place
-        for number, place in enumerate(known)
-        if number in (0, len(known) - 1)
-        or not order[known[number - 1]] == order[place] == order[known[number + 1]]
-    ]  # fmt: skip
-    return step * np.array(kept, dtype=float), [order[place] for place in kept]
+def _instants(order: Sequence[int], targets: Sequence[Pose | None]) -> list[int]:
+    """Numbers of the frames that tell all: without those between others of the same key and the same targets."""
+    known = [(index, key, targets[index]) for index, key in enumerate(order) if key >= 0]
+    inner = [
+        here[0]
+        for before, here, after in zip(known, known[1:], known[2:], strict=False)
+        if not before[1:] == here[1:] == after[1:]
+    ]
+    return [known[0][0], *inner, known[-1][0]]
 
 
 def _turn(robot: Robot) -> tuple[float, float, float, float]:
@@ -185,17 +189,12 @@ def _markers(film: _Film) -> Shape | None:
     return _grouped("markers", solids, [LIGHT] * len(solids))
 
 
-def _targets(film: _Film) -> Shape | None:
-    """A cross at each target of a pose, of full size in keys that approach it and of none in others."""
-    size = film.robot.body.mesh.size
-    poses = {key.target.name: key.target for key in film.keys if key.target is not None}
-    solids = []
-    for pose in poses.values():
-        sizes = np.array([TARGET * size if key.target == pose else 0.0 for key in film.keys])
-        for target in pose.targets.values():
-            centre = _in_space(np.array([target], dtype=float))
-            solids.append(cross(np.repeat(centre, len(film.keys), axis=0), sizes))
-    return _grouped("targets", solids, [DARK] * len(solids))
+def _add_targets(glb: Glb, robot: Robot, poses: Sequence[Pose]) -> None:
+    """A cross at each target of each pose."""
+    if poses:
+        shape = _shape("target", cross(TARGET * robot.body.mesh.size), [DARK])
+        places = np.concatenate([_in_space(target_points(pose)) for pose in poses])
+        glb.add_copies(shape, places, [f"{pose.name}: {marker}" for pose in poses for marker in pose.targets])
 
 
 def _grouped(name: str, solids: list[Solid], colours: Sequence[str]) -> Shape | None:

@@ -105,8 +105,8 @@ def spool(centres: Float[np.ndarray, "keys 3"], way: Float[np.ndarray, " 3"], ra
     return _carried(np.concatenate(triangles), radius * np.concatenate(places), np.concatenate(normals), centres)
 
 
-def cross(centres: Float[np.ndarray, "keys 3"], sizes: Float[np.ndarray, " keys"]) -> Solid:
-    """Three bars that cross, of a length in each key; of length 0 nothing is seen."""
+def cross(size: float) -> Solid:
+    """Three bars of a length that cross in the origin."""
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
     places, normals, triangles = [], [], []
     quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
@@ -119,9 +119,8 @@ def cross(centres: Float[np.ndarray, "keys 3"], sizes: Float[np.ndarray, " keys"
             places.append(signs[quad] * sides)
             normals.append(np.tile(way, (4, 1)))
             triangles.append(np.array([[0, 1, 2], [0, 2, 3]]) + first)
-    turned = np.concatenate(places) @ _TILT.T, np.concatenate(normals) @ _TILT.T
-    spread = centres[:, None] + sizes[:, None, None] / 2 * turned[0]
-    return np.concatenate(triangles), spread, np.tile(turned[1], (len(centres), 1, 1))
+    turned, ways = size / 2 * np.concatenate(places) @ _TILT.T, np.concatenate(normals) @ _TILT.T
+    return np.concatenate(triangles), turned[None], ways[None]
 
 
 _TILT = np.array([[1, -1, 0], [1, 1, -2], [1, 1, 1]]) / np.sqrt([[2.0], [6.0], [3.0]])

@@ -1,0 +1,175 @@
+"""`draw_healing`: a surface as it came beside the body made of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from textwrap import wrap
+
+import numpy as np
+from jaxtyping import Float, Int
+from matplotlib.figure import Figure
+
+from hydrostat.arrays import Points
+from hydrostat.geometry.surface import Surface
+from hydrostat.plot.camera import Camera, three_quarter
+from hydrostat.plot.palette import ERROR, INK, LIGHT, MUTED, SEAM
+from hydrostat.plot.pane import DPI, MOST_PIXELS, lay_image
+from hydrostat.plot.places import Place
+from hydrostat.plot.render import Render, render
+from hydrostat.plot.sheet import TALLEST, WIDTH, Sheet, new_sheet, round_step
+
+LINE, HEAD, LETTERS = 11.0, 28.0, 92
+"""Height of a line of notes and of what stands above the views [pt], and letters of a line on a page of usual width."""
+
+REDNESS = 0.72
+"""How red the inside of a surface is drawn where it is seen."""
+
+WELD = 1e-6
+"""Vertices nearer than this, in sizes of the surface, are drawn as one."""
+
+
+def draw_healing(
+    before: Surface,
+    after: Surface,
+    *,
+    notes: Sequence[str] = (),
+    places: Points | None = None,
+    title: str = "",
+    width: float = WIDTH,
+) -> Figure:
+    """A surface as it came, and healed, both seen by one eye to one scale.
+
+    On the first view red is what is wrong: the inside, seen through holes or on triangles that are turned over, edges
+    that do not belong to two triangles that agree, and a ring about each of the places.
+
+    Args:
+        before: as it came.
+        after: healed.
+        notes: lines below the views, such as what was found.
+        places: to mark on the first view, such as parts that were removed [m].
+        title: above the picture; nothing if empty.
+        width: of the picture [inch].
+    """
+    marked = np.zeros((0, 3)) if places is None else np.asarray(places, dtype=float).reshape(-1, 3)
+    first, second = _welded(before), _welded(after)
+    edges = _bad_edges(first)
+    shown = np.concatenate([marked, first.vertices[edges].mean(axis=1)])
+    camera = three_quarter(second.vertices, shown)
+    views = [camera.see(points)[:, :2] for points in (first.vertices, second.vertices, marked)]
+    lines = [line for note in notes for line in _lines(note, width)]
+    layout = _lay_out(np.concatenate(views), lines, width)
+    sheet = new_sheet(layout.corners, title=title, width=width, ruled=False, room=0.0)
+    image = _both_sides(camera.see(first.vertices), first.triangles, _pixel(sheet, camera, first), camera)
+    _show(sheet, image, layout.shifts[0])
+    _draw_edges(sheet, image, camera.see(first.vertices)[edges], layout.shifts[0])
+    rings = camera.see(marked)[:, :2] + layout.shifts[0]
+    sheet.dots(rings, 13, color="none", markeredgecolor=LIGHT, markeredgewidth=3.2, zorder=20)
+    sheet.dots(rings, 13, color="none", markeredgecolor=ERROR, markeredgewidth=1.6, zorder=20.1)
+    pixel = _pixel(sheet, camera, second)
+    _show(sheet, render(camera.see(second.vertices), second.triangles, pixel=pixel, up=camera.sky), layout.shifts[1])
+    _write(sheet, layout, (before, after), lines)
+    return sheet.figure
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """Where views lie on a sheet.
+
+    Attributes:
+        corners: opposite corners of the sheet [mm].
+        shifts: what is added to what the camera sees, for each view [mm].
+        tops: middle of the upper side of each view [mm].
+        foot: lower left corner of both views [mm].
+        point: millimetres that a point (1/72 inch) shows.
+    """
+
+    corners: Float[np.ndarray, "2 2"]
+    shifts: tuple[Place, Place]
+    tops: tuple[Place, Place]
+    foot: Place
+    point: float
+
+
+def _lay_out(view: Float[np.ndarray, "_ 2"], lines: Sequence[str], width: float) -> _Layout:
+    """Two views side by side, words above them, a scale and lines below."""
+    paper = 72 * (width - 0.1)
+    low, side = view.min(axis=0), np.ptp(view, axis=0)
+    border, below = 14.0, 26.0 + LINE * len(lines)
+    point = max(2 * side[0] / (paper - 4 * border), side[1] / (TALLEST * paper - below - HEAD))
+    column = point * paper / 2
+    foot = np.array([(column - side[0]) / 2, below * point])
+    shifts = tuple(foot - low + np.array([number * column, 0.0]) for number in range(2))
+    tops = tuple(np.array([(number + 0.5) * column, foot[1] + side[1] + 6 * point]) for number in range(2))
+    corners = np.array([[0.0, 0.0], [2 * column, foot[1] + side[1] + HEAD * point]])
+    return _Layout(corners, (shifts[0], shifts[1]), (tops[0], tops[1]), np.array([border * point, foot[1]]), point)
+
+
+def _lines(note: str, width: float) -> list[str]:
+    return wrap(note, max(int(LETTERS * width / WIDTH), 20), subsequent_indent="   ") or [""]
+
+
+def _welded(surface: Surface) -> Surface:
+    """The surface with vertices at one place as one, for shades and edges; triangles without area are left out."""
+    low = surface.vertices.min(axis=0)
+    cells = np.round((surface.vertices - low) / max(WELD * surface.size, 1e-300))
+    _, first, names = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+    triangles = names.reshape(-1)[surface.triangles]
+    real = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return Surface(surface.vertices[first], triangles[real]) if real.any() else surface
+
+
+def _bad_edges(surface: Surface) -> Int[np.ndarray, "edges 2"]:
+    """Edges that are not shared by two triangles which run along them in opposite directions."""
+    ways = np.concatenate([surface.triangles[:, [0, 1]], surface.triangles[:, [1, 2]], surface.triangles[:, [2, 0]]])
+    pairs, names = np.unique(np.sort(ways, axis=1), axis=0, return_inverse=True)
+    forward = ways[:, 0] < ways[:, 1]
+    there = np.bincount(names.reshape(-1), forward, minlength=len(pairs))
+    back = np.bincount(names.reshape(-1), ~forward, minlength=len(pairs))
+    return pairs[(there != 1) | (back != 1)]
+
+
+def _both_sides(
+    spots: Float[np.ndarray, "_ 3"], triangles: Int[np.ndarray, "triangles 3"], pixel: float, camera: Camera
+) -> Render:
+    """A surface with its outside as felt and its inside, where that is nearer, in red."""
+    outside = render(spots, triangles, pixel=pixel, up=camera.sky)
+    inside = render(spots, triangles[:, ::-1], pixel=pixel, up=camera.sky)
+    red = np.array([int(ERROR[start : start + 2], 16) / 255 for start in (1, 3, 5)])
+    nearer = inside.depth > outside.depth
+    tinted = inside.colours.copy()
+    tinted[..., :3] += REDNESS * (red - tinted[..., :3])
+    colours = np.where(nearer[..., None], tinted, outside.colours)
+    return replace(outside, colours=colours, depth=np.maximum(outside.depth, inside.depth))
+
+
+def _pixel(sheet: Sheet, camera: Camera, surface: Surface) -> float:
+    side = np.ptp(camera.see(surface.vertices)[:, :2], axis=0)
+    return max(72 / DPI * sheet.scale, float(np.sqrt(side.prod() / MOST_PIXELS)))
+
+
+def _show(sheet: Sheet, image: Render, shift: Place) -> None:
+    lay_image(sheet, image, shift)
+    rings = [ring + shift for ring in image.rings()]
+    if rings:
+        sheet.area(rings, facecolor="none", edgecolor=SEAM, linewidth=0.9, joinstyle="round", zorder=3.1)
+
+
+def _draw_edges(sheet: Sheet, image: Render, ends: Float[np.ndarray, "edges 2 3"], shift: Place) -> None:
+    """Edges as red lines; those behind the surface are left out."""
+    if len(ends):
+        hidden = image.covers(ends.mean(axis=1)) > 4 * image.pixel
+        sheet.segments(ends[~hidden][..., :2] + shift, color=ERROR, linewidth=1.3, zorder=10)
+
+
+def _write(sheet: Sheet, layout: _Layout, surfaces: tuple[Surface, Surface], lines: Sequence[str]) -> None:
+    for words, surface, top in zip(("as it came", "healed"), surfaces, layout.tops, strict=True):
+        count = f"{len(surface.triangles):,} triangles".replace(",", "\N{NARROW NO-BREAK SPACE}")
+        sheet.text((top[0], top[1] + 11 * layout.point), words, fontsize=9, color=INK, weight="bold", ha="center")
+        sheet.text((top[0], top[1]), count, fontsize=7.5, color=MUTED, ha="center")
+    length = round_step(4 * 60 * layout.point)
+    x, y = layout.foot[0], layout.foot[1] - 20 * layout.point
+    sheet.curve(np.array([[x, y], [x + length, y]]), color=INK, linewidth=1.6, solid_capstyle="butt", zorder=12)
+    words = f"{length:g} mm"
+    sheet.text((x + length + 5 * layout.point, y), words, fontsize=7, color=INK, va="center", zorder=12)
+    for number, line in enumerate(lines):
+        at = (x, y - (number + 1.1) * LINE * layout.point)
+        sheet.text(at, line, fontsize=7.5, color=INK, va="center")
