@@ -67,13 +67,16 @@ def upright(up: Float[np.ndarray, " 3"]) -> Float[np.ndarray, "3 3"]:
     return np.array([[1 - x * x * share, -x * y * share, -x], [-x * y * share, 1 - y * y * share, -y], [x, y, z]])
 
 
-def three_quarter(shape: Spots, shown: Spots, up: Float[np.ndarray, " 3"] | None = None) -> Camera:
+def three_quarter(
+    shape: Spots, shown: Spots, up: Float[np.ndarray, " 3"] | None = None, asked: Spots | None = None
+) -> Camera:
     """The camera that shows the length of a body, some of its depth, and that side of it where most is to be seen.
 
     Args:
         shape: points all over the body at rest [m].
         shown: winches, cable points and markers [m]; may be empty.
         up: what is up; z if left out.
+        asked: how far points shall move [m]: they rather come towards the eye than go away from it.
     """
     turn = np.eye(3) if up is None else upright(up)
     shape, shown = shape @ turn.T, shown @ turn.T
@@ -85,6 +88,8 @@ def three_quarter(shape: Spots, shown: Spots, up: Float[np.ndarray, " 3"] | None
     turns = np.radians([-TURN, TURN, 180 - TURN, 180 + TURN]) + long_way
     eyes = np.column_stack([np.cos(height) * np.cos(turns), np.cos(height) * np.sin(turns), np.full(4, np.sin(height))])
     facing = (shown - middle).mean(axis=0) @ eyes.T / max(sides.max(), 1e-12) if len(shown) else np.zeros(4)
+    if asked is not None and len(asked):
+        facing = facing + asked.mean(axis=0) @ turn.T @ eyes.T / max(sides.max(), 1e-12)
     score = np.round(facing, 3) - 0.02 * np.round(eyes[:, 1], 3) + 0.005 * np.round(eyes[:, 0], 3)
     return Camera.towards(eyes[int(np.argmax(score))] @ turn, up=turn[2])
 

@@ -51,8 +51,10 @@ class Glb:
             turn: of the whole scene, as a quaternion (x, y, z, w).
         """
         self._bytes = bytearray()
-        self._moved: list[int] = []
-        self._copies: list[int] = []
+        self._keys = 1
+        self._morphed: list[int] = []
+        self._carried: dict[int, np.ndarray] = {}
+        self._seen: dict[int, np.ndarray] = {}
         self._document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": "hydrostat"},
             "scene": 0,
@@ -66,15 +68,30 @@ class Glb:
 
     def add(self, shape: Shape) -> None:
         """Put a shape into the scene."""
-        self._moved.append(self._node({"name": shape.name, "mesh": self._mesh(shape)}))
+        node = self._node({"name": shape.name, "mesh": self._mesh(shape)})
+        if len(shape.places) > 1:
+            self._keys = len(shape.places)
+            self._morphed.append(node)
 
-    def add_copies(self, shape: Shape, places: Float[np.ndarray, "copies 3"], names: Sequence[str]) -> None:
-        """Put a shape that stays as it is to several places [m]; `show` tells when they are seen."""
+    def add_copies(
+        self,
+        shape: Shape,
+        places: Float[np.ndarray, "some copies 3"],
+        names: Sequence[str],
+        seen: Bool[np.ndarray, "frames copies"] | None = None,
+    ) -> None:
+        """Put a shape that stays as it is to several places [m], in every key or in one for all.
+
+        With `seen`, each copy is there only in some of the instants that `animate` is told.
+        """
         mesh = self._mesh(shape)
-        for name, place in zip(names, places, strict=True):
-            self._copies.append(
-                self._node({"name": name, "mesh": mesh, "translation": [float(value) for value in place]})
-            )
+        for index, name in enumerate(names):
+            begin = [float(value) for value in places[0, index]]
+            node = self._node({"name": name, "mesh": mesh, "translation": begin})
+            if (places[:, index] != places[0, index]).any():
+                self._carried[node] = places[:, index]
+            if seen is not None:
+                self._seen[node] = seen[:, index]
 
     def _node(self, node: dict[str, Any]) -> int:
         nodes = self._document["nodes"]
@@ -100,25 +117,31 @@ class Glb:
         self._document["meshes"].append(mesh)
         return len(self._document["meshes"]) - 1
 
-    def animate(
-        self,
-        times: Float[np.ndarray, " instants"],
-        weights: Float[np.ndarray, "instants targets"],
-        seen: Bool[np.ndarray, "instants copies"],
-        *,
-        name: str,
-    ) -> None:
-        """Mix the morph targets of all shapes in time [s], evenly between instants; copies are there or not."""
+    def animate(self, times: Float[np.ndarray, " instants"], order: Sequence[int], *, name: str) -> None:
+        """Go from one key to the next, evenly between instants.
+
+        Args:
+            times: of the instants [s].
+            order: key of each instant.
+            name: of the animation.
+        """
         source = self._array(times[:, None], bounds=True, use=None)
-        samplers = [
-            {"input": source, "interpolation": "LINEAR", "output": self._array(weights.reshape(-1, 1), use=None)}
-        ]
-        channels = [{"sampler": 0, "target": {"node": node, "path": "weights"}} for node in self._moved]
-        for node, shown in zip(self._copies, seen.T, strict=True):
-            sizes = self._array(np.repeat(shown[:, None], 3, axis=1), use=None)
-            channels.append({"sampler": len(samplers), "target": {"node": node, "path": "scale"}})
-            samplers.append({"input": source, "interpolation": "STEP", "output": sizes})
-        self._document["animations"] = [{"name": name, "samplers": samplers, "channels": channels}]
+        samplers: list[dict[str, Any]] = []
+        channels: list[dict[str, Any]] = []
+
+        def change(nodes: Sequence[int], path: str, values: np.ndarray, between: str = "LINEAR") -> None:
+            channels.extend({"sampler": len(samplers), "target": {"node": node, "path": path}} for node in nodes)
+            samplers.append({"input": source, "interpolation": between, "output": self._array(values, use=None)})
+
+        if self._morphed:
+            weights = np.eye(self._keys)[list(order)][:, 1:]
+            change(self._morphed, "weights", weights.reshape(-1, 1))
+        for node, places in self._carried.items():
+            change([node], "translation", places[list(order)])
+        for node, shown in self._seen.items():
+            change([node], "scale", np.repeat(shown[:, None], 3, axis=1), "STEP")
+        if channels:
+            self._document["animations"] = [{"name": name, "samplers": samplers, "channels": channels}]
 
     def content(self) -> bytes:
         """The whole file: a head, the description as JSON, and the numbers."""

@@ -18,8 +18,8 @@ ROOM = (34.0, 34.0, 40.0, 20.0)
 """Free border around the three-quarter view [pt], on its left, right, lower and upper side: there is place for words,
 below for the compass."""
 
-BARE = 5.0
-"""Free border around a view that stands alone [pt]."""
+BARE = 12.0
+"""Free border around a view that stands alone [pt]: half a winch on its plate, that stands at the edge."""
 
 RULES = (28.0, 12.0, 20.0, 14.0)
 """Free border around the view along an axis [pt], on its left, right, lower and upper side: there are numbers."""
@@ -85,7 +85,14 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
     corners = np.concatenate([mesh.nodes[outer], *(nodes[outer] for nodes in shapes)])
     ways = corners - np.tile(mesh.nodes[outer], (1 + len(shapes), 1))
     up = way_up(robot)
-    return [three_quarter(mesh.nodes[outer], shown, up), along_an_axis(corners, shown, ways, up)]
+    return [three_quarter(mesh.nodes[outer], shown, up, _asked(robot)), along_an_axis(corners, shown, ways, up)]
+
+
+def _asked(robot: Robot) -> Spread:
+    """How far markers shall go in the poses of a robot [m]."""
+    rest = {marker.name: np.array(marker.at) for marker in robot.markers}
+    asked = [np.array(target) - rest[name] for pose in robot.poses.values() for name, target in pose.targets.items()]
+    return np.array(asked, dtype=float).reshape(-1, 3)
 
 
 def way_up(robot: Robot) -> Vector:

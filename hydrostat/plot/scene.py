@@ -1,6 +1,6 @@
 """`save_glb`: an animation of a robot as a scene that can be turned and walked about."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.plot.camera import upright
 from hydrostat.plot.frame import Frame, check_frames
@@ -40,9 +40,9 @@ OPACITY = 0.72
 def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float) -> Path:
     """Write frames as a binary glTF 2.0 scene, whole or not at all; returns its path.
 
-    Body, cables, winches and markers are a mesh each; every frame that differs is a morph target of all of them, and an
-    animation goes from one to the next. Cables are coloured by tension, targets are there while a pose is approached, a
-    flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
+    Every frame that differs is a morph target of body and cables, and an animation goes from one to the next; winches,
+    stoppers and markers are carried along. Cables are coloured by tension, targets are there while a pose is
+    approached, a flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
 
     Args:
         robot: to show.
@@ -57,19 +57,14 @@ def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: f
     if not 0 < step < np.inf:
         raise InputError(f"the time of a frame must be above 0 s, not {step:g} s")
     film = _Film.of(robot, frames)
+    kept = _instants(film.order, [frame.target for frame in frames])
     glb = Glb(robot.name, turn=_turn(robot))
-    for shape in (_body(film), _cables(film), _winches(film), _markers(film)):
-        if shape is not None:
-            glb.add(shape)
-    poses = list({frame.target.name: frame.target for frame in frames if frame.target is not None}.values())
-    _add_targets(glb, robot, poses)
-    if len(film.keys) > 1:
-        kept = _instants(film.order, [frame.target for frame in frames])
-        weights = np.eye(len(film.keys))[[film.order[place] for place in kept]][:, 1:]
-        seen = [[frames[place].target == pose for pose in poses for _ in pose.targets] for place in kept]
-        glb.animate(
-            step * np.array(kept, dtype=float), weights, np.array(seen, dtype=bool).reshape(len(kept), -1), name="poses"
-        )
+    glb.add(_body(film))
+    if robot.cables:
+        glb.add(_cables(film))
+    _add_hardware(glb, film)
+    _add_targets(glb, robot, [frames[place].target for place in kept])
+    glb.animate(step * np.array(kept, dtype=float), [film.order[place] for place in kept], name="poses")
     return replace_file(Path(path), glb.content())
 
 
@@ -147,69 +142,65 @@ def _turn(robot: Robot) -> tuple[float, float, float, float]:
 def _body(film: _Film) -> Shape:
     body = film.robot.body
     solid = skin(body.mesh, film.nodes) if body.mesh.dim == 3 else slab(body.mesh, film.nodes, body.thickness or 0.0)
-    return _shape("body", solid, [FELT], opacity=OPACITY if film.robot.cables else 1.0)
+    return _shape("body", solid, FELT, opacity=OPACITY if film.robot.cables else 1.0)
 
 
-def _cables(film: _Film) -> Shape | None:
-    """A tube for each cable with a ball as its stopper, in the colours of tension."""
+def _cables(film: _Film) -> Shape:
+    """A tube for each cable, in the colours of tension."""
     rigging, size = Rigging(film.robot), film.robot.body.mesh.size
     runs = [[_in_space(points) for points in rigging.cables(nodes)] for nodes in film.nodes]
     scale = TensionScale.of(np.concatenate([key.tensions for key in film.keys]))
     solids, colours = [], []
     for index in range(len(film.robot.cables)):
-        points = np.stack([run[index] for run in runs])
-        solids.append(joined([tube(points, CABLE * size), sphere(points[:, -1], 2.2 * CABLE * size)]))
+        solids.append(tube(np.stack([run[index] for run in runs]), CABLE * size))
         shades = np.array([_linear(scale.colour(float(key.tensions[index]))) for key in film.keys])
         colours.append(np.repeat(shades[:, None], solids[-1][1].shape[1], axis=1))
-    if not solids:
-        return None
     triangles, places, normals = joined(solids)
     every = np.concatenate(colours, axis=1)
     return Shape(name="cables", triangles=triangles, places=places, normals=normals, colours=every)
 
 
-def _winches(film: _Film) -> Shape | None:
-    rigging, size = Rigging(film.robot), film.robot.body.mesh.size
-    centres = np.stack([_in_space(rigging.winches(nodes)) for nodes in film.nodes])
-    ways = {winch.name: np.array([1.0, 0.0, 0.0]) for winch in film.robot.winches}
-    for cable in reversed(film.robot.cables):
+def _add_hardware(glb: Glb, film: _Film) -> None:
+    """Spools, and balls for markers and for the ends of cables, which the body carries without turning them."""
+    robot, rigging, size = film.robot, Rigging(film.robot), film.robot.body.mesh.size
+    ways = {winch.name: np.array([1.0, 0.0, 0.0]) for winch in robot.winches}
+    for cable in reversed(robot.cables):
         ends = _in_space(np.array(cable.points[:2], dtype=float))
         ways[cable.winch] = ends[1] - ends[0]
-    radii = [min(max(winch.spool_radius, SPOOL[0] * size), SPOOL[1] * size) for winch in film.robot.winches]
-    solids = [
-        spool(centres[:, index], ways[winch.name], radii[index]) for index, winch in enumerate(film.robot.winches)
-    ]
-    return _grouped("winches", solids, list(winch_colours(film.robot).values()))
+    colours, winches = winch_colours(robot), _carried(film, rigging.winches)
+    for index, winch in enumerate(robot.winches):
+        radius = min(max(winch.spool_radius, SPOOL[0] * size), SPOOL[1] * size)
+        shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colours[winch.name])
+        glb.add_copies(shape, winches[:, [index]], [shape.name])
+    if robot.cables:
+        ends = _carried(film, lambda nodes: np.array([points[-1] for points in rigging.cables(nodes)]))
+        names = [f"stopper {number}" for number in range(1, len(robot.cables) + 1)]
+        glb.add_copies(_shape("stopper", sphere(2.2 * CABLE * size), DARK), ends, names)
+    if robot.markers:
+        names = [f"marker {marker.name}" for marker in robot.markers]
+        glb.add_copies(_shape("marker", sphere(MARKER * size), LIGHT), _carried(film, rigging.markers), names)
 
 
-def _markers(film: _Film) -> Shape | None:
-    rigging, size = Rigging(film.robot), film.robot.body.mesh.size
-    centres = np.stack([_in_space(rigging.markers(nodes)) for nodes in film.nodes])
-    solids = [sphere(centres[:, index], MARKER * size) for index in range(len(film.robot.markers))]
-    return _grouped("markers", solids, [LIGHT] * len(solids))
+def _carried(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "keys points 3"]:
+    """Where points are in every key [m]."""
+    return np.stack([_in_space(places(nodes)) for nodes in film.nodes])
 
 
-def _add_targets(glb: Glb, robot: Robot, poses: Sequence[Pose]) -> None:
-    """A cross at each target of each pose."""
+def _add_targets(glb: Glb, robot: Robot, targets: Sequence[Pose | None]) -> None:
+    """A cross at each target, there at the instants whose pose it belongs to."""
+    poses = list({pose.name: pose for pose in targets if pose is not None}.values())
     if poses:
-        shape = _shape("target", cross(TARGET * robot.body.mesh.size), [DARK])
+        shape = _shape("target", cross(TARGET * robot.body.mesh.size), DARK)
         places = np.concatenate([_in_space(target_points(pose)) for pose in poses])
-        glb.add_copies(shape, places, [f"{pose.name}: {marker}" for pose in poses for marker in pose.targets])
+        names = [f"target {pose.name}: {marker}" for pose in poses for marker in pose.targets]
+        seen = [[target == pose for pose in poses for _ in pose.targets] for target in targets]
+        glb.add_copies(shape, places[None], names, np.array(seen))
 
 
-def _grouped(name: str, solids: list[Solid], colours: Sequence[str]) -> Shape | None:
-    """Solids as one shape, each in its colour; nothing if there are none."""
-    return _shape(name, joined(solids), colours, counts=[solid[1].shape[1] for solid in solids]) if solids else None
-
-
-def _shape(
-    name: str, solid: Solid, colours: Sequence[str], *, counts: Sequence[int] | None = None, opacity: float = 1.0
-) -> Shape:
+def _shape(name: str, solid: Solid, colour: str, *, opacity: float = 1.0) -> Shape:
     triangles, places, normals = solid
-    told = np.repeat(np.array([_linear(colour) for colour in colours]), counts or [places.shape[1]], axis=0)
-    return Shape(
-        name=name, triangles=triangles, places=places, normals=normals, colours=told[None], opacity=opacity
-    )  # fmt: skip
+    told = np.tile(_linear(colour), (1, places.shape[1], 1))
+    return Shape(name=name, triangles=triangles, places=places, normals=normals, colours=told, opacity=opacity)
 
 
 def _in_space(points: Points) -> Points:

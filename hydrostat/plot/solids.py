@@ -68,8 +68,8 @@ def tube(points: Places, radius: float) -> Solid:
     return triangles, places.reshape(shape), normals.reshape(shape)
 
 
-def sphere(centres: Float[np.ndarray, "keys 3"], radius: float) -> Solid:
-    """A sphere about a place."""
+def sphere(radius: float) -> Solid:
+    """A sphere about the origin."""
     turns, rows = 2 * np.pi * np.arange(SIDES) / SIDES, np.pi * np.arange(1, 5) / 5
     ring = np.stack([np.cos(turns), np.sin(turns), np.zeros(SIDES)], axis=1)
     rounds = [np.sin(row) * ring + np.cos(row) * np.array([0, 0, 1.0]) for row in rows]
@@ -81,11 +81,11 @@ def sphere(centres: Float[np.ndarray, "keys 3"], radius: float) -> Solid:
         one, two = 1 + SIDES * row + at, 1 + SIDES * row + after
         triangles += [np.stack([one, one + SIDES, two + SIDES], 1), np.stack([one, two + SIDES, two], 1)]
     triangles.append(np.stack([0 * at + last, last - SIDES + after, last - SIDES + at], axis=1))
-    return _carried(np.concatenate(triangles), radius * normals, normals, centres)
+    return np.concatenate(triangles), radius * normals[None], normals[None]
 
 
-def spool(centres: Float[np.ndarray, "keys 3"], way: Float[np.ndarray, " 3"], radius: float) -> Solid:
-    """A winch's spool, its axis across the way of its cable: a drum between two flanges."""
+def spool(way: Float[np.ndarray, " 3"], radius: float) -> Solid:
+    """A winch's spool about the origin, its axis across the way of its cable: a drum between two flanges."""
     outline = np.array([(0, -0.5), (1, -0.5), (1, -0.3), (0.6, -0.3), (0.6, 0.3), (1, 0.3), (1, 0.5), (0, 0.5)])
     axis = _across(_unit(way[None], fallback=np.array([1.0, 0.0, 0.0])))[0]
     one = _across(axis[None])[0]
@@ -102,7 +102,7 @@ def spool(centres: Float[np.ndarray, "keys 3"], way: Float[np.ndarray, " 3"], ra
         normals += [normal, normal]
         at, after = first + np.arange(count), first + (np.arange(count) + 1) % count
         triangles += [np.stack([at, after, after + count], 1), np.stack([at, after + count, at + count], 1)]
-    return _carried(np.concatenate(triangles), radius * np.concatenate(places), np.concatenate(normals), centres)
+    return np.concatenate(triangles), radius * np.concatenate(places)[None], np.concatenate(normals)[None]
 
 
 def cross(size: float) -> Solid:
@@ -136,13 +136,6 @@ def joined(solids: list[Solid]) -> Solid:
         np.concatenate([solid[1] for solid in solids], axis=1),
         np.concatenate([solid[2] for solid in solids], axis=1),
     )
-
-
-def _carried(
-    triangles: Triangles, places: np.ndarray, normals: np.ndarray, centres: Float[np.ndarray, "keys 3"]
-) -> Solid:
-    """A solid that goes with a place, without turning."""
-    return triangles, centres[:, None] + places, np.tile(normals, (len(centres), 1, 1))
 
 
 def _smooth(triangles: Triangles, places: Places) -> Places:
