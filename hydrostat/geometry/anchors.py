@@ -129,7 +129,7 @@ def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], In
 def _nearest(mesh: Mesh, point: Float[np.ndarray, " dim"]) -> tuple[int, Float[np.ndarray, " corners"], float]:
     """Element, weights and distance [m] of the place on the boundary nearest to a point outside."""
     corners = mesh.nodes[mesh.boundary]
-    shares = _on_segments(corners, point) if mesh.dim == 2 else _on_triangles(corners, point)
+    shares = nearest_shares(corners, point[None])
     distances = np.linalg.norm(np.einsum("fc,fcd->fd", shares, corners) - point, axis=1)
     facet = int(np.argmin(distances))
     element = int(mesh.boundary_elements[facet])
@@ -139,29 +139,36 @@ def _nearest(mesh: Mesh, point: Float[np.ndarray, " dim"]) -> tuple[int, Float[n
     return element, weights, float(distances[facet])
 
 
+def nearest_shares(
+    corners: Float[np.ndarray, "facets dim dim"], points: Float[np.ndarray, "#facets dim"]
+) -> Float[np.ndarray, "facets dim"]:
+    """Weights of the place of each facet (segment or triangle) nearest to its point, or to the one point."""
+    return _on_segments(corners, points) if corners.shape[1] == 2 else _on_triangles(corners, points)
+
+
 def _on_segments(
-    corners: Float[np.ndarray, "facets 2 dim"], point: Float[np.ndarray, " dim"]
+    corners: Float[np.ndarray, "facets 2 dim"], points: Float[np.ndarray, "#facets dim"]
 ) -> Float[np.ndarray, "facets 2"]:
-    """Weights of the place of each segment nearest to a point."""
+    """Weights of the place of each segment nearest to its point."""
     along = corners[:, 1] - corners[:, 0]
-    fraction = np.einsum("fd,fd->f", point - corners[:, 0], along) / np.einsum("fd,fd->f", along, along)
+    fraction = np.einsum("fd,fd->f", points - corners[:, 0], along) / np.einsum("fd,fd->f", along, along)
     fraction = np.clip(fraction, 0.0, 1.0)
     return np.column_stack([1.0 - fraction, fraction])
 
 
 def _on_triangles(
-    corners: Float[np.ndarray, "facets 3 3"], point: Float[np.ndarray, " 3"]
+    corners: Float[np.ndarray, "facets 3 3"], points: Float[np.ndarray, "#facets 3"]
 ) -> Float[np.ndarray, "facets 3"]:
-    """Weights of the place of each triangle nearest to a point: its foot if inside, else on the nearest side."""
+    """Weights of the place of each triangle nearest to its point: its foot if inside, else on the nearest side."""
     spans = _spans(corners)
     gram = np.einsum("fid,fjd->fij", spans, spans)
-    local = np.linalg.solve(gram, np.einsum("fid,fd->fi", spans, point - corners[:, 0])[..., None])[..., 0]
+    local = np.linalg.solve(gram, np.einsum("fid,fd->fi", spans, points - corners[:, 0])[..., None])[..., 0]
     best = np.column_stack([1.0 - local.sum(axis=1), local])
     least = np.where((best >= 0.0).all(axis=1), -1.0, np.inf)
     for first, second in ((0, 1), (1, 2), (2, 0)):
         weights = np.zeros_like(best)
-        weights[:, [first, second]] = _on_segments(corners[:, [first, second]], point)
-        away = np.linalg.norm(np.einsum("fc,fcd->fd", weights, corners) - point, axis=1)
+        weights[:, [first, second]] = _on_segments(corners[:, [first, second]], points)
+        away = np.linalg.norm(np.einsum("fc,fcd->fd", weights, corners) - points, axis=1)
         best[away < least] = weights[away < least]
         least = np.minimum(least, away)
     return best

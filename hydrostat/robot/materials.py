@@ -50,9 +50,9 @@ def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measu
         source=f"{_BULLETIN}, {modulus:g} psi and {breaks:g} %; Poisson's ratio assumed",
         note=(
             f"Stress at twice its length: {stress / 1e3:.0f} kPa in the bulletin, {measured:.0f} kPa in the tensile"
-            f" test published with {_MARECHAL}, where strain is the motion of the grips and so is overrated; by that test"
-            f" Young's modulus is {young_of_rubber(1e3 * measured) / 1e3:.0f} kPa. Stiffens beyond twice its length,"
-            f" softer after the first pull (Mullins)."
+            f" test published with {_MARECHAL}, where strain is the motion of the grips and so is overrated; by that"
+            f" test Young's modulus is {young_of_rubber(1e3 * measured) / 1e3:.0f} kPa. Stiffens beyond twice its"
+            f" length, softer after the first pull (Mullins)."
         ),
     )
 
@@ -132,8 +132,8 @@ _TABLE = (
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
         source=(
-            "density from its name, 5 lb/ft^3; lambda 34.5 kPa and mu 139.1 kPa (with 6.5 Pa s), fitted to the motion of"
-            f" a sample, as noted in a public program taken to be that of {_HAHN}; range assumed"
+            "density from its name, 5 lb/ft^3; lambda 34.5 kPa and mu 139.1 kPa (with 6.5 Pa s), fitted to the motion"
+            f" of a sample, as noted in a public program taken to be that of {_HAHN}; range assumed"
         ),
         note=(
             "Fitted to fast and small motion; slow and large squeezes are softer, for the walls of a foam buckle."
@@ -177,7 +177,7 @@ _TABLE = (
         note=(
             "Upholstery and mattresses. Firmness does not follow density: at 30 kg/m^3 it varies threefold. Stiff for"
             " the first 5 to 10 %, then nearly flat up to 60 %, then stiff again. Poisson's ratio was measured from"
-            " 0.5 at 5 % to -0.05 at 66 % of squeeze (R. D. Widdle, A. K. Bajaj, P. Davies, Int. J. Eng. Science 46, 2008)."
+            " 0.5 at 5 % to -0.05 at 66 % of squeeze (R. D. Widdle et al., Int. J. Eng. Science 46, 2008)."
         ),
     ),
     Material(
@@ -223,7 +223,8 @@ _TABLE = (
         note=(
             "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C (Johnston 2014); 20 MPa / ratio, so 2 MPa at 10:1,"
             " in compression (Z. Wang, A. A. Volinsky, N. D. Gallant, J. Appl. Polym. Sci. 131, 41050, 2014). Over nine"
-            " kinds of test it spreads over two decades (H. Varner, T. Cohen, Soft Matter 20, 2024). Breaks at 100 to 140 %."
+            " kinds of test it spreads over two decades (H. Varner, T. Cohen, Soft Matter, 2024). Breaks at 100 to"
+            " 140 %."
         ),
     ),
     _TPU,

@@ -1,0 +1,177 @@
+"""`measure_thickness`: how thick a body is, everywhere on its boundary, and how many elements that is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.arrays import Points
+from hydrostat.geometry.mesh import Mesh
+
+_REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}
+"""(Edge of a regular simplex)^dim over its size."""
+
+_ASIDE = (0.011, -0.007, -0.004)
+"""How far a ray starts from the middle of its facet, as weights: from the middle, in regular meshes, rays hit edges."""
+
+_MOST_STEPS = 10_000
+
+_NEAR = 1.5
+"""Middles of thin places this many elements apart are of one part."""
+
+_SLENDER = 1.5
+"""A part is a limb if it is this many times as long as thick."""
+
+
+@dataclass(frozen=True, eq=False)
+class Thickness:
+    """What is inside of each facet of the boundary.
+
+    Attributes:
+        chords: how far it is from the facet, straight in, to where the body ends [m].
+        middles: half way there [m].
+        spacing: length of the mesh's edges about the facet [m]: of a regular element of the same size.
+        areas: area of the facet [m^2], its length in the plane [m].
+    """
+
+    chords: Float[np.ndarray, " facets"]
+    middles: Float[np.ndarray, "facets dim"]
+    spacing: Float[np.ndarray, " facets"]
+    areas: Float[np.ndarray, " facets"]
+
+    @property
+    def across(self) -> Float[np.ndarray, " facets"]:
+        """How many elements there are across the body at each facet."""
+        return self.chords / self.spacing
+
+    def part(self, share: float) -> tuple[float, float]:
+        """Thickness [m] and elements across that `share` of the boundary fall below."""
+        weights = self.areas / self.areas.sum()
+        found = []
+        for values in (self.chords, self.across):
+            order = np.argsort(values, kind="stable")
+            found.append(float(values[order][np.searchsorted(np.cumsum(weights[order]), share)]))
+        return found[0], found[1]
+
+
+def spacings(mesh: Mesh) -> Float[np.ndarray, " elements"]:
+    """Edge [m] of the regular triangle or tetrahedron that is as large as each element."""
+    return (_REGULAR[mesh.dim] * mesh.volumes) ** (1 / mesh.dim)
+
+
+def measure_thickness(mesh: Mesh) -> Thickness:
+    """Rays from every facet of the boundary, along its normal through the body, from element to element."""
+    corners = mesh.nodes[mesh.boundary]
+    weights = np.full(mesh.dim, 1 / mesh.dim) + _ASIDE[: mesh.dim] - np.mean(_ASIDE[: mesh.dim])
+    starts = np.einsum("c,fcd->fd", weights, corners)
+    inward, areas = _normals(corners)
+    chords = _march(mesh, mesh.boundary_elements, starts, inward)
+    return Thickness(chords, starts + 0.5 * chords[:, None] * inward, _smooth_spacing(mesh), areas)
+
+
+def _normals(corners: Float[np.ndarray, "facets corners dim"]) -> tuple[Points, Float[np.ndarray, " facets"]]:
+    """Unit normals into the body, and areas."""
+    if corners.shape[2] == 2:
+        along = corners[:, 1] - corners[:, 0]
+        inward = np.column_stack([-along[:, 1], along[:, 0]])
+        areas = np.linalg.norm(inward, axis=1)
+        return inward / areas[:, None], areas
+    inward = np.cross(corners[:, 2] - corners[:, 0], corners[:, 1] - corners[:, 0])
+    double = np.linalg.norm(inward, axis=1)
+    return inward / double[:, None], double / 2
+
+
+def _smooth_spacing(mesh: Mesh) -> Float[np.ndarray, " facets"]:
+    """Mean spacing of the elements about the nodes of each facet, for those at the boundary alone may be cut small."""
+    total, count = np.zeros(len(mesh.nodes)), np.zeros(len(mesh.nodes))
+    each = np.repeat(spacings(mesh)[:, None], mesh.dim + 1, axis=1)
+    np.add.at(total, mesh.elements, each)
+    np.add.at(count, mesh.elements, 1.0)
+    return (total[mesh.boundary] / count[mesh.boundary]).mean(axis=1)
+
+
+def _march(
+    mesh: Mesh, elements: Int[np.ndarray, " rays"], starts: Points, directions: Points
+) -> Float[np.ndarray, " rays"]:
+    """How far each ray runs in the body, from a start in its element to where no element follows."""
+    beyond = _neighbours(mesh)
+    spans = np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2)
+    slopes = np.linalg.inv(spans)
+    run, here, rays = np.zeros(len(starts)), elements.copy(), np.arange(len(starts))
+    came = np.full(len(starts), -2)
+    for _ in range(_MOST_STEPS):
+        if not len(rays):
+            break
+        inverse = slopes[here[rays]]
+        local = np.einsum("rij,rj->ri", inverse, starts[rays] - mesh.nodes[mesh.elements[here[rays], 0]])
+        change = np.einsum("rij,rj->ri", inverse, directions[rays])
+        weight = np.column_stack([1 - local.sum(axis=1), local])
+        rate = np.column_stack([-change.sum(axis=1), change])
+        ahead = (rate < 0) & (beyond[here[rays]] != came[rays, None])
+        ends = np.where(ahead, -weight / np.where(ahead, rate, 1.0), np.inf)
+        face = np.argmin(ends, axis=1)
+        end = ends[np.arange(len(rays)), face]
+        run[rays] = np.where(np.isfinite(end), np.maximum(end, run[rays]), run[rays])
+        after = np.where(np.isfinite(end), beyond[here[rays], face], -1)
+        came[rays] = here[rays]
+        here[rays] = after
+        rays = rays[after >= 0]
+    return run
+
+
+def _neighbours(mesh: Mesh) -> Int[np.ndarray, "elements corners"]:
+    """The element beyond the facet opposite each corner; -1 where the body ends."""
+    count, corners = len(mesh.elements), mesh.dim + 1
+    facets = np.sort(np.concatenate([np.delete(mesh.elements, corner, axis=1) for corner in range(corners)]), axis=1)
+    order = np.lexsort(facets.T)
+    same = np.flatnonzero((facets[order][1:] == facets[order][:-1]).all(axis=1))
+    one, two = order[same], order[same + 1]
+    beyond = np.full(count * corners, -1)
+    beyond[one], beyond[two] = two % count, one % count
+    return beyond.reshape(corners, count).T
+
+
+@dataclass(frozen=True, eq=False)
+class ThinPart:
+    """A part of the body that is thin and goes on for longer than it is thick.
+
+    Attributes:
+        thickness: where it is thinnest [m], but for a tenth of it: a notch is no limb.
+        across: elements there.
+        place: the middle of the body there [m].
+        length: of the part [m].
+    """
+
+    thickness: float
+    across: float
+    place: Float[np.ndarray, " dim"]
+    length: float
+
+
+def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
+    """The limbs and sheets with fewer than `least` elements across, thinnest first.
+
+    Tips, corners and notches are no limbs: what is not longer than `_SLENDER` times its thickness is left out.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import KDTree
+
+    thin = np.flatnonzero(thickness.across < least)
+    if not len(thin):
+        return []
+    middles = thickness.middles[thin]
+    one, two = KDTree(middles).query_pairs(_NEAR * np.median(thickness.spacing[thin]), output_type="ndarray").T
+    joins = coo_array((np.ones(len(one)), (one, two)), shape=(len(thin), len(thin)))
+    count, labels = connected_components(joins, directed=False)
+    found = []
+    for part in range(count):
+        members = thin[labels == part]
+        spread = thickness.middles[members] - thickness.middles[members].mean(axis=0)
+        axis = np.linalg.svd(spread, full_matrices=False)[2][0]
+        length = float(np.ptp(spread @ axis))
+        if length > _SLENDER * np.median(thickness.chords[members]):
+            at = members[np.argsort(thickness.across[members])[len(members) // 10]]
+            chord, across = float(thickness.chords[at]), float(thickness.across[at])
+            found.append(ThinPart(chord, across, thickness.middles[at], length))
+    return sorted(found, key=lambda part: part.across)

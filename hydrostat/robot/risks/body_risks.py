@@ -1,0 +1,88 @@
+"""Risks of the body's mesh."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.quality import dihedral_angles, smallest_angle
+from hydrostat.geometry.thickness import measure_thickness, thin_parts
+from hydrostat.robot.body import Body, Volume
+from hydrostat.robot.risks.words import mm, place
+from hydrostat.robot.robot import Robot
+
+LEAST_ANGLE = 20.0
+"""Triangles with a smaller angle [degrees] make the simulation less exact."""
+
+LEAST_DIHEDRAL = 10.0
+"""So do tetrahedra with a smaller angle between two faces [degrees]."""
+
+LOCKING_POISSON = 0.35
+"""From this Poisson's ratio on, what locking adds to the bending stiffness of linear elements is worth a word."""
+
+LOCKING = {
+    2: {0.35: 0.14, 0.4: 0.20, 0.43: 0.27, 0.45: 0.35, 0.47: 0.54, 0.49: 1.4},
+    3: {0.35: 0.12, 0.4: 0.20, 0.43: 0.31, 0.45: 0.45, 0.47: 0.77, 0.49: 2.4},
+}
+"""What it adds with 4 elements across a limb, a fraction, in the plane and in space (`benchmarks/locking.py`)."""
+
+LEAST_ACROSS = {2: 2.0, 3: 3.0}
+"""A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
+
+GOOD_ACROSS = 4
+"""As many are enough: 14 % too stiff in the plane, 5 to 27 % in space, by the pattern of the mesh."""
+
+TOO_STIFF = {2: {2: "50 % or more"}, 3: {2: "20 to 100 % or more", 3: "10 to 100 %"}}
+"""How much too stiff a limb is in bending with fewer elements across than this, by the pattern of the mesh."""
+
+
+def body_risks(robot: Robot) -> Iterator[str]:
+    """Bad angles, locking, and limbs of few elements."""
+    mesh = robot.body.mesh
+    yield from _flat_angles(mesh) if mesh.dim == 2 else _slivers(mesh)
+    yield from _locking(robot.body)
+    yield from _thin(robot.body)
+
+
+def _flat_angles(mesh: Mesh) -> Iterator[str]:
+    if smallest_angle(mesh) < LEAST_ANGLE:
+        yield f"body: the mesh has an angle of {smallest_angle(mesh):.0f} degrees; try another element_size"
+
+
+def _slivers(mesh: Mesh) -> Iterator[str]:
+    angles = dihedral_angles(mesh.nodes, mesh.elements)
+    count = int((angles < LEAST_DIHEDRAL).sum())
+    if count:
+        flattest = int(np.argmin(angles))
+        where = place(mesh.nodes[mesh.elements[flattest]].mean(axis=0))
+        yield (
+            f"body: {count} of {len(angles)} tetrahedra {'is a sliver' if count == 1 else 'are slivers'} (below "
+            f"{LEAST_DIHEDRAL:.0f} degrees between two faces; the worst {angles[flattest]:.1f}, at {where}): too stiff "
+            f"and slow to solve; mesh the body anew"
+        )
+
+
+def _locking(body: Body) -> Iterator[str]:
+    poisson = body.material.poisson
+    if poisson >= LOCKING_POISSON and body.volume is Volume.ELEMENT:
+        added = max(part for ratio, part in LOCKING[body.mesh.dim].items() if ratio <= poisson)
+        yield (
+            f"body.material: Poisson's ratio {poisson:g}: linear elements lock; with 4 of them across a limb it can be "
+            f'{100 * added:.0f} % too stiff in bending for that alone; try volume = "patch"'
+        )
+
+
+def _thin(body: Body) -> Iterator[str]:
+    dim = body.mesh.dim
+    parts = thin_parts(measure_thickness(body.mesh), LEAST_ACROSS[dim])
+    if not parts:
+        return
+    thinnest = parts[0]
+    others = f", and {len(parts) - 1} more such part{'s' if len(parts) > 2 else ''}" if len(parts) > 1 else ""
+    percent = next(text for count, text in TOO_STIFF[dim].items() if thinnest.across < count)
+    size = f"{1e3 * min(part.thickness for part in parts) / GOOD_ACROSS:.2g} mm"
+    yield (
+        f"body: a limb has only {thinnest.across:.1f} elements across ({mm(thinnest.thickness)} thick at "
+        f"{place(thinnest.place)}{others}): linear elements make it {percent} too stiff in bending; "
+        + (f'element_size = "{size}" would do' if body.element_size else f"a mesh with edges of {size} would do")
+    )

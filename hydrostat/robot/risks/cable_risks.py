@@ -1,0 +1,107 @@
+"""Risks of cables."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Points
+from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.thickness import spacings
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.risks.winch_risks import cover
+from hydrostat.robot.risks.words import Found, known_up_to, mm, place, told_together
+from hydrostat.robot.robot import Robot
+from hydrostat.robot.winch import Mount
+
+LEAST_COVER = 0.003
+"""A cable nearer to the edge or the surface than this [m] tears out."""
+
+_STEP = 0.5 * LEAST_COVER
+"""Distance of the places at which a cable is looked at [m]."""
+
+_MOST_STEPS = 400
+"""Places on one segment."""
+
+_CORNER = 0.02
+"""A straight line may cut a corner of a coarse surface by this many elements."""
+
+
+def cable_risks(robot: Robot) -> Iterator[str]:
+    """Cables that leave the body, tear out of it, or would squeeze it too far."""
+    leaving = list(_leaving(robot))
+    yield from told_together(leaving)
+    gone = {risk.part for risk in leaving}
+    yield from told_together(risk for risk in _near_the_surface(robot) if risk.part not in gone)
+    yield from told_together(_squeezing(robot))
+
+
+def _points_in_body(robot: Robot, cable: Cable) -> Points:
+    outside = robot.winch(cable.winch).mount is Mount.WORLD
+    return np.array(cable.points[1:] if outside else cable.points, dtype=float)
+
+
+def _sampled(points: Points) -> Float[np.ndarray, "places dim"]:
+    """The points and places between them, at most `_STEP` apart, with `_MOST_STEPS` on a segment at most."""
+    places = [points[:1]]
+    for start, end in pairwise(points):
+        steps = min(int(np.ceil(np.linalg.norm(end - start) / _STEP)), _MOST_STEPS)
+        places.append(start + np.linspace(0, 1, max(steps, 1) + 1)[1:, None] * (end - start))
+    return np.concatenate(places)
+
+
+def _leaving(robot: Robot) -> Iterator[Found]:
+    outline = robot.body.outline
+    slack = _CORNER * float(np.median(spacings(robot.body.mesh)))
+    for index, cable in enumerate(robot.cables):
+        inside = _points_in_body(robot, cable)
+        if len(inside) < 2:
+            continue
+        if outline is not None:
+            from shapely import LineString, contains
+
+            if not contains(outline.polygon, LineString(inside)):
+                text = "leaves the body between two points; add a point to lead it round"
+                yield Found(f"cable[{index}]", 0.0, text)
+            continue
+        places = _sampled(inside)
+        out = locate(robot.body.mesh, places).distances
+        if out.max() > slack:
+            where = place(places[np.argmax(out)])
+            text = f"leaves the body by {mm(float(out.max()))} at {where}; add a point to lead it round"
+            yield Found(f"cable[{index}]", float(out.max()), text)
+
+
+def _near_the_surface(robot: Robot) -> Iterator[Found]:
+    edge = "edge" if robot.body.mesh.dim == 2 else "surface"
+    for index, cable in enumerate(robot.cables):
+        places = _sampled(_points_in_body(robot, cable))
+        if robot.winch(cable.winch).mount is Mount.WORLD:  # it has to come in somewhere
+            places = places[np.linalg.norm(places - places[0], axis=1) > 2 * LEAST_COVER]
+        if not len(places):
+            continue
+        depths = cover(robot.body, places)
+        if depths.min() < LEAST_COVER:
+            nearest = int(np.argmin(depths))
+            text = f"only {mm(float(depths[nearest]))} inside the {edge} at {place(places[nearest])}, it may tear out"
+            yield Found(f"cable[{index}]", -float(depths[nearest]), text)
+
+
+def _squeezing(robot: Robot) -> Iterator[Found]:
+    """An estimate from lengths alone: what a winch takes in, the body along its cable must become shorter by."""
+    material = robot.body.material
+    if material.largest_squeeze is None:
+        return
+    for index, cable in enumerate(robot.cables):
+        winch = robot.winch(cable.winch)
+        length = float(cable.segments[cable.bare].sum())
+        squeeze = (winch.travel - cable.slack) / length
+        if winch.travel <= length and squeeze > material.largest_squeeze:
+            most = material.largest_squeeze * length + cable.slack
+            limit = known_up_to(material, f"{100 * material.largest_squeeze:.0f} %")
+            text = (
+                f"the full travel of {mm(winch.travel)} would squeeze the body along the cable by "
+                f"{100 * squeeze:.0f} % on average; {limit}; a travel of {mm(most)} stays within"
+            )
+            yield Found(f"cable[{index}]", squeeze, text)

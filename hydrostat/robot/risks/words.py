@@ -1,0 +1,54 @@
+"""How risks are told: lengths and places in millimetres, several parts with the same risk in one line."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.robot.material import Material
+
+
+@dataclass(frozen=True)
+class Found:
+    """One part with a risk.
+
+    Attributes:
+        part: its name, such as "cable[0]".
+        severity: larger is worse.
+        text: what is the matter.
+    """
+
+    part: str
+    severity: float
+    text: str
+
+
+def told_together(found: Iterable[Found]) -> Iterator[str]:
+    """One line for all parts with the same risk, in the words of the worst; none if there is none."""
+    found = list(found)
+    if not found:
+        return
+    parts = list(dict.fromkeys(risk.part for risk in found))
+    worst = max(found, key=lambda risk: risk.severity)
+    if len(parts) == 1:
+        yield f"{worst.part}: {worst.text}"
+    elif len(parts) <= 3:
+        yield f"{', '.join(parts[:-1])} and {parts[-1]}: {worst.text} ({worst.part} is the worst)"
+    else:
+        yield f"{', '.join(parts[:2])} and {len(parts) - 2} more: {worst.text} ({worst.part} is the worst)"
+
+
+def mm(length: float) -> str:
+    """A length [m] in millimetres, to three digits, micrometres at best."""
+    return f"{round(1e3 * length, 3):.3g} mm"
+
+
+def place(point: Float[np.ndarray, " dim"]) -> str:
+    """A place [m] in millimetres."""
+    return "[" + ", ".join(f"{round(1e3 * value):d}" for value in point) + "] mm"
+
+
+def known_up_to(material: Material, limit: str) -> str:
+    """How far the numbers of a material are believed."""
+    return f"{material.name or 'the material'} is known up to {limit} (an estimate from lengths alone)"

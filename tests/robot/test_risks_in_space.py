@@ -1,0 +1,105 @@
+"""What is allowed but may disappoint, of bodies in space. The oracle of each test is a box with that one fault."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import box_mesh, mesh_body
+
+from hydrostat.geometry import Mesh
+from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Winch, find_risks
+
+LENGTH, SIDE = 0.12, 0.04
+
+
+def solid_robot(
+    cells: tuple[int, int, int] = (12, 4, 4), *, route: tuple[tuple[float, ...], ...] = (), mount: Mount = Mount.BODY
+) -> Robot:
+    """A box 120 x 40 x 40 mm without risk, held at its left end, with one cable along it through `route` [mm]."""
+    points = tuple((1e-3 * x, 1e-3 * y, 1e-3 * z) for x, y, z in route or ((10, 12, 28), (60, 12, 28), (110, 12, 28)))
+    return Robot(
+        name="solid",
+        body=mesh_body(box_mesh(cells, size=(LENGTH, SIDE, SIDE))),
+        pins=(Pin(box=((-0.001, -1.0, -1.0), (0.001, 1.0, 1.0))),),
+        winches=(Winch(name="one", at=points[0], mount=mount),),
+        cables=(Cable(winch="one", points=points),),
+        markers=(Marker(name="tip", at=(LENGTH, 0.02, 0.02)),),
+        poses={},
+    )
+
+
+def test_none() -> None:
+    """Oracle: nothing to say of a good box."""
+    assert find_risks(solid_robot()) == []
+
+
+@pytest.mark.parametrize(
+    ("cells", "percent"), [(1, "20 to 100 % or more"), (2, "20 to 100 % or more"), (3, "10 to 100 %")]
+)
+def test_thin_limb(cells: int, percent: str) -> None:
+    """Oracle: cubes cut in six, each as large as a regular tetrahedron of 1.122 times their side; the cable is fine."""
+    (line,) = find_risks(solid_robot((3 * cells, cells, cells)))
+    assert line.startswith(f"body: a limb has only {cells / 1.1225:.1f} elements across (40 mm thick at [")
+    assert line.endswith(f"{percent} too stiff in bending; a mesh with edges of 10 mm would do")
+
+
+def test_thin_sheet() -> None:
+    """Oracle: a plate 3 mm thick, of one layer of elements, in one line."""
+    robot = solid_robot()
+    body = mesh_body(box_mesh((12, 12, 1), size=(LENGTH, LENGTH, 0.003)))
+    plate = replace(robot, body=body, winches=(), cables=(), markers=())
+    lines = [line for line in find_risks(plate) if "limb" in line]
+    assert len(lines) == 1
+    assert "(3 mm thick at [" in lines[0]
+
+
+def test_slivers() -> None:
+    """Oracle: cubes cut in six, flattened to a twentieth: the smallest angle is atan(1/20), about the long diagonal."""
+    mesh = box_mesh((6, 6, 6), size=(0.12, 0.12, 0.12))
+    flat = Mesh(mesh.nodes * [1.0, 1.0, 0.05], mesh.elements)
+    robot = replace(solid_robot(), body=mesh_body(flat), winches=(), cables=(), markers=())
+    lines = [line for line in find_risks(robot) if "sliver" in line]
+    assert len(lines) == 1
+    assert lines[0].startswith(f"body: {len(mesh.elements)} of {len(mesh.elements)} tetrahedra are slivers (below 10")
+    assert f"the worst {np.degrees(np.arctan(0.05)):.1f}, at [" in lines[0]
+    assert not any("sliver" in line for line in find_risks(solid_robot()))
+
+
+def test_cable_near_the_surface() -> None:
+    """Oracle: a point 1 mm under the top of the box, and 3.1 mm under it."""
+    near = solid_robot(route=((10, 12, 28), (60, 12, 39), (110, 12, 28)))
+    line = "cable[0]: only 1 mm inside the surface at [60, 12, 39] mm, it may tear out"
+    assert find_risks(near) == [line]
+    assert find_risks(solid_robot(route=((10, 12, 28), (60, 12, 36.9), (110, 12, 28)))) == []
+
+
+def test_segment_leaves_the_body() -> None:
+    """Oracle: a U of three boxes; the straight line from leg to leg crosses the gap, 10 mm below its mouth."""
+    mesh = box_mesh((12, 4, 4), size=(LENGTH, SIDE, SIDE))
+    middles = mesh.nodes[mesh.elements].mean(axis=1)
+    gap = (np.abs(middles[:, 0] - 0.06) < 0.01) & (middles[:, 2] > 0.02)
+    used, elements = np.unique(mesh.elements[~gap], return_inverse=True)
+    body = mesh_body(Mesh(mesh.nodes[used], elements.reshape(-1, 4)))
+    robot = solid_robot(route=((10, 20, 30), (110, 20, 30)))
+    (line,) = [risk for risk in find_risks(replace(robot, body=body)) if "cable" in risk]
+    found = re.fullmatch(r"cable\[0\]: leaves the body by (.*) mm at \[(.*), 20, 30\] mm; add a point .* round", line)
+    assert found is not None
+    assert float(found[1]) == pytest.approx(10, abs=0.75)  # it is looked at every 1.5 mm
+    assert float(found[2]) == pytest.approx(60, abs=1.25)
+    round_it = solid_robot(route=((10, 20, 30), (40, 20, 10), (80, 20, 10), (110, 20, 30)))
+    assert not any("cable" in risk for risk in find_risks(replace(round_it, body=body)))
+
+
+def test_world_winch_may_come_in_through_the_surface() -> None:
+    """Oracle: the way to the body and the place where it enters are no risk; a cable that stays at the surface is."""
+    for depth, count in ((20.0, 0), (1.0, 1)):
+        route = ((-50, 20, 20), (0, 20, depth), (60, 20, depth), (110, 20, depth))
+        assert len(find_risks(solid_robot(route=route, mount=Mount.WORLD))) == count
+
+
+def test_spool_sticks_out() -> None:
+    """Oracle: a winch 5 mm from a side with a spool of 6 mm."""
+    robot = solid_robot(route=((10, 5, 28), (60, 12, 28), (110, 12, 28)))
+    line = "winch[0] one: a spool of radius 6 mm sticks out, the surface is 5 mm away; move it inward"
+    assert find_risks(robot) == [line]
