@@ -17,12 +17,22 @@ Field = Callable[[Points], Vector]
 
 _OFFSET = 0.37  # of the spacing: faces that lie at multiples of it from the sides of the box meet no grid point
 _CLEARANCE = 1e-3  # of the spacing: how near to a grid point a crossing may come, so that no triangle has zero area
-_ACCURACY = 1e-5  # of the spacing
 _CHUNK = 200_000  # points in one call of the field
-_BLOCK = 8  # cells along the side of a block that is skipped as a whole where a distance allows it
+_BLOCK = 8  # cells along the side of a block that is settled as a whole
+
+Settled = Callable[[Points, Vector], Bool[np.ndarray, " points"]]
+"""Whether the field has one sign all within a reach [m] of each point."""
 
 
-def contour(field: Field, box: Float[np.ndarray, "2 3"], spacing: float, *, distance: bool = False) -> Surface:
+def contour(
+    field: Field,
+    box: Float[np.ndarray, "2 3"],
+    spacing: float,
+    *,
+    distance: bool = False,
+    settled: Settled | None = None,
+    accuracy: float = 1e-5,
+) -> Surface:
     """Closed surface of the region where a field is negative, outward oriented and manifold; the same on every run.
 
     Marching cubes tell which edges of a grid are crossed and how the crossings join (Lorensen & Cline 1987, with
@@ -36,16 +46,20 @@ def contour(field: Field, box: Float[np.ndarray, "2 3"], spacing: float, *, dist
         spacing: of the grid [m].
         distance: the field changes by at most the way between two points (a signed distance), so what is far from
             its zero need not be computed; the result is the same, only sooner.
+        settled: the same for other fields: whether the sign is the same all within a reach [m] of points.
+        accuracy: of the crossings, as a share of the spacing.
 
     Raises:
         SurfaceError: the grid is too fine for the box, no grid point is inside, or the field is not finite.
     """
     grid = _Grid(np.asarray(box, dtype=float), spacing)
-    inside = _inside_of_distance(field, grid) if distance else grid.inside(field, np.arange(grid.points))
+    if distance:
+        settled = lambda points, reach: np.abs(field(points)) > reach  # noqa: E731
+    inside = _inside_by_blocks(field, settled, grid) if settled else grid.inside(field, np.arange(grid.points))
     if not inside.any():
         raise SurfaceError(f"nothing is inside on a grid of {1e3 * spacing:.3g} mm: use a smaller spacing")
     low, high, triangles = _crossed_edges(inside, grid)
-    share = _crossings(lambda points: grid.clip(field, points), grid.at(low), grid.at(high), inside[low])
+    share = _crossings(lambda points: grid.clip(field, points), grid.at(low), grid.at(high), inside[low], accuracy)
     vertices = grid.at(low) + share[:, None] * (grid.at(high) - grid.at(low))
     return Surface(vertices, triangles)
 
@@ -93,8 +107,8 @@ class _Grid:
         return np.concatenate([self.clip(field, self.at(chunk)) < 0.0 for chunk in chunks] or [np.zeros(0, dtype=bool)])
 
 
-def _inside_of_distance(field: Field, grid: _Grid) -> Bool[np.ndarray, " points"]:
-    """Whether each grid point is inside, computed one by one only in blocks that the zero of a distance can reach."""
+def _inside_by_blocks(field: Field, settled: Settled, grid: _Grid) -> Bool[np.ndarray, " points"]:
+    """Whether each grid point is inside, computed one by one only in blocks that are not settled by their middle."""
     corners = np.stack(np.meshgrid(*(np.arange(0, side, _BLOCK) for side in grid.shape), indexing="ij"), axis=-1)
     corners = corners.reshape(-1, 3)
     last = np.minimum(corners + _BLOCK, grid.shape) - 1
@@ -102,10 +116,10 @@ def _inside_of_distance(field: Field, grid: _Grid) -> Bool[np.ndarray, " points"
     # a middle beyond the box is judged from the nearest point within it, which is as far as that from the rest
     middle = np.clip((lowest + highest) / 2, *grid.box)
     reach = np.linalg.norm(np.maximum(highest - middle, middle - lowest), axis=1)
-    values = grid.clip(field, middle)
+    values, whole = grid.clip(field, middle), settled(middle, reach)
     inside = np.zeros(tuple(grid.shape), dtype=bool, order="F")
     near = np.zeros_like(inside, order="F")
-    for (x, y, z), value, far in zip(corners, values, np.abs(values) > reach, strict=True):
+    for (x, y, z), value, far in zip(corners, values, whole, strict=True):
         block = np.s_[x : x + _BLOCK, y : y + _BLOCK, z : z + _BLOCK]
         inside[block], near[block] = far and value < 0.0, not far
     # the layers beyond the box are outside whatever the middle of their block says
@@ -134,7 +148,9 @@ def _crossed_edges(
     return low, high, np.array(triangles).astype(np.int64)  # a long long, which is the same and yet another type
 
 
-def _crossings(field: Field, start: Points, end: Points, start_inside: Bool[np.ndarray, " points"]) -> Vector:
+def _crossings(
+    field: Field, start: Points, end: Points, start_inside: Bool[np.ndarray, " points"], accuracy: float
+) -> Vector:
     """Where the field changes its sign on the way from start to end, as a share of the way.
 
     The false position and bisection take turns: the first is quick on smooth fields, the second cannot be slowed by
@@ -147,7 +163,7 @@ def _crossings(field: Field, start: Points, end: Points, start_inside: Bool[np.n
     active = np.arange(len(start))
     for turn in range(60):
         guess = low[active] + (high[active] - low[active]) * _zero(low_value[active], high_value[active])
-        moved = np.abs(guess - share[active]) > _ACCURACY
+        moved = np.abs(guess - share[active]) > accuracy
         share[active] = guess
         active, guess = active[moved], guess[moved]
         if not len(active):

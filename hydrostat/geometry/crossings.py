@@ -1,0 +1,116 @@
+"""Where a surface runs through itself: pairs of triangles that cross."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.geometry.surface import Surface
+
+_CHUNK = 20_000  # triangles whose neighbours are looked up at once
+_NEAR = 1e-9  # of the size of the surface: what is nearer to a plane than this touches it, and does not cross it
+# a turn that no CAD model is aligned with: its walls are not seen from the side, where many boxes overlap
+_TURN = np.linalg.qr(np.array([[0.61, 0.33, -0.72], [-0.47, 0.88, 0.05], [0.64, 0.31, 0.70]]))[0]
+
+_Corners = Float[np.ndarray, "pairs 3 3"]
+
+
+def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
+    """Pairs of triangles of which a side of one runs through the other, or that are folded flat on each other.
+
+    Triangles that touch each other, or lie in one plane and overlap there without a common edge, do not count.
+    """
+    found = [np.zeros((0, 2), dtype=np.int64)]
+    for pairs in _candidates(surface):
+        first, second = (surface.triangles[side] for side in pairs.T)
+        same = first[:, :, None] == second[:, None, :]
+        shared = same.sum(axis=(1, 2))
+        cross = np.zeros(len(pairs), dtype=bool)
+        for count, test in ((0, _apart_cross), (1, _corner_cross), (2, _side_cross)):
+            some = np.flatnonzero(shared == count)
+            one = _rolled(first[some], same[some].any(axis=2), count)
+            two = _rolled(second[some], same[some].any(axis=1), count)
+            cross[some] = test(surface.vertices[one], surface.vertices[two], _NEAR * surface.size)
+        found.append(pairs[cross])
+    return np.concatenate(found)
+
+
+def _rolled(triangles: np.ndarray, shared: np.ndarray, count: int) -> np.ndarray:
+    """Triangles turned so that one common corner comes first, or, of two, the corner that is not common."""
+    if count == 0:
+        return triangles
+    start = np.argmax(shared, axis=1) if count == 1 else np.argmin(shared, axis=1)
+    return np.take_along_axis(triangles, (start[:, None] + np.arange(3)) % 3, axis=1)
+
+
+def _candidates(surface: Surface) -> Iterator[Int[np.ndarray, "pairs 2"]]:
+    """Pairs of triangles whose boxes meet, each pair once."""
+    import shapely
+
+    corners = (surface.vertices @ _TURN)[surface.triangles]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
+    tree = shapely.STRtree(boxes)
+    for start in range(0, len(boxes), _CHUNK):
+        first, second = tree.query(boxes[start : start + _CHUNK])
+        first = first + start
+        meets = (first < second) & (low[first, 2] <= high[second, 2]) & (low[second, 2] <= high[first, 2])
+        yield np.stack([first[meets], second[meets]], axis=1).astype(np.int64)
+
+
+def _apart_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
+    """Whether triangles without a common corner cross."""
+    cross = np.zeros(len(one), dtype=bool)
+    one_heights, two_heights = _heights(one, two), _heights(two, one)
+    maybe = np.flatnonzero(_straddles(one_heights, near) & _straddles(two_heights, near))
+    for corners, others, heights in ((one, two, one_heights), (two, one, two_heights)):
+        for start in range(3):
+            end = (start + 1) % 3
+            ends = corners[maybe][:, [start, end]]
+            cross[maybe] |= _runs_through(ends, heights[maybe][:, [start, end]], others[maybe], near)
+    return cross
+
+
+def _corner_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
+    """Whether triangles with a common first corner cross: the far side of one through the other."""
+    cross = np.zeros(len(one), dtype=bool)
+    for corners, others in ((one, two), (two, one)):
+        heights = _heights(corners, others)[:, 1:]
+        maybe = np.flatnonzero(_straddles(heights, near))
+        cross[maybe] |= _runs_through(corners[maybe][:, 1:], heights[maybe], others[maybe], near)
+    return cross
+
+
+def _side_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
+    """Whether triangles with a common side, opposite their first corners, are folded flat on each other."""
+    side = one[:, 2] - one[:, 1]
+    heights = [np.cross(side, corners[:, 0] - one[:, 1]) for corners in (one, two)]
+    with np.errstate(all="ignore"):
+        lengths = np.linalg.norm(heights, axis=2)
+        cosine = np.einsum("pd,pd->p", *heights) / lengths.prod(axis=0)
+    tall = lengths.min(axis=0) > near * np.linalg.norm(side, axis=1)
+    return tall & (cosine > 1.0 - 1e-12)
+
+
+def _heights(corners: _Corners, others: _Corners) -> Float[np.ndarray, "pairs 3"]:
+    """Heights [m] of corners above the planes of other triangles; 0 where such a one has no area."""
+    normal = np.cross(others[:, 1] - others[:, 0], others[:, 2] - others[:, 0])
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = normal / np.where(length > 0.0, length, np.inf)
+    return np.einsum("pcd,pd->pc", corners - others[:, :1], normal)
+
+
+def _straddles(heights: Float[np.ndarray, "pairs some"], near: float) -> Bool[np.ndarray, " pairs"]:
+    """Whether some corners are above and some below."""
+    return (heights.max(axis=1, initial=-np.inf) > near) & (heights.min(axis=1, initial=np.inf) < -near)
+
+
+def _runs_through(
+    ends: Float[np.ndarray, "pairs 2 3"], heights: Float[np.ndarray, "pairs 2"], corners: _Corners, near: float
+) -> Bool[np.ndarray, " pairs"]:
+    """Whether the way between two ends, at their heights above a triangle's plane, runs through the triangle."""
+    way = ends[:, 1] - ends[:, 0]
+    ring = corners - ends[:, :1]
+    turns = [np.einsum("pd,pd->p", way, np.cross(ring[:, k], ring[:, (k + 1) % 3])) for k in range(3)]
+    within = (np.min(turns, axis=0) >= 0.0) | (np.max(turns, axis=0) <= 0.0)
+    return within & _straddles(heights, near)
