@@ -4,23 +4,38 @@ import numpy as np
 from jaxtyping import Int
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
-from hydrostat.arrays import Elements, Nodes
+from hydrostat.arrays import Elements, Nodes, Points
+from hydrostat.geometry.edges import Numbers
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.orient import signed_volumes
 
 
-def manifold(nodes: Nodes, elements: Elements) -> Mesh:
+def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:
     """The largest part that faces join, with a node of its own for each group of elements that faces join about it.
 
     So what touches at an edge or a node only, such as two fingers, is parted. Where an edge is left between two groups
     about it that are joined elsewhere, the smaller group goes. Nodes keep their order.
+
+    Returns:
+        the mesh, and for each other part its places nearest to the rest [m].
     """
-    mesh = _parted(nodes, elements[_largest(elements)])
+    part = _parts(elements)
+    mesh = _parted(nodes, elements[part == _largest(part)])
     while (crowded := _crowded(mesh)).any():
         left = mesh.elements[~crowded]
-        mesh = _parted(mesh.nodes, left[_largest(left)])
-    return mesh
+        mesh = _parted(mesh.nodes, left[_parts(left) == _largest(_parts(left))])
+    return mesh, _breaks(nodes, elements, part)
+
+
+def _breaks(nodes: Nodes, elements: Elements, part: Numbers) -> Points:
+    places = [np.empty((0, 3))]
+    for number in np.setdiff1d(part, _largest(part)):
+        own, others = (nodes[np.unique(elements[chosen])] for chosen in (part == number, part != number))
+        gaps = KDTree(others).query(own)[0]
+        places.append(own[gaps <= gaps.min() * (1 + 1e-9)])
+    return np.concatenate(places)
 
 
 def _joins(elements: Elements) -> Int[np.ndarray, "2 joins"]:
@@ -39,10 +54,13 @@ def _groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarray, " 
     return connected_components(coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count)), directed=False)[1]
 
 
-def _largest(elements: Elements) -> Int[np.ndarray, " elements"]:
-    """Which elements are of the largest part that faces join."""
-    part = _groups(_joins(elements) // 4, len(elements))
-    return np.flatnonzero(part == np.argmax(np.bincount(part)))
+def _parts(elements: Elements) -> Numbers:
+    """Number of the part, joined by faces, that each element is of."""
+    return _groups(_joins(elements) // 4, len(elements))
+
+
+def _largest(part: Numbers) -> int:
+    return int(np.argmax(np.bincount(part)))
 
 
 def _parted(nodes: Nodes, elements: Elements) -> Mesh:

@@ -1,10 +1,12 @@
 """`tetrahedralise`: good tetrahedra from a closed surface."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Bool
 
 from hydrostat.arrays import Elements, Nodes, Points
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.bisect import bisect
 from hydrostat.geometry.edges import PAIRS
 from hydrostat.geometry.fit import fit
@@ -12,6 +14,7 @@ from hydrostat.geometry.improve import Stage, improve
 from hydrostat.geometry.lattice import MEAN_EDGE, lattice
 from hydrostat.geometry.manifold import manifold
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.orient import signed_volumes
 from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.stuffing import stuff
 from hydrostat.geometry.surface import Surface
@@ -26,11 +29,17 @@ _STAGES = (
 )
 """From free to firm: first the shapes, then the surface."""
 
-_FINER = 3
+_CRUMB = 0.01
+"""Parts that break off with this share of the volume are no crumbs of a thin tip."""
+
+_WHOLE = 0.7
+"""If a lattice takes less of the volume, then finer elements in some places do not help."""
+
+_FINER = 4
 """Rounds of finer elements where the boundary is not close."""
 
-_BISECTIONS = 3
-"""As many halve the edges of the lattice."""
+_BISECTIONS = 2
+"""Of the longest edges, in each round; three halve the elements."""
 
 _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
@@ -49,26 +58,64 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
 
     Raises:
         InputError: so large that the body has too few elements, or so small that it has too many.
+        SurfaceError: the body is much thinner than the elements; the message says where, and what to take.
     """
     solid = Solid(surface)
     _check(surface, element_size)
     cell = element_size / MEAN_EDGE
     nodes, elements = _near(solid, *lattice(surface.box, cell), cell)
-    mesh = _stuffed(solid, nodes, elements, element_size)
-    for finer in range(_FINER):
-        found = fit(mesh, solid, element_size / 3)
-        far = found.places[found.distances > CLOSE * element_size]
-        if not len(far):
+    draft = _stuffed(solid, nodes, elements, element_size)
+    if draft.whole < _WHOLE:
+        raise SurfaceError(f"much of the body is thinner than {_thin(surface, element_size)}")
+    for size in element_size / 2.0 ** (np.arange(_FINER) * _BISECTIONS / 3):
+        if not len(draft.places):
             break
         for _ in range(_BISECTIONS):
-            nodes, elements = bisect(nodes, elements, _about(nodes, elements, far, element_size / 2**finer))
-        mesh = _stuffed(solid, nodes, elements, element_size)
-    return mesh
+            nodes, elements = bisect(nodes, elements, _about(nodes, elements, draft.places, size))
+        draft = _stuffed(solid, nodes, elements, element_size)
+    if draft.lost > _CRUMB:
+        x, y, z = 1e3 * draft.places[0]
+        raise SurfaceError(
+            f"near ({x:.4g}, {y:.4g}, {z:.4g}) mm the body is thinner than {_thin(surface, element_size)}"
+        )
+    return draft.mesh
 
 
-def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> Mesh:
-    """A good mesh from a lattice."""
-    return improve(manifold(*stuff(solid, nodes, elements)), solid, element_size=element_size, stages=_STAGES)
+@dataclass(frozen=True, eq=False)
+class _Draft:
+    """What a lattice makes of a solid.
+
+    Attributes:
+        mesh: its largest part; improved if no other is of any size.
+        whole: volume of all parts, as a share of the solid's.
+        lost: volume of the other parts, as a share of the solid's.
+        places: where the lattice should be finer [m]: the body breaks, or its boundary is not close.
+    """
+
+    mesh: Mesh
+    whole: float
+    lost: float
+    places: Points
+
+
+def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Draft:
+    inner = stuff(solid, nodes, elements)
+    if not len(inner[1]):
+        return _Draft(Mesh(np.zeros((0, 3)), inner[1]), 0.0, 0.0, np.zeros((0, 3)))
+    mesh, breaks = manifold(*inner)
+    whole = float(signed_volumes(*inner).sum()) / solid.surface.volume
+    lost = whole - float(mesh.volumes.sum()) / solid.surface.volume
+    if lost > _CRUMB:
+        return _Draft(mesh, whole, lost, breaks)
+    mesh = improve(mesh, solid, element_size=element_size, stages=_STAGES)
+    found = fit(mesh, solid, element_size / 3)
+    far = found.places[found.distances > CLOSE * element_size]
+    return _Draft(mesh, whole, lost, np.concatenate([far, breaks]) if len(far) else far)
+
+
+def _thin(surface: Surface, element_size: float) -> str:
+    """The end of a complaint, with a size that a body as thick as this on average can be filled with."""
+    return f"elements of {1e3 * element_size:.4g} mm; take {2e3 * surface.volume / surface.area:.2g} mm or less"
 
 
 def _check(surface: Surface, element_size: float) -> None:

@@ -1,0 +1,66 @@
+"""`size_for`: the element size that gives about a number of nodes."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.mesh import Mesh
+
+FEWEST, MOST = 10, 200_000
+"""Nodes that may be asked for."""
+
+CLOSE = 0.1
+"""How far the number may be off, as a fraction of it."""
+
+_TRIES = 12
+
+
+def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, dim: int) -> float:
+    """Element size [m], to three digits, with which a mesh has a number of nodes to within a tenth.
+
+    Steps on logarithms, kept between the sizes that gave too many and too few. Bodies of few elements may jump over
+    the number; then the size that comes nearest.
+
+    Args:
+        nodes: wanted.
+        make: the mesh for an element size [m]; raises InputError where that is too large or too small.
+        content: area [m^2] or volume [m^3] of the body.
+        dim: 2 or 3.
+
+    Raises:
+        InputError: no mesh has about so few or so many; the message says what came nearest.
+    """
+    if not FEWEST <= nodes <= MOST:
+        raise InputError(f"the number of nodes must be from {FEWEST} to {MOST}, not {nodes}")
+    size, low, high = (1.3 * content / nodes) ** (1 / dim), 0.0, np.inf
+    tried: dict[float, int] = {}
+    for _ in range(_TRIES):
+        size = _three_digits(size)
+        if size in tried:
+            break
+        try:
+            tried[size] = count = len(make(size).nodes)
+        except InputError:
+            tried[size] = count = 0  # too coarse: of what is too fine there are too many, which was looked at above
+        if abs(count / nodes - 1) <= CLOSE:
+            return size
+        low, high = (size, high) if count > nodes else (low, size)
+        size *= (max(count, 0.3 * nodes) / nodes) ** (1 / dim)
+        if not low < size < high:
+            size = np.sqrt(low * high) if low > 0 and high < np.inf else 1.3 * low if low > 0 else 0.7 * high
+    nearest = min(tried, key=lambda size: abs(np.log(max(tried[size], 1e-9) / nodes)))
+    if not 0.5 <= tried[nearest] / nodes <= 2:
+        raise InputError(
+            f"no element size gives about {nodes} nodes; the nearest, {_mm(nearest)}, gives {tried[nearest]}"
+        )
+    return nearest
+
+
+def _mm(size: float) -> str:
+    return f"{1e3 * size:.3g} mm"
+
+
+def _three_digits(size: float) -> float:
+    """A length [m] to three digits of its millimetres."""
+    return float(f"{1e3 * size:.3g}e-3")
