@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -11,6 +10,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Points
 from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.solid import Solid
@@ -64,7 +64,7 @@ class Body:
     volume: Volume = Volume.ELEMENT
     mesh: Mesh = field(compare=False, repr=False)
     outline: Outline | None = field(default=None, compare=False, repr=False)
-    healing: Any = field(default=None, compare=False, repr=False)
+    healing: Healing | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.mesh.dim == 2 and self.thickness is None:
@@ -158,7 +158,6 @@ def surface_body(
     Raises:
         InputError: the file holds no surface, it encloses no body, or a number is out of its range.
     """
-    from hydrostat.geometry.heal import heal
     from hydrostat.geometry.surface_file import read_surface
     from hydrostat.geometry.tetrahedralise import tetrahedralise
 
