@@ -106,7 +106,9 @@ class Robot:
 
     def _check_pins(self) -> None:
         if not self.pins:
-            raise InputError("there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one")
+            raise InputError(
+                "there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one with at and radius"
+            )
         held = []
         for index, pin in enumerate(self.pins):
             try:

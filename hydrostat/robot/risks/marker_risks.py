@@ -9,6 +9,9 @@ from hydrostat.geometry.thickness import spacings
 from hydrostat.robot.risks.words import Found, mm, told_together
 from hydrostat.robot.robot import Robot
 
+FAR = 1.5
+"""A marker is far from any node at this many times the usual length of an element."""
+
 
 def marker_risks(robot: Robot) -> Iterator[str]:
     """Markers that cannot move, and markers that the mesh knows badly."""
@@ -32,5 +35,5 @@ def marker_risks(robot: Robot) -> Iterator[str]:
             f"{mm(float(gaps[index]))} from the nearest node, where elements are {mm(usual)} long elsewhere: it moves "
             f"only as a coarse mesh does; make the mesh finer there",
         )
-        for index in np.flatnonzero(gaps > usual)
+        for index in np.flatnonzero(gaps > FAR * usual)
     )

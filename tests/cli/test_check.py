@@ -1,0 +1,86 @@
+"""`hydrostat check`: what it says of the body. Oracle: a rectangle 60 x 40 x 20 mm of 40 kg/m^3, and a box like it."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import box_mesh
+
+from hydrostat.cli.main import main
+from hydrostat.geometry.mesh_file import write_mesh
+
+Check = Callable[[Path], list[str]]
+
+FLAT = """\
+format = 1
+name = "flat"
+
+[body]
+outline = "body.svg"
+element_size = "12 mm"
+thickness = "20 mm"
+material = "polyester fibre"
+
+[[pin]]
+at = [-20, 0]
+radius = 12
+"""
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm" viewBox="0 0 60 40">{}</svg>'
+
+SOLID = """\
+format = 1
+name = "solid"
+length_unit = "m"
+
+[body]
+mesh = "solid.vtu"
+material = "polyester fibre"
+
+[[pin]]
+box = [[-0.001, -1, -1], [0.001, 1, 1]]
+"""
+
+
+@pytest.fixture
+def check(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Check:
+    """Run the command on a folder; returns its lines."""
+
+    def run(folder: Path) -> list[str]:
+        monkeypatch.setattr(sys, "argv", ["hydrostat", "check", str(folder)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        assert stop.value.code == 0
+        return capsys.readouterr().out.splitlines()
+
+    return run
+
+
+def test_flat_body(check: Check, tmp_path: Path) -> None:
+    """Oracle: 48 cm^3, 1.92 g, from 40 to 60 mm across, that is 40 / 12 elements and more."""
+    (tmp_path / "body.svg").write_text(SVG.format('<rect width="60" height="40"/>'))
+    (tmp_path / "robot.toml").write_text(FLAT)
+    lines = check(tmp_path)
+    assert lines[0].startswith("flat: 60 mm, ")
+    assert lines[1] == "polyester fibre: 1.92 g, 48 cm^3"
+    few = float(lines[2].removeprefix("40 to 60 mm across, that is ").split(" to ")[0])
+    assert few == pytest.approx(40 / 12, rel=0.15)
+    assert "smallest angle" in lines[2]
+    assert lines[3:] == ["1 pin, 0 winches, 0 cables, 0 markers, poses: none", "Nothing is wrong."]
+
+
+def test_body_in_space(check: Check, tmp_path: Path) -> None:
+    """Oracle: 192 cm^3, 7.68 g; cubes cut in six have 45 degrees between two faces; risky lines are counted."""
+    for cells, risks in (((12, 4, 4), 0), ((6, 2, 2), 1)):
+        mesh = box_mesh(cells, size=(0.12, 0.04, 0.04))
+        write_mesh(tmp_path / "solid.vtu", mesh, mesh.nodes, {})
+        (tmp_path / "robot.toml").write_text(SOLID)
+        lines = check(tmp_path)
+        assert lines[1] == "polyester fibre: 7.68 g, 192 cm^3"
+        across = cells[1] / np.sqrt(2) ** (1 / 3)
+        assert lines[2].startswith(f"40 to 120 mm across, that is {across:.1f} to {3 * across:.0f} elements; ")
+        assert lines[2].endswith("smallest angle between faces 45 degrees")
+        assert sum(line.startswith("risky: ") for line in lines) == risks
+        assert lines[-1] == ("Nothing is wrong, 1 risky." if risks else "Nothing is wrong.")
