@@ -29,13 +29,17 @@ from hydrostat.geometry.rings import (
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
-MOST_BYTES = 20_000_000
+MOST_BYTES = 10_000_000
 """A file larger than this is refused."""
 
-MOST_ENTITIES = 50_000
+MOST_ENTITIES = 20_000
 """A drawing with more entities, counting what its blocks repeat, is refused."""
 
 _MOST_DEPTH = 20
+_METRES = {
+    1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 25.4e-9, 9: 25.4e-6, 10: 0.9144,
+    13: 1e-6, 14: 0.1,
+}  # fmt: skip
 _LINES = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "LINE", "ARC"}
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError, AssertionError)
 
@@ -105,14 +109,7 @@ def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
 
 def _unit(document: "Document") -> float | None:
     """Length of one unit of the drawing [m]; None if it names none."""
-    from ezdxf.enums import InsertUnits
-    from ezdxf.units import METER_FACTOR
-
-    try:
-        factor = METER_FACTOR[InsertUnits(document.header.get("$INSUNITS", 0))]
-    except (ValueError, *_BROKEN):
-        return None
-    return 1.0 / factor if factor else None
+    return _METRES.get(document.header.get("$INSUNITS", 0))
 
 
 @dataclass
