@@ -71,21 +71,24 @@ def _stars(simplices: Elements, count: int) -> tuple[Int[np.ndarray, " _"], Int[
 def _planes(
     nodes: Nodes, facets: Elements, solid: Solid, element_size: float
 ) -> tuple[Float[np.ndarray, "facets samples 3"], Float[np.ndarray, "facets samples"]]:
-    """The plane of the surface at each sample: normal and offset [element sizes]; normal 0 where none faces it."""
+    """The plane of the surface at each sample: normal and offset [element sizes]; normal 0 where none faces it.
+
+    The normal is the way to the nearest place, outward as the facet is: so at an edge or a corner of the surface it is
+    the one that a distance has there.
+    """
     corners = nodes[facets]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    across = np.repeat(across / np.linalg.norm(across, axis=1, keepdims=True), len(_SAMPLES), axis=0)
     samples = np.einsum("sc,fcd->fsd", _SAMPLES, corners).reshape(-1, 3)
     places, triangles = solid.nearest(samples * element_size)
     places = places / element_size
     away = samples - places
     gaps = np.linalg.norm(away, axis=1)
-    normals = solid.normals[triangles]
-    signs = np.where(solid.inside(samples * element_size), -1.0, 1.0)
-    far = gaps > 1e-6
-    normals[far] = signs[far, None] * away[far] / gaps[far, None]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    facing = np.einsum("nd,nd->n", normals, np.repeat(across, len(_SAMPLES), axis=0)) > _FACING
-    normals[~facing] = 0.0
+    own = solid.normals[triangles]
+    normals = np.where((gaps > 1e-6)[:, None], away / np.maximum(gaps, 1e-6)[:, None], own)
+    along = np.einsum("nd,nd->n", normals, across)
+    normals *= np.sign(along)[:, None]
+    normals[(np.abs(along) < _FACING) | (np.einsum("nd,nd->n", own, across) < -_FACING)] = 0.0
     offsets = np.einsum("nd,nd->n", normals, places)
     return normals.reshape(len(facets), -1, 3), offsets.reshape(len(facets), -1)
 
