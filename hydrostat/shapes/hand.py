@@ -186,9 +186,8 @@ def _flesh(limbs: dict[str, Limb]) -> tuple[Field, ...]:
     towards_palm = np.array([-4e-3, -3e-3, 0.0])
     base, little = limbs["little"].joints[:2]
     ball_of_thumb = chain([root + towards_palm, 0.35 * root + 0.65 * knuckle + towards_palm], [14e-3, 12.5e-3])
-    ball_of_little = chain(
-        [base + (-1e-3, -4e-3, -6e-3), 0.4 * base + 0.6 * little + (-1e-3, -4e-3, 0)], [13e-3, 11e-3]
-    )
+    outward, low = np.array([-1e-3, -4e-3, 0.0]), np.array([0.0, 0.0, -6e-3])
+    ball_of_little = chain([base + outward + low, 0.4 * base + 0.6 * little + outward], [13e-3, 11e-3])
     index = limbs["index"].joints
     web = chain([0.35 * root + 0.65 * knuckle, 0.45 * index[0] + 0.55 * index[1]], [7e-3, 9e-3])
     return ball_of_thumb, ball_of_little, web

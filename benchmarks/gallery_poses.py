@@ -1,0 +1,53 @@
+"""How well the robots in space of the gallery reach their poses: python benchmarks/gallery_poses.py [NAME ...].
+
+For every robot the size of its mesh, and for each pose how far its markers are from their targets (root of the mean
+square) at rest and after inverse kinematics. The targets are rounded to whole millimetres, so about 0.5 mm is left
+even where a pose can be reached.
+"""
+
+import argparse
+import time
+from collections.abc import Sequence
+
+from machine import machine
+
+import numpy as np  # isort: skip
+
+import hydrostat as hs
+from hydrostat.robot import Robot, gallery_folder, gallery_names
+
+
+def in_space(names: Sequence[str]) -> list[Robot]:
+    """The robots of these names that are no flat drawings."""
+    robots = [hs.load_robot(gallery_folder(name)) for name in names]
+    return [robot for robot in robots if robot.body.mesh.dim == 3]
+
+
+def rest_error(robot: Robot, pose: hs.Pose) -> float:
+    """Distance of the markers from the targets of a pose while nothing pulls [m], root of the mean square."""
+    places = {marker.name: marker.at for marker in robot.markers}
+    squares = [np.sum(np.subtract(places[name], target) ** 2) for name, target in pose.targets.items()]
+    return float(np.sqrt(np.mean(squares)))
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help="robots; all of the gallery if left out")
+    options = parser.parse_args(arguments)
+    print(machine())
+    print("| robot | nodes | elements | pose | at rest mm | reached mm | largest tension N | CPU s |")
+    print("|---|---|---|---|---|---|---|---|")
+    for robot in in_space(options.names or gallery_names()):
+        simulation = hs.Simulation(robot)
+        simulation.solve({})  # compiles
+        size = f"{robot.name} | {len(robot.body.mesh.nodes)} | {len(robot.body.mesh.elements)}"
+        for name, pose in robot.poses.items():
+            start = time.process_time()
+            reached = hs.solve_ik(simulation, pose)
+            spent = time.process_time() - start
+            errors = f"{1e3 * rest_error(robot, pose):.1f} | {1e3 * reached.rms_error:.2f}"
+            print(f"| {size} | {name} | {errors} | {reached.pose.tensions.max():.1f} | {spent:.1f} |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The robots in space of the gallery, one file each."""
