@@ -19,6 +19,9 @@ _MOST_STEPS = 10_000
 _NEAR = 1.5
 """Middles of thin places this many elements apart are of one part."""
 
+_NEIGHBOURS = 20
+"""As many of them are looked at: in a mesh with fine and coarse places more would be near."""
+
 _SLENDER = 1.5
 """A part is a limb if it is this many times as long as thick."""
 
@@ -161,7 +164,10 @@ def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
     if not len(thin):
         return []
     middles = thickness.middles[thin]
-    one, two = KDTree(middles).query_pairs(_NEAR * np.median(thickness.spacing[thin]), output_type="ndarray").T
+    reach = _NEAR * float(np.median(thickness.spacing[thin]))
+    gaps, near = KDTree(middles).query(middles, k=min(_NEIGHBOURS, len(thin)), distance_upper_bound=reach)
+    gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
+    one, two = np.nonzero(np.isfinite(gaps))[0], near[np.isfinite(gaps)]
     joins = coo_array((np.ones(len(one)), (one, two)), shape=(len(thin), len(thin)))
     count, labels = connected_components(joins, directed=False)
     found = []

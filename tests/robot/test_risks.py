@@ -1,12 +1,15 @@
 """What is allowed but may disappoint, on flat bodies. The oracle of each test is a robot with that one fault."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from builders import strip_robot
 from robot_files import GOOD, SVG, edit, load
+from shapely import LineString, Point
 from test_risks_in_space import solid_robot
 
 from hydrostat.geometry import Mesh
@@ -271,8 +274,23 @@ def test_risks_of_many_parts_are_one_line(good: Robot) -> None:
     ],
 )
 def test_gallery(name: str, words: tuple[str, ...]) -> None:
-    """Oracle: what is true of each: the limbs of pig, puppy and squid were measured in their drawings, the rest is
-    travel over length; those without a thin limb move their markers within 8 % of what four times finer meshes do."""
-    risks = find_risks(load_robot(gallery_folder(name)))
+    """Oracle: the shortest cut through the drawing at the place of a thin limb; for the rest travel over length."""
+    robot = load_robot(gallery_folder(name))
+    risks = find_risks(robot)
     assert len(risks) == len(words)
     assert all(word in risk for word, risk in zip(words, risks, strict=True))
+    for risk in risks:
+        if found := re.search(r"\((.*) mm thick at \[(.*), (.*)\] mm", risk):
+            thickness, x, y = (1e-3 * float(number) for number in found.groups())
+            assert shortest_cut(robot, (x, y)) == pytest.approx(thickness, rel=0.1)
+
+
+def shortest_cut(robot: Robot, place: tuple[float, float]) -> float:
+    """Length of the shortest straight cut through the drawing at a place [m]."""
+    assert robot.body.outline is not None
+    cuts = []
+    for angle in np.linspace(0, np.pi, 180, endpoint=False):
+        along = np.array([np.cos(angle), np.sin(angle)])
+        line = LineString([place - along, place + along]).intersection(robot.body.outline.polygon)
+        cuts.append(min(shapely.get_parts(line), key=Point(place).distance).length)
+    return min(cuts)
