@@ -1,16 +1,19 @@
-"""Meshes from and to files, by meshio."""
+"""Meshes from and to files.
+
+They are read by our own lines, which believe no count before the bytes for it are there; meshio writes them.
+"""
 
 import sys
 from collections.abc import Mapping
-from contextlib import redirect_stderr, redirect_stdout
-from io import StringIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.msh_file import read_msh
+from hydrostat.geometry.vtk_file import read_vtk
+from hydrostat.geometry.vtu_file import read_vtu
 
 
 def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Mesh:
@@ -24,31 +27,20 @@ def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Me
     Raises:
         InputError: the file cannot be read or holds neither tetrahedra nor flat triangles.
     """
-    if path.suffix.lower() not in _FORMATS:
-        raise InputError(f"{path.name}: meshes are read from {', '.join(_FORMATS)} files only")
-    data = _read(path)
-    for kind, dim in (("tetra", 3), ("triangle", 2)):
-        if kind in data.cells_dict:
-            return _simplices(path.name, data.points, data.cells_dict[kind], dim, unit, size)
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path.name}: meshes are read from {', '.join(_READERS)} files only")
+    if path.stat().st_size > _MOST_BYTES:
+        raise InputError(f"{path.name}: is larger than {_MOST_BYTES / 1e6:.0f} MB: save it as bytes, or a coarser mesh")
+    cells = reader(path.read_bytes(), path.name)
+    for elements, dim in ((cells.tetrahedra, 3), (cells.triangles, 2)):
+        if len(elements):
+            return _simplices(path.name, cells.points, elements, dim, unit, size)
     raise InputError(f"{path.name}: holds neither tetrahedra nor triangles")
 
 
-_FORMATS = {".vtk": "vtk", ".vtu": "vtu", ".msh": "gmsh"}
-"""Endings, and meshio's names of the formats."""
-
-
-def _read(path: Path) -> Any:
-    """What meshio makes of a file, in silence; whatever a damaged file does to it is told in one line."""
-    import meshio
-
-    try:
-        with redirect_stdout(StringIO()), redirect_stderr(StringIO()), np.errstate(all="ignore"):
-            return meshio.read(path, file_format=_FORMATS[path.suffix.lower()])
-    except (Exception, SystemExit) as error:  # noqa: BLE001  a damaged file breaks meshio in any way there is
-        reason = str(error).strip().splitlines()
-        raise InputError(
-            f"{path.name}: no mesh can be read from it ({reason[0] if reason else 'damaged file'})"
-        ) from None
+_MOST_BYTES = 60_000_000
+_READERS = {".vtk": read_vtk, ".vtu": read_vtu, ".msh": read_msh}
 
 
 def _simplices(name: str, points: np.ndarray, cells: np.ndarray, dim: int, unit: float, size: float | None) -> Mesh:

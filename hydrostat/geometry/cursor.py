@@ -1,0 +1,120 @@
+"""`Cursor`: a way through the bytes of a file, on which no count is believed before the bytes for it are there."""
+
+import re
+from array import array
+from itertools import islice
+
+import numpy as np
+
+from hydrostat.errors import InputError
+
+_PIECE = 1_000_000  # bytes of text taken apart at once
+_LONGEST = 10_000  # characters of a word
+_SPACE = re.compile(rb"\s")
+_WORD = re.compile(rb"\S+")
+
+
+class Cursor:
+    """Bytes of a file that are read from the front.
+
+    Attributes:
+        content: all of it.
+        name: of the file, for errors.
+        at: where the next is read.
+        text: numbers are written as text, else as bytes.
+        order: of the bytes of numbers, "<" or ">".
+    """
+
+    def __init__(self, content: bytes, name: str) -> None:
+        self.content, self.name = content, name
+        self.at, self.text, self.order = 0, True, "<"
+
+    def line(self, *, blank: bool = False) -> bytes | None:
+        """The next line with anything in it, or the very next; None at the end."""
+        while self.at < len(self.content):
+            end = self.content.find(b"\n", self.at)
+            end = len(self.content) if end < 0 else end
+            line, self.at = self.content[self.at : min(end, self.at + 10_000)].strip(), end + 1
+            if line or blank:
+                return line
+        return None
+
+    def seek_after(self, mark: bytes) -> None:
+        """Go on behind a mark.
+
+        Raises:
+            InputError: it is not there.
+        """
+        place = self.content.find(mark, self.at)
+        if place < 0:
+            raise self.damaged(f"has no {mark.decode()}")
+        self.at = place + len(mark)
+
+    def numbers(self, count: int, kind: str) -> np.ndarray:
+        """The next numbers.
+
+        Args:
+            count: how many, as declared.
+            kind: NumPy's code of their type, without order.
+
+        Raises:
+            InputError: there are not as many, or there is something else.
+        """
+        dtype = np.dtype(self.order + kind)
+        room = (len(self.content) - self.at + 1) // 2 if self.text else (len(self.content) - self.at) // dtype.itemsize
+        if not 0 <= count <= room:
+            raise self.damaged(f"declares {count} numbers, but has bytes for {max(room, 0)} at most")
+        if not self.text:
+            values = np.frombuffer(self.content, dtype, count, self.at)
+            self.at += count * dtype.itemsize
+            return values.astype(kind)
+        values = np.array(self._words(count))
+        if dtype.kind != "f":
+            values = np.where(np.abs(values) < 2**62, values, -1.0)  # what is no index becomes one that no mesh has
+        return values.astype(kind)
+
+    def _words(self, count: int) -> array:
+        """The next numbers of text."""
+        values = array("d")
+        while len(values) < count:
+            need = count - len(values)
+            words, end = self._piece(min(_PIECE, 32 * need))
+            if not words:
+                raise self.damaged(f"ends where {need} more numbers belong")
+            if len(words) > need:
+                last = next(islice(_WORD.finditer(self.content, self.at, end), need - 1, None))
+                words, end = words[:need], last.end()
+            try:
+                values.extend(map(float, words))
+            except ValueError:
+                raise self.damaged("has text where numbers belong") from None
+            self.at = end
+        return values
+
+    def _piece(self, size: int) -> tuple[list[bytes], int]:
+        """Words of the next piece of text of about a size, and where it ends; none at the end of the file."""
+        end = self.at
+        while end < len(self.content):
+            space = _SPACE.search(self.content, end + size)
+            end = space.start() if space else len(self.content)
+            if end - self.at > size + _LONGEST:
+                raise self.damaged("has a very long word")
+            words = self.content[self.at : end].split()
+            if words:
+                return words, end
+            self.at = end
+        return [], end
+
+    def all_numbers(self, end: int, kind: str) -> np.ndarray:
+        """All numbers up to a place in a file of text.
+
+        Raises:
+            InputError: there is something else.
+        """
+        part = Cursor(self.content[self.at : end], self.name)
+        self.at = end
+        return part.numbers(sum(1 for _ in _WORD.finditer(part.content)), kind)
+
+    def damaged(self, what: str) -> InputError:
+        """The error for a file that is not as it should be."""
+        return InputError(f"{self.name}: {what}: the file is damaged or cut short, save or copy it again")
