@@ -1,8 +1,13 @@
 """`hydrostat new`."""
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
+from shutil import rmtree
+from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,57 +17,72 @@ from hydrostat.errors import InputError
 if TYPE_CHECKING:
     from hydrostat.robot import Robot
 
+MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
+
 
 def new(
     name: Annotated[Path, typer.Argument(metavar="NAME", help="Folder to make for the new robot.")],
     source: Annotated[
         str,
         typer.Option(
-            "--from", metavar="SOURCE", help="gallery:NAME, or a drawing of a closed outline: SVG, DXF, PNG, JPG."
+            "--from",
+            metavar="SOURCE",
+            help="gallery:NAME; a drawing of a closed outline (SVG, DXF, PNG, JPG); a scan or CAD model (STL, OBJ, "
+            "PLY, OFF, 3MF); or a ready mesh of tetrahedra (VTK, VTU, MSH).",
         ),
     ],
-    size: Annotated[str | None, typer.Option(help='Longest side, for example "200 mm".')] = None,
+    size: Annotated[str | None, typer.Option(help='Longest side, for example "190 mm".')] = None,
     element_size: Annotated[str | None, typer.Option(help='Length of a mesh edge, for example "12 mm".')] = None,
-    thickness: Annotated[str | None, typer.Option(help='Thickness of the body, for example "40 mm".')] = None,
-    material: Annotated[str, typer.Option(help="A material of the table.")] = "polyester fibre",
+    nodes: Annotated[int | None, typer.Option(help="About so many nodes, instead of an element size.")] = None,
+    thickness: Annotated[str | None, typer.Option(help='Of a flat body, for example "40 mm".')] = None,
+    inflate: Annotated[
+        str | None, typer.Option(help='Blow a drawing up to a body in space so thick, for example "60 mm".')
+    ] = None,
+    material: Annotated[str | None, typer.Option(help="A material of the table: hydrostat materials.")] = None,
 ) -> None:
-    """Make a robot from the gallery or from a drawing.
+    """Make a robot from the gallery, a drawing, a scan, a CAD model or a mesh.
 
-    Example: hydrostat new my_starfish --from gallery:starfish
+    A scan or CAD model with holes, crossings, flipped triangles or specks is healed; what was found and done is told,
+    and drawn in healing.png.
+
+    Example: hydrostat new my_hand --from scan.stl --size "190 mm" --nodes 900
     """
-    from hydrostat.geometry.outline_file import OUTLINE_SUFFIXES, read_drawing
-    from hydrostat.robot import find_risks, load_robot, save_robot, sketch_robot
-
-    notes: tuple[str, ...] = ()
     if name.exists() and (not name.is_dir() or any(name.iterdir())):
         raise InputError(f"{name}: exists already; choose another name or remove it")
-    lengths = {
-        key: _length(key, text)
-        for key, text in (("size", size), ("element_size", element_size), ("thickness", thickness))
-    }
-    if source.startswith("gallery:"):
-        if any(lengths.values()):
-            raise InputError("a gallery robot has its own sizes; edit them in its robot.toml")
-        _copy_gallery(source.removeprefix("gallery:"), name)
-    else:
-        drawing = Path(source)
-        if drawing.suffix.lower() not in OUTLINE_SUFFIXES:
-            raise InputError(f"{source}: only gallery:NAME and SVG, DXF, PNG and JPG drawings can be read so far")
-        if not drawing.is_file():
-            raise InputError(f"{source}: there is no such file")
-        content, file = drawing.read_bytes(), _file_name(drawing)
-        notes = read_drawing(content, name=file, size=lengths["size"]).notes
-        robot = sketch_robot(content, file=file, name=name.resolve().name, material=material, **lengths)
-        save_robot(robot, name)
-    made = load_robot(name)
-    _picture(made, name)
-    print(f"Made {name}: {len(made.body.mesh.nodes)} nodes, poses: {', '.join(made.poses)}")
-    for note in notes:
-        print(f"drawing: {note}")
-    for risk in find_risks(made):
-        print(f"risky: {risk}")
-    print(f"Edit {name / 'robot.toml'}; coordinates count from the middle of the drawing, see {name / 'rest.png'}")
-    print(f"Next: hydrostat design {quote(str(name))} --out {quote(str(name) + '_design')}")
+    if nodes is not None and element_size is not None:
+        raise InputError("--nodes and --element-size: give one of them")
+    wish = _Wish(
+        robot_name=name.resolve().name,
+        size=_length("size", size),
+        element_size=_length("element_size", element_size),
+        nodes=nodes,
+        thickness=_length("thickness", thickness),
+        inflate=_length("inflate", inflate),
+        material=material,
+    )
+    with _made_whole(name) as folder:
+        lines = _begin(source, folder, wish)
+        made = _draw(folder)
+    _tell(made, name, [line.replace(str(folder), str(name)) for line in lines])
+
+
+@dataclass(frozen=True)
+class _Wish:
+    """What the options ask for, lengths in metres; None where nothing is asked."""
+
+    robot_name: str
+    size: float | None
+    element_size: float | None
+    nodes: int | None
+    thickness: float | None
+    inflate: float | None
+    material: str | None
+
+    def refuse(self, what: str, *keys: str) -> None:
+        """Refuse options that do not fit."""
+        for key in keys:
+            if getattr(self, key) is not None:
+                raise InputError(f"--{key.replace('_', '-')}: {what}; leave it out")
 
 
 def _length(key: str, text: str | None) -> float | None:
@@ -71,26 +91,158 @@ def _length(key: str, text: str | None) -> float | None:
     if text is None:
         return None
     try:
-        return parse_quantity(text, LENGTH)
+        value = parse_quantity(text, LENGTH)
     except InputError as error:
         raise InputError(f"--{key.replace('_', '-')}: {error}") from None
+    if not value > 0:
+        raise InputError(f"--{key.replace('_', '-')}: must be above 0, not {text}")
+    return value
 
 
-def _copy_gallery(robot: str, folder: Path) -> None:
-    from hydrostat.robot import gallery_folder, replace_file
+@contextmanager
+def _made_whole(name: Path) -> Iterator[Path]:
+    """A folder to fill beside where it will stand; it gets its name when all is well, else it is gone."""
+    name.resolve().parent.mkdir(parents=True, exist_ok=True)
+    folder = Path(mkdtemp(prefix=f".{name.name}.", dir=name.resolve().parent))
+    try:
+        yield folder
+        folder.chmod(0o755)
+        if name.is_dir():
+            name.rmdir()
+        folder.rename(name)
+    finally:
+        rmtree(folder, ignore_errors=True)
 
+
+def _begin(source: str, folder: Path, wish: _Wish) -> list[str]:
+    """Make the robot; returns what there is to tell."""
+    from hydrostat.geometry.outline_file import OUTLINE_SUFFIXES
+    from hydrostat.geometry.surface_file import SURFACE_SUFFIXES
+
+    if source.startswith("gallery:"):
+        return _from_gallery(source.removeprefix("gallery:"), folder, wish)
+    path = Path(source)
+    kinds = {OUTLINE_SUFFIXES: _from_drawing, SURFACE_SUFFIXES: _from_surface, MESH_SUFFIXES: _from_mesh}
+    for suffixes, make in kinds.items():
+        if path.suffix.lower() in suffixes:
+            if not path.is_file():
+                raise InputError(f"{source}: there is no such file")
+            return make(path, folder, wish)
+    known = ", ".join(ending for suffixes in kinds for ending in suffixes)
+    raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
+
+
+def _from_gallery(robot: str, folder: Path, wish: _Wish) -> list[str]:
+    """Copy a robot, if asked with other elements."""
+    from hydrostat.robot import gallery_folder, load_robot, replace_file
+    from hydrostat.robot.write import with_element_size
+
+    wish.refuse("a gallery robot has its own; edit robot.toml", "size", "thickness", "inflate", "material")
     source = gallery_folder(robot)
-    folder.mkdir(parents=True, exist_ok=True)
-    for file in sorted(source.iterdir()):
-        if file.is_file():
-            replace_file(folder / file.name, file.read_bytes())
+    files = {file.name: file.read_bytes() for file in sorted(source.iterdir()) if file.is_file()}
+    wanted = wish.element_size if wish.nodes is None else load_robot(source).body.element_size_for(wish.nodes)
+    if wanted is not None:
+        files["robot.toml"] = with_element_size(files["robot.toml"].decode(), wanted).encode()
+    for file, content in files.items():
+        replace_file(folder / file, content)
+    return []
 
 
-def _picture(robot: "Robot", folder: Path) -> None:
+def _from_drawing(path: Path, folder: Path, wish: _Wish) -> list[str]:
+    from hydrostat.geometry.inflate import inflate
+    from hydrostat.geometry.outline_file import read_drawing
+    from hydrostat.geometry.ply_file import write_ply
+    from hydrostat.robot import save_robot, sketch_robot
+
+    content, file = path.read_bytes(), _file_name(path.name)
+    drawing = read_drawing(content, name=file, size=wish.size)
+    notes = [f"drawing: {note}" for note in drawing.notes]
+    material = wish.material or "polyester fibre"
+    if wish.inflate is None:
+        sizes = {"size": wish.size, "element_size": wish.element_size, "thickness": wish.thickness}
+        robot = sketch_robot(content, file=file, name=wish.robot_name, material=material, nodes=wish.nodes, **sizes)
+        save_robot(robot, folder)
+        return notes
+    wish.refuse("an inflated body is as thick as --inflate says", "thickness")
+    blown = write_ply(inflate(drawing.outline, wish.inflate, spacing=drawing.outline.size / 80))
+    return [*notes, *_from_bytes(blown, f"{path.stem}.ply", folder, wish, material, size=None)]
+
+
+def _from_surface(path: Path, folder: Path, wish: _Wish) -> list[str]:
+    wish.refuse("is only for drawings", "thickness", "inflate")
+    return _from_bytes(path.read_bytes(), path.name, folder, wish, wish.material or "flexfoam-it x", size=wish.size)
+
+
+def _from_bytes(
+    content: bytes, file: str, folder: Path, wish: _Wish, material: str, *, size: float | None
+) -> list[str]:
+    """A robot from a surface; if that had to be healed, with its report and picture."""
+    import numpy as np
+
+    from hydrostat.plot import draw_healing, save_png
+    from hydrostat.robot import replace_file, save_robot, sketch_surface
+
+    sketch = sketch_surface(
+        content,
+        file=_file_name(file),
+        name=wish.robot_name,
+        size=size,
+        element_size=wish.element_size,
+        material=material,
+        **({} if wish.nodes is None else {"nodes": wish.nodes}),
+    )
+    save_robot(sketch.robot, folder)
+    lines = list(sketch.healing.lines())
+    if not sketch.healing.clean:
+        replace_file(folder / "healing.txt", ("\n".join(lines) + "\n").encode())
+        places = np.array([piece.place for piece in sketch.healing.removed]).reshape(-1, 3)
+        figure = draw_healing(sketch.before, sketch.healing.surface, notes=lines, places=places)
+        save_png(figure, folder / "healing.png")
+        lines.append(f"see {folder / 'healing.png'}; the file that came is not changed")
+    return [f"surface: {line}" for line in lines]
+
+
+def _from_mesh(path: Path, folder: Path, wish: _Wish) -> list[str]:
+    from hydrostat.robot import save_robot, sketch_mesh
+
+    wish.refuse("a ready mesh has its own elements", "element_size", "nodes")
+    wish.refuse("is only for drawings", "thickness", "inflate")
+    material = wish.material or "flexfoam-it x"
+    save_robot(sketch_mesh(path, name=wish.robot_name, size=wish.size, material=material), folder)
+    return []
+
+
+def _draw(folder: Path) -> "Robot":
+    """Read the robot back, as any command will, and draw it."""
     from hydrostat.plot import draw_rest, save_png
+    from hydrostat.robot import load_robot
 
-    save_png(draw_rest(robot), folder / "rest.png")
+    made = load_robot(folder)
+    save_png(draw_rest(made), folder / "rest.png")
+    return made
 
 
-def _file_name(drawing: Path) -> str:
-    return re.sub(r"[^\w.-]", "_", drawing.name)
+def _tell(made: "Robot", name: Path, lines: list[str]) -> None:
+    """Say what there is now, and what to do next."""
+    from hydrostat.robot import find_risks
+
+    mesh, flat = made.body.mesh, made.body.mesh.dim == 2
+    kind = "triangles" if flat else "tetrahedra"
+    print(
+        f"Made {name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}, "
+        f"poses: {', '.join(made.poses)}"
+    )
+    for line in [*lines, *(f"risky: {risk}" for risk in find_risks(made))]:
+        print(line)
+    origin = "from the middle of the drawing" if flat else "as in the file of the body"
+    print(f"Edit {name / 'robot.toml'}; coordinates count {origin}, see {name / 'rest.png'}")
+    folder = quote(str(name))
+    if flat:
+        print(f"Next: hydrostat design {folder} --out {quote(str(name) + '_design')}")
+    elif made.winches:
+        pull = f"{made.winches[0].name}={250 * made.winches[0].travel:.0f}mm"
+        print(f"Next: hydrostat simulate {folder} --contract {quote(pull)} --out {quote(f'build/{made.name}')}")
+
+
+def _file_name(name: str) -> str:
+    return re.sub(r"[^\w.-]", "_", name)

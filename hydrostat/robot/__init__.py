@@ -15,6 +15,7 @@ from hydrostat.robot.relaxation import Relaxation
 from hydrostat.robot.risks import find_risks
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.sketch import sketch_robot
+from hydrostat.robot.sketch_space import SurfaceSketch, sketch_mesh, sketch_surface
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot
 
@@ -32,6 +33,7 @@ __all__ = [
     "Relaxation",
     "Robot",
     "Source",
+    "SurfaceSketch",
     "Volume",
     "Winch",
     "find_material",
@@ -45,5 +47,7 @@ __all__ = [
     "robot_hash",
     "robot_text",
     "save_robot",
+    "sketch_mesh",
     "sketch_robot",
+    "sketch_surface",
 ]

@@ -73,6 +73,24 @@ class Body:
             raise InputError("thickness is only for flat bodies; remove it")
         _check_lengths(size=self.size, element_size=self.element_size, thickness=self.thickness)
 
+    def element_size_for(self, nodes: int) -> float:
+        """The element size [m] with which the same body has about a number of nodes.
+
+        Raises:
+            InputError: a ready mesh, or no mesh has about so few or so many.
+        """
+        from hydrostat.geometry.sizing import size_for
+        from hydrostat.geometry.tetrahedralise import tetrahedralise
+        from hydrostat.geometry.triangulate import triangulate
+
+        if self.outline is not None:
+            outline = self.outline
+            return size_for(nodes, lambda trial: triangulate(outline, trial), content=outline.area, dim=2)
+        if self.healing is not None:
+            closed = self.healing.surface
+            return size_for(nodes, lambda trial: tetrahedralise(closed, trial), content=closed.volume, dim=3)
+        raise InputError("a ready mesh has its own elements, their number cannot be chosen")
+
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
         """How far points lie outside the body [m], 0 inside its drawing, its surface or its mesh."""
         distances = locate(self.mesh, points).distances

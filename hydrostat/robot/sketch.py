@@ -2,7 +2,10 @@
 
 import numpy as np
 
+from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.outline_file import read_outline
+from hydrostat.geometry.sizing import size_for
+from hydrostat.geometry.triangulate import triangulate
 from hydrostat.robot.body import outline_body
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.materials import find_material
@@ -19,6 +22,7 @@ def sketch_robot(
     size: float | None = None,
     element_size: float | None = None,
     thickness: float | None = None,
+    nodes: int | None = None,
     material: str = "polyester fibre",
 ) -> Robot:
     """Robot from the bytes of a drawing (SVG, DXF, PNG, JPG), with sensible numbers where none are given.
@@ -31,8 +35,9 @@ def sketch_robot(
         file: name of the drawing in the robot's folder; its ending says of what kind it is.
         name: of the robot.
         size: longest side of the bounding box [m]; None: as the drawing says, if it does.
-        element_size: [m]; None: about 250 nodes.
+        element_size: [m]; None: so that there are about as many nodes as asked for.
         thickness: [m]; None: a seventh of the size.
+        nodes: wanted; None: about 250; not used with an element size.
         material: a name from the table.
 
     Raises:
@@ -47,7 +52,7 @@ def sketch_robot(
         file=file,
         material=find_material(material),
         size=size,
-        element_size=element_size or _round(float(np.sqrt(outline.area / 215))),
+        element_size=element_size or _element_size(outline, nodes),
         thickness=thickness or _round(outline.size / 7),
     )
     centre = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
@@ -63,6 +68,12 @@ def sketch_robot(
         markers=(Marker(name="tip", at=_point(tip)),),
         poses={"bend": Pose(name="bend", targets={"tip": _point(turned)})},
     )
+
+
+def _element_size(outline: Outline, nodes: int | None) -> float:
+    if nodes is None:
+        return _round(float(np.sqrt(outline.area / 215)))
+    return size_for(nodes, lambda trial: triangulate(outline, trial), content=outline.area, dim=2)
 
 
 def _round(length: float) -> float:

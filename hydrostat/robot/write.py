@@ -42,6 +42,15 @@ def save_robot(robot: Robot, folder: str | Path) -> Path:
     return replace_file(folder / "robot.toml", robot_text(robot).encode())
 
 
+def with_element_size(text: str, element_size: float) -> str:
+    """The text of a robot.toml with another element size [m], its comments kept."""
+    import tomlkit
+
+    document = tomlkit.parse(text)
+    document["body"]["element_size"] = units.format_quantity(element_size, units.LENGTH)  # type: ignore[index]
+    return tomlkit.dumps(document)
+
+
 def replace_file(path: Path, content: bytes) -> Path:
     """Write a file whole or not at all.
 
