@@ -112,9 +112,7 @@ def _rigged(body: Body, name: str) -> Robot:
     route = _route(body, middles, share, side)
     tip = _inside(body, _mean(body, middles, share > min(1 - _TIP, share.max() - 1e-9)))
     base = _mean(body, middles, share < _BASE)
-    winch = Winch(
-        name="pull", at=route[0], travel=_round(0.4 * float(np.linalg.norm(np.diff(route, axis=0), axis=1).sum()))
-    )
+    cable = Cable(winch="pull", points=route)
     arm = tip - base
     bent = base + 0.95 * (np.cos(0.4) * arm + np.sin(0.4) * np.linalg.norm(arm) * side)
     margin = 0.05 * (high - low)
