@@ -1,7 +1,7 @@
 """Pictures and the report: how robots, poses and designs look."""
 
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
-from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
+from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
 from hydrostat.plot.contact_sheet import draw_sheet
 from hydrostat.plot.film import Film, Stop, film, pose_stops, winch_stops
 from hydrostat.plot.frame import Frame
@@ -15,7 +15,6 @@ from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
 from hydrostat.plot.scene import save_glb
 
 __all__ = [
-    "WIDTHS",
     "Film",
     "Frame",
     "Stop",

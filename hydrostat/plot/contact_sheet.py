@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from jaxtyping import Float
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -23,7 +24,7 @@ PORTRAIT, DPI = 4.2, 110
 inch."""
 
 
-def draw_sheet(robots: Sequence[tuple[str, Robot, Nodes]], *, columns: int | None = None) -> Figure:
+def draw_sheet(robots: Sequence[tuple[str, Robot, Float[np.ndarray, "_ _"]]], *, columns: int | None = None) -> Figure:
     """A contact sheet: a portrait of each robot, its title, and how many nodes, elements and winches it has.
 
     Args:

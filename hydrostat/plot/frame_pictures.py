@@ -13,7 +13,7 @@ from hydrostat.plot.hardware import draw_cables, draw_winches
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.palette import PAPER
-from hydrostat.plot.pane import SpacePane
+from hydrostat.plot.pane import SpacePane, fit_pixel
 from hydrostat.plot.picture_file import drawing
 from hydrostat.plot.places import Spread
 from hydrostat.plot.rigging import Rigging
@@ -22,7 +22,7 @@ from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, targ
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
 
-Picture = UInt8[np.ndarray, "height width 3"]
+Picture = UInt8[np.ndarray, "_ _ 3"]
 """Red, green and blue of each pixel, the top row first."""
 
 INCHES = 6.4
@@ -51,7 +51,8 @@ class FramePictures:
         )
         self._dpi = width / INCHES
         pane = panes[0]
-        self._pane = replace(pane, dpi=FINER * self._dpi) if isinstance(pane, SpacePane) else pane
+        pixel = fit_pixel(self._sheet, self._sheet.high - self._sheet.low, dpi=FINER * self._dpi)
+        self._pane = replace(pane, pixel=pixel) if isinstance(pane, SpacePane) else pane
         self._sheet.figure.set_facecolor(PAPER)
         self._sheet.figure.set_dpi(self._dpi)
         if robot.cables:

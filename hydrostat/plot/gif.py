@@ -5,7 +5,7 @@ from io import BytesIO
 from itertools import chain
 
 import numpy as np
-from jaxtyping import Int, UInt8
+from jaxtyping import UInt8
 
 from hydrostat.plot.frame_pictures import Picture
 
@@ -14,7 +14,7 @@ STAYS = 3.0
 and smooth shades of a body that moves do not flicker."""
 
 Palette = UInt8[np.ndarray, "colours 3"]
-Indices = UInt8[np.ndarray, "height width"]
+Indices = UInt8[np.ndarray, "_ _"]
 
 
 def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int]) -> bytes:
@@ -88,7 +88,7 @@ def _bits(palette: Palette) -> int:
     return max(int(np.ceil(np.log2(len(palette) + 1))), 2)
 
 
-def _packed(shown: Int[np.ndarray, "height width"]) -> bytes:
+def _packed(shown: Indices) -> bytes:
     """Pixels packed by Pillow: what follows the description of the image in a GIF of its own."""
     from PIL import Image
 

@@ -12,7 +12,7 @@ from hydrostat.arrays import Points
 from hydrostat.geometry.surface import Surface
 from hydrostat.plot.camera import Camera, three_quarter
 from hydrostat.plot.palette import ERROR, INK, LIGHT, MUTED, SEAM
-from hydrostat.plot.pane import DPI, MOST_PIXELS, lay_image
+from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.places import Place
 from hydrostat.plot.render import Render, render
 from hydrostat.plot.sheet import TALLEST, WIDTH, Sheet, new_sheet, round_step
@@ -142,8 +142,7 @@ def _both_sides(
 
 
 def _pixel(sheet: Sheet, camera: Camera, surface: Surface) -> float:
-    side = np.ptp(camera.see(surface.vertices)[:, :2], axis=0)
-    return max(72 / DPI * sheet.scale, float(np.sqrt(side.prod() / MOST_PIXELS)))
+    return fit_pixel(sheet, np.ptp(camera.see(surface.vertices)[:, :2], axis=0))
 
 
 def _show(sheet: Sheet, image: Render, shift: Place) -> None:

@@ -68,13 +68,13 @@ class SpacePane:
         robot: to draw.
         camera: that sees it.
         shift: what is added to its places on the sheet [mm].
-        dpi: pixels of the image of the body to an inch.
+        pixel: side of a pixel of the image of the body [mm]; by the size of the picture if left out.
     """
 
     robot: Robot
     camera: Camera
     shift: Place
-    dpi: float = DPI
+    pixel: float | None = None
 
     def places(self, points: Points) -> Places:
         """Where points [m] lie on the sheet [mm]."""
@@ -112,10 +112,15 @@ class SpacePane:
 
     def _pixel(self, sheet: Sheet, spots: Spots) -> float:
         """Side of a pixel [mm] of an image of spots [mm]."""
-        return max(72 / self.dpi * sheet.scale, float(np.sqrt(np.ptp(spots[:, :2], axis=0).prod() / MOST_PIXELS)))
+        return self.pixel or fit_pixel(sheet, np.ptp(spots[:, :2], axis=0))
 
 
 Pane = FlatPane | SpacePane
+
+
+def fit_pixel(sheet: Sheet, sides: Place, *, dpi: float = DPI) -> float:
+    """Side of a pixel [mm] of an image with these sides [mm], so many to an inch unless they would be too many."""
+    return max(72 / dpi * sheet.scale, float(np.sqrt(np.prod(sides) / MOST_PIXELS)))
 
 
 def lay_image(sheet: Sheet, image: Render, shift: Place) -> None:

@@ -144,7 +144,7 @@ def paint(depth, shown, rim, sky, look, table, inks, shares):
         rim: distance of each sample to a side of its facet, in samples.
         sky: share of the sky that each pixel sees, (height, width).
         look: samples along a side of a pixel, along a point (1/72 inch), of the least step in depth that is an edge;
-            how far the sky is up, and towards the eye, (5,).
+            how far the sky is up, and towards the eye; how far hatching is moved to the right, in samples, (6,).
         table: colours from no light to full light, (colours, 3).
         inks: colours of hatching, mesh and edges, (3, 3).
         shares: how strongly each of them is laid on, (3,).
@@ -170,7 +170,7 @@ def paint(depth, shown, rim, sky, look, table, inks, shares):
             light = _light(x, y, z, look[3], look[4]) * (0.35 + 0.65 * sky[row // fine, column // fine])
             place = min(max(light, 0.0), 1.0) * (len(table) - 1)
             lower = min(int(place), len(table) - 2)
-            covers[0] = _hatching(row, column, dot) if shown[row, column, 3] > 0.5 else 0.0
+            covers[0] = _hatching(row, column + look[5], dot) if shown[row, column, 3] > 0.5 else 0.0
             covers[1] = min(max(0.24 * dot + 0.5 - rim[row, column], 0.0), 1.0)
             covers[2] = _edge(depth, row, column, x, y, z, jump, around)
             for channel in range(3):

@@ -93,8 +93,10 @@ def render(
         shaded: without, only cover and depth are right, sooner.
     """
     fine = pixel / FINER
-    low = spots[facets].min(axis=(0, 1))[:2] - 2 * pixel
-    width, height = (int(np.ceil(side / pixel)) + 4 for side in np.ptp(spots[facets], axis=(0, 1))[:2])
+    # On a lattice of its own, so that pixels and hatching of what rests stay while other parts move.
+    steps = np.floor(spots[facets].min(axis=(0, 1))[:2] / pixel) - 2
+    low = steps * pixel
+    width, height = (int(np.ceil(side / pixel)) + 5 for side in np.ptp(spots[facets], axis=(0, 1))[:2])
     origin = np.array([low[0], low[1], 0.0])
     corners = ((spots - origin) / fine)[facets]
     held = np.zeros(len(spots)) if held is None else held
@@ -108,7 +110,7 @@ def render(
     size = float(np.ptp(spots[facets], axis=(0, 1)).max())
     sky = _smooth(sky_shares(middle / pixel, _unit(shown[::FINER, ::FINER, :3]), 0.11 * size / pixel))
     sky_way = (0.0, 1.0, 0.0) if up is None else up
-    look = np.array([FINER, point / fine, 0.012 * size / fine, sky_way[1], sky_way[2]])
+    look = np.array([FINER, point / fine, 0.012 * size / fine, sky_way[1], sky_way[2], FINER * (steps[0] - steps[1])])
     inks = np.array([_hex(mix(DARK, SEAM, 0.25)), _hex(MESH), _hex(mix(SEAM, "#ffffff", pale))])
     shares = np.array([1.0, 0.5 * lines, 0.9])
     return Render(paint(depth, shown, rim, sky, look, _table(pale), inks, shares), middle, low, pixel)

@@ -10,11 +10,12 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.plot.camera import upright
+from hydrostat.plot.camera import Spots, upright
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.glb import Glb, Shape
 from hydrostat.plot.open_sheet import way_up
 from hydrostat.plot.palette import DARK, FELT, LIGHT, winch_colours
+from hydrostat.plot.places import Spread
 from hydrostat.plot.rigging import Rigging
 from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
 from hydrostat.plot.targets import target_points
@@ -181,7 +182,7 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
         glb.add_copies(_shape("marker", sphere(MARKER * size), LIGHT), _carried(film, rigging.markers), names)
 
 
-def _carried(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "keys points 3"]:
+def _carried(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "_ _ 3"]:
     """Where points are in every key [m]."""
     return np.stack([_in_space(places(nodes)) for nodes in film.nodes])
 
@@ -203,7 +204,7 @@ def _shape(name: str, solid: Solid, colour: str, *, opacity: float = 1.0) -> Sha
     return Shape(name=name, triangles=triangles, places=places, normals=normals, colours=told, opacity=opacity)
 
 
-def _in_space(points: Points) -> Points:
+def _in_space(points: Spread) -> Spots:
     """Points in the plane as points in space, in the middle of the body's thickness."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 

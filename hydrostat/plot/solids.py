@@ -8,10 +8,10 @@ from jaxtyping import Float, Int
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.plot.render import facet_normals
 
-Places = Float[np.ndarray, "keys points 3"]
+Places = Float[np.ndarray, "_ _ 3"]
 """Where points are in every key [m]."""
 
-Triangles = Int[np.ndarray, "triangles 3"]
+Triangles = Int[np.ndarray, "_ 3"]
 Solid = tuple[Triangles, Places, Places]
 """Triangles, and places and normals of the vertices in every key."""
 
@@ -30,7 +30,7 @@ def skin(mesh: Mesh, nodes: Places) -> Solid:
     return triangles, places, _smooth(triangles, places)
 
 
-def slab(mesh: Mesh, nodes: Float[np.ndarray, "keys nodes 2"], thickness: float) -> Solid:
+def slab(mesh: Mesh, nodes: Float[np.ndarray, "_ _ 2"], thickness: float) -> Solid:
     """A flat body: its two faces, and its rim with vertices of its own."""
     keys, count, _ = nodes.shape
     rim = mesh.boundary_nodes
@@ -156,7 +156,7 @@ def _unit(vectors: np.ndarray, *, fallback: Float[np.ndarray, " 3"]) -> np.ndarr
     return np.where(lengths > 1e-15, vectors / np.where(lengths > 1e-15, lengths, 1.0), fallback)
 
 
-def _across(ways: Float[np.ndarray, "ways 3"]) -> Float[np.ndarray, "ways 3"]:
+def _across(ways: Float[np.ndarray, "_ 3"]) -> Float[np.ndarray, "_ 3"]:
     """A direction across each of several, the next one turned from the last as little as possible."""
     least = np.eye(3)[int(np.argmin(np.abs(ways[0])))]
     result = [_unit(np.cross(ways[0], least), fallback=least)]
@@ -166,8 +166,8 @@ def _across(ways: Float[np.ndarray, "ways 3"]) -> Float[np.ndarray, "ways 3"]:
 
 
 def _turned(
-    vectors: Float[np.ndarray, "points 3"], before: Float[np.ndarray, "points 3"], after: Float[np.ndarray, "points 3"]
-) -> Float[np.ndarray, "points 3"]:
+    vectors: Float[np.ndarray, "_ 3"], before: Float[np.ndarray, "_ 3"], after: Float[np.ndarray, "_ 3"]
+) -> Float[np.ndarray, "_ 3"]:
     """Vectors across `before` turned by the shortest turn to `after` (Rodrigues' formula)."""
     cosines = np.einsum("pd,pd->p", before, after)[:, None]
     axes = np.cross(before, after)

@@ -1,0 +1,118 @@
+"""A surface beside what healing made of it, and many robots on one sheet."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import box_mesh, box_robot, strip_robot
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+from PIL import Image
+
+from hydrostat import plot
+from hydrostat.errors import InputError
+from hydrostat.geometry.surface import Surface
+from hydrostat.plot.healing_figure import _bad_edges, _welded
+from hydrostat.plot.palette import ERROR
+
+
+def whole() -> Surface:
+    mesh = box_mesh((6, 4, 3), size=(0.1, 0.05, 0.03))
+    return Surface(mesh.nodes, mesh.boundary)
+
+
+def soup(surface: Surface, *, away: int = 0, over: int = 0) -> Surface:
+    """Triangles with vertices of their own; some of those on top taken away or turned over."""
+    triangles = surface.triangles.copy()
+    heights = surface.vertices[triangles][..., 2].min(axis=1)
+    top = np.flatnonzero(heights > 0.0299)
+    triangles[top[away : away + over]] = triangles[top[away : away + over], ::-1]
+    triangles = np.delete(triangles, top[:away], axis=0)
+    return Surface(surface.vertices[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
+
+
+def reds(figure: Figure) -> int:
+    """Pixels of about the colour of errors."""
+    figure.set_dpi(80)
+    figure.set_facecolor("white")
+    figure.canvas.draw()  # pyright: ignore[reportAttributeAccessIssue]
+    pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)  # pyright: ignore[reportAttributeAccessIssue]
+    return int(((pixels[..., 0] - pixels[..., 1] > 90) & (pixels[..., 0] > 150)).sum())
+
+
+def test_edges_that_do_not_agree() -> None:
+    """Oracle: counting. A closed box has none, a triangle away or turned over leaves three, welded or not."""
+    assert len(_bad_edges(_welded(whole()))) == 0
+    assert len(_bad_edges(_welded(soup(whole())))) == 0
+    assert len(_bad_edges(_welded(soup(whole(), away=1)))) == 3
+    assert len(_bad_edges(_welded(soup(whole(), over=1)))) == 3
+
+
+def test_what_is_wrong_is_red() -> None:
+    """Oracle: a sound surface shows no red, and more red the more is wrong."""
+    after = whole()
+    counts = [reds(plot.draw_healing(soup(after, away=n, over=n), after)) for n in (0, 2, 8)]
+    assert counts[0] == 0
+    assert 50 < counts[1] < counts[2]
+
+
+def test_places_are_ringed_on_the_first_view_only() -> None:
+    """Oracle: the place as the picture's camera sees it lies left of the middle."""
+    after = whole()
+    figure = plot.draw_healing(after, after, places=np.array([[0.12, 0.02, 0.03]]))
+    rings = [line for line in figure.axes[0].lines if line.get_markeredgecolor() == ERROR]
+    assert len(rings) == 1
+    assert np.asarray(rings[0].get_xdata())[0] < np.mean(figure.axes[0].get_xlim())
+
+
+def test_notes_and_counts_are_written_within_the_picture() -> None:
+    """Oracle: matplotlib's own measure of every text."""
+    after = whole()
+    long = "a part of 0.2 cm^3 at (50, 120, 20) mm was removed: " + "it is far away and small, " * 6
+    figure = plot.draw_healing(soup(after, away=2), after, notes=["one hole was closed", long], title="box.stl")
+    figure.canvas.draw()  # pyright: ignore[reportAttributeAccessIssue]
+    texts = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]
+    words = " ".join(text.get_text() for text in texts)
+    assert "one hole was closed" in words
+    assert "as it came" in words
+    assert f"{len(after.triangles) - 2} triangles" in words
+    for text in texts:
+        box = text.get_window_extent()
+        assert box.x0 >= -1, text
+        assert box.y0 >= -1, text
+        assert box.x1 <= figure.bbox.x1 + 1, text
+        assert box.y1 <= figure.bbox.y1 + 1, text
+
+
+@pytest.mark.parametrize("size", [(0.01, 0.01, 0.2), (0.2, 0.01, 0.01), (1e-4, 1e-4, 1e-4), (3.0, 2.0, 1.0)])
+def test_bodies_of_any_shape_and_size(size: tuple[float, float, float], tmp_path: Path) -> None:
+    mesh = box_mesh((2, 2, 2), size=size)
+    surface = Surface(mesh.nodes, mesh.boundary)
+    path = plot.save_png(plot.draw_healing(surface, surface), tmp_path / "a.png", dpi=50)
+    with Image.open(path) as image:
+        assert len(image.convert("RGB").getcolors(1 << 20) or []) > 50
+
+
+def test_a_surface_without_area_is_drawn_as_nothing_rather_than_failing() -> None:
+    flat = Surface(np.array([[0.0, 0, 0], [0.1, 0, 0], [0.1, 0, 0]]), np.array([[0, 1, 2]]))
+    assert plot.draw_healing(flat, whole()).axes
+
+
+def test_a_sheet_of_robots() -> None:
+    """Oracle: its titles, the counts of each mesh, and one image each."""
+    robots = [("one <b>", box_robot()), ("two", strip_robot()), ("three", box_robot())]
+    figure = plot.draw_sheet([(title, robot, robot.body.mesh.nodes) for title, robot in robots])
+    assert len(figure.axes) == 3
+    assert all(len(axes.images) == 1 for axes in figure.axes)
+    texts = [text.get_text() for text in figure.texts]
+    for title, robot in robots:
+        mesh = robot.body.mesh
+        assert title in texts
+        assert f"{len(mesh.nodes)} nodes, {len(mesh.elements)} elements, 2 winches" in texts
+    assert to_hex(figure.get_facecolor()) == "#ffffff"
+
+
+def test_an_empty_sheet_is_refused() -> None:
+    with pytest.raises(InputError, match="at least one robot"):
+        plot.draw_sheet([])
