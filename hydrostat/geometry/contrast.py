@@ -9,6 +9,7 @@ from scipy.ndimage import gaussian_filter
 from hydrostat.arrays import Vector
 
 _FAINT = 16.0
+_GRAIN = 1.0
 _MOST_SAMPLES = 40_000
 _DARKEST_SHADOW = 0.4
 
@@ -44,10 +45,12 @@ def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
     Args:
         pixels: red, green, blue from 0 to 255.
     """
-    pixels = gaussian_filter(pixels, (0.8, 0.8, 0.0))
     border = np.zeros(pixels.shape[:2], dtype=bool)
     width = max(2, round(0.02 * min(border.shape)))
     border[:width] = border[-width:] = border[:, :width] = border[:, -width:] = True
+    grain = np.abs(np.diff(pixels, axis=0)).max(axis=2)[border[1:] & border[:-1]]
+    if float(np.median(grain)) > _GRAIN:
+        pixels = gaussian_filter(pixels, (0.8, 0.8, 0.0))
     ground, noise = _ground(pixels, border, np.median(pixels[border], axis=0))
     field = np.linalg.norm(pixels - ground, axis=2)
     for _ in range(2):

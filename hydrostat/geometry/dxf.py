@@ -1,9 +1,11 @@
 """Outlines from DXF drawings."""
 
 import io
+import logging
 import re
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -36,6 +38,7 @@ MOST_ENTITIES = 20_000
 """A drawing with more entities, counting what its blocks repeat, is refused."""
 
 _MOST_DEPTH = 20
+_FARTHEST = 1e100
 _METRES = {
     1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 25.4e-9, 9: 25.4e-6, 10: 0.9144,
     13: 1e-6, 14: 0.1,
@@ -78,7 +81,7 @@ def dxf_drawing(content: bytes, *, name: str, size: float | None = None) -> Draw
     chains = join([line for line, closed in lines if not closed], name)
     rings, left_out = closed_rings([pair for pair in lines if pair[1]] + chains, name)
     body, holes = body_and_holes(rings, name)
-    return Drawing(placed(body, holes, (unit or 1.0, unit or 1.0), size), (*mended, *layout.notes(), *left_out))
+    return Drawing(placed(body, holes, (unit or 1.0, unit or 1.0), size, name), (*mended, *layout.notes(), *left_out))
 
 
 def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
@@ -98,13 +101,31 @@ def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
     from ezdxf.lldxf.const import DXFError
 
     try:
-        document, auditor = recover.read(io.BytesIO(content))
+        with _listening() as said:
+            document, auditor = recover.read(io.BytesIO(content))
     except (DXFError, OSError, *_BROKEN) as error:
         raise OutlineError(f"{name}: cannot be read as DXF ({_line(error)}): export the drawing again") from error
     if auditor.errors:
         raise OutlineError(f"{name}: the file is damaged ({_line(auditor.errors[0].message)}): export it again")
-    mended = len(auditor.fixes)
-    return document, (f"mended {counted(mended, 'fault')} of the file",) if mended else ()
+    mended = [_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
+    return document, (f"mended {counted(len(mended), 'fault')} of the file: {mended[0]}",) if mended else ()
+
+
+@contextmanager
+def _listening() -> Iterator[list[str]]:
+    """What ezdxf says while it reads, which would else go to the screen."""
+    said: list[str] = []
+    handler = logging.Handler(logging.WARNING)
+    handler.emit = lambda record: said.append(record.getMessage())
+    logger = logging.getLogger("ezdxf")
+    before = logger.propagate
+    logger.addHandler(handler)
+    logger.propagate = False
+    try:
+        yield said
+    finally:
+        logger.removeHandler(handler)
+        logger.propagate = before
 
 
 def _unit(document: "Document") -> float | None:
@@ -179,8 +200,10 @@ def _flatten(entity: Any) -> Ring:
         return _without_repeats(_spline(entity))
     path = make_path(entity, segments=16)
     control = np.array([(point.x, point.y) for point in path.control_vertices()]).reshape(-1, 2)
-    if not len(control) or not np.isfinite(control).all():
+    if not len(control):
         return control
+    if not (np.abs(control) < _FARTHEST).all():
+        return np.full((2, 2), np.nan)
     tolerance = CHORD_ERROR * float(np.ptp(control, axis=0).max()) or 1.0
     points = [(point.x, point.y) for point in islice(path.flattening(tolerance, segments=2), MOST_POINTS + 1)]
     return _without_repeats(np.array(points).reshape(-1, 2))
@@ -192,7 +215,7 @@ def _spline(entity: Any) -> Ring:
     control = np.array([(point.x, point.y) for point in tool.control_points]).reshape(-1, 2)
     knots, degree = np.array(tool.knots(), dtype=float), tool.order - 1
     weights = np.array(tool.weights() or np.ones(len(control)), dtype=float)
-    if not (np.isfinite(control).all() and np.isfinite(knots).all() and np.isfinite(weights).all()):
+    if not all((np.abs(values) < _FARTHEST).all() for values in (control, knots, weights)):
         return np.full((2, 2), np.nan)
     curve = BSpline(knots, np.column_stack([control * weights[:, None], weights]), degree)
     ends = np.unique(knots[degree : len(control) + 1])

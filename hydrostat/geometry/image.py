@@ -26,6 +26,7 @@ MOST_PIXELS = 50_000_000
 
 _LONGEST = 1600
 _EDGE = 0.35
+_UNEVEN = 80.0
 _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, AttributeError, EOFError)
 
 
@@ -60,7 +61,7 @@ def image_drawing(content: bytes, *, name: str, size: float | None = None) -> Dr
         raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')
     pixels, step = _pixels(content, name)
     found, notes = _body(pixels, name)
-    outline = placed(found.body, list(found.holes), (1.0, -1.0), size)
+    outline = placed(found.body, list(found.holes), (1.0, -1.0), size, name)
     scale = size / float(np.ptp(found.body, axis=0).max())
     middle = 0.5 * (found.body.min(axis=0) + found.body.max(axis=0))
     words = _Words(scale, (float(middle[0]), float(middle[1])))
@@ -130,10 +131,10 @@ def _body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silho
             f"{name}: the picture is too small, {opacity.shape[1]} x {opacity.shape[0]} pixels: take a larger one"
         )
     seen = contrast(pixels[..., :3])
-    if seen.edge > _EDGE:
+    if seen.edge > _EDGE or seen.faint > _UNEVEN:
         raise OutlineError(
-            f"{name}: the ground is not plain, {100 * seen.edge:.0f} % of the picture's border stands out: "
-            "put the body on a sheet of one colour, or cut it out"
+            f"{name}: the ground is not plain: put the body on a sheet of one colour, away from the picture's border, "
+            "or cut it out"
         )
     level, shadow = _level(seen)
     note = ("a grey part beside the body was taken for its shadow and left out",) if shadow else ()

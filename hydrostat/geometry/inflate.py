@@ -92,7 +92,7 @@ def _halved(triangle: tuple[int, ...], middles: dict[tuple[int, ...], int]) -> l
     return [triangle]
 
 
-def _graded(mesh: Mesh, rim: Bool[np.ndarray, " nodes"], bulge: Vector) -> tuple[Nodes, Elements, Vector]:
+def _graded(mesh: Mesh, rim: Bool[np.ndarray, " _"], bulge: Vector) -> tuple[Nodes, Elements, Vector]:
     """The mesh with its edges that leave the rim divided, finer towards the rim, and u at its nodes.
 
     At shares 1/16, 4/16, 9/16 of the first row the root of u rises in even steps, as u is all but linear there.
@@ -114,7 +114,7 @@ def _graded(mesh: Mesh, rim: Bool[np.ndarray, " nodes"], bulge: Vector) -> tuple
 
 
 def _rungs(
-    element: list[int], rim: Bool[np.ndarray, " nodes"], ladders: dict[tuple[int, int], list[int]]
+    element: list[int], rim: Bool[np.ndarray, " _"], ladders: dict[tuple[int, int], list[int]]
 ) -> list[tuple[int, int, int]]:
     """A triangle cut along the divisions of its two sides that leave the rim, if it has such."""
     onto = [bool(rim[node]) for node in element]

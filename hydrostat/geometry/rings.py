@@ -124,7 +124,7 @@ def _shapes(rings: list[Ring], name: str) -> list[Polygon]:
     return sorted(shapes, key=lambda shape: shape.area, reverse=True)
 
 
-def placed(body: Ring, holes: list[Ring], unit: tuple[float, float], size: float | None) -> Outline:
+def placed(body: Ring, holes: list[Ring], unit: tuple[float, float], size: float | None, name: str) -> Outline:
     """The outline in metres, its box centred at the origin.
 
     Args:
@@ -132,13 +132,20 @@ def placed(body: Ring, holes: list[Ring], unit: tuple[float, float], size: float
         holes: the same of each hole.
         unit: length of one unit along x and y [m], y negative where the drawing counts it downwards.
         size: longest side of the box [m]; None: as the unit says.
+        name: what errors call the file.
+
+    Raises:
+        OutlineError: the rings are no outline.
     """
     low, high = body.min(axis=0), body.max(axis=0)
     scale = np.array(unit)
     if size is not None:
         scale = scale * size / float(((high - low) * np.abs(scale)).max())
     middle = 0.5 * (low + high)
-    return Outline((body - middle) * scale, tuple((hole - middle) * scale for hole in holes))
+    try:
+        return Outline((body - middle) * scale, tuple((hole - middle) * scale for hole in holes))
+    except OutlineError as error:
+        raise OutlineError(f"{name}: {error}") from error
 
 
 def place(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:

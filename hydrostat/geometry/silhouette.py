@@ -171,8 +171,7 @@ def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:
     """A field that is above 0 in the body and nowhere else, and crosses 0 where the picture does."""
     step = 1e-3 * max(float(np.ptp(field)), 1e-300)
     field = np.where(main & ~mask, step, field)
-    field = np.where(~main & mask, -step, field)
-    return np.pad(field, 1, constant_values=-float(np.ptp(field)))
+    return np.where(~main & mask, -step, field)
 
 
 def _is_stepped(field: Field, level: float, main: _Mask) -> bool:
@@ -186,12 +185,14 @@ def _rings(field: Field, stepped: bool, body: int) -> list[Ring]:
     """The ring round the body and those of its holes, smooth, with few corners; columns and rows [pixels]."""
     from contourpy import LineType, contour_generator
 
+    field = np.pad(field, 1, constant_values=-float(np.ptp(field)))
     found = contour_generator(z=field, line_type=LineType.Separate).lines(0.0)
     rings = [np.asarray(ring)[:-1] - 1.0 for ring in found if len(ring) > 3]
     rings.sort(key=lambda ring: -Polygon(ring).area)
     rings = [ring for ring in rings if Polygon(ring).area > 0.3 * _HOLE * body]
     most = _MOST_CORNERS // (1 + len(rings[1:]) // 4)
-    return [_smooth(ring, 4.0 if stepped else 1.5, 0.4 if stepped else 0.15, most) for ring in rings]
+    smooth = [_smooth(ring, 4.0 if stepped else 1.0, 0.4 if stepped else 0.15, most) for ring in rings]
+    return smooth if Polygon(smooth[0], smooth[1:]).is_valid else rings  # a hole came too near to the outside
 
 
 def _smooth(ring: Ring, reach: float, tolerance: float, most: int) -> Ring:

@@ -49,7 +49,7 @@ def svg_drawing(content: bytes, *, name: str, size: float | None = None) -> Draw
     rings, notes = closed_rings(_lines(document, name), name)
     body, holes = body_and_holes(rings, name)
     across, down = document.unit or (1.0, 1.0)
-    return Drawing(placed(body, holes, (across, -down), size), notes)
+    return Drawing(placed(body, holes, (across, -down), size, name), notes)
 
 
 def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
