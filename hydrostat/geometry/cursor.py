@@ -14,6 +14,14 @@ _SPACE = re.compile(rb"\s")
 _WORD = re.compile(rb"\S+")
 
 
+def whole_numbers(values: np.ndarray, kind: str = "i8") -> np.ndarray:
+    """Numbers as whole ones of a type; what is none of these becomes the largest, which no mesh has as an index."""
+    if values.dtype.kind == "f":
+        least, most = np.iinfo(kind).min, min(np.iinfo(kind).max, 2**62)
+        values = np.where((values >= least) & (values <= most), values, float(most))
+    return values.astype(kind)
+
+
 class Cursor:
     """Bytes of a file that are read from the front.
 
@@ -47,7 +55,7 @@ class Cursor:
         """
         place = self.content.find(mark, self.at)
         if place < 0:
-            raise self.damaged(f"has no {mark.decode()}")
+            raise self.damaged(f"has no {mark.decode('latin-1', 'replace')!r}")
         self.at = place + len(mark)
 
     def numbers(self, count: int, kind: str) -> np.ndarray:
@@ -69,9 +77,7 @@ class Cursor:
             self.at += count * dtype.itemsize
             return values.astype(kind)
         values = np.array(self._words(count))
-        if dtype.kind != "f":
-            values = np.where(np.abs(values) < 2**62, values, -1.0)  # what is no index becomes one that no mesh has
-        return values.astype(kind)
+        return values.astype(kind) if dtype.kind == "f" else whole_numbers(values, kind)
 
     def _words(self, count: int) -> array:
         """The next numbers of text."""

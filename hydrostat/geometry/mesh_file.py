@@ -49,13 +49,13 @@ def _simplices(name: str, points: np.ndarray, cells: np.ndarray, dim: int, unit:
     used, elements = np.unique(cells, return_inverse=True)
     elements = elements.reshape(cells.shape).astype(np.int64)
     nodes = np.array(points[used], dtype=float)
-    if not np.isfinite(nodes).all():
-        raise InputError(f"{name}: a coordinate is not a finite number")
+    if not (np.abs(nodes) < 1e100).all():
+        raise InputError(f"{name}: a coordinate is not a finite number below 1e100: save the mesh again")
     if dim == 2 and nodes.shape[1] == 3 and np.ptp(nodes[:, 2]) > 1e-9 * np.ptp(nodes):
         raise InputError(f"{name}: its triangles do not lie in a plane of constant z; a body in space needs tetrahedra")
     nodes = nodes[:, :dim] * unit
     if size is not None:
-        nodes = nodes * (size / np.ptp(nodes, axis=0).max())
+        nodes = nodes * (size / max(float(np.ptp(nodes, axis=0).max()), 1e-100))
     corners = nodes[elements]
     flipped = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0
     elements[flipped] = elements[flipped][:, [1, 0, *range(2, dim + 1)]]

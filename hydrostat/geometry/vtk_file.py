@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.geometry.cells import Cells
-from hydrostat.geometry.cursor import Cursor
+from hydrostat.geometry.cursor import Cursor, whole_numbers
 
 TETRAHEDRON, TRIANGLE = 10, 5
 """VTK's numbers of the two kinds of cells that are read."""
@@ -112,11 +112,11 @@ def _cells(cursor: Cursor, words: list[bytes]) -> tuple[np.ndarray, np.ndarray]:
     place = cursor.at
     line = (cursor.line() or b"").split()
     if line[:1] == [b"OFFSETS"]:  # since version 5
-        starts = cursor.numbers(count, _kind(cursor, line[-1])).astype(np.int64)
+        starts = whole_numbers(cursor.numbers(count, _kind(cursor, line[-1])))
         line = (cursor.line() or b"").split()
         if line[:1] != [b"CONNECTIVITY"]:
             raise cursor.damaged("has cells without CONNECTIVITY")
-        return starts, cursor.numbers(size, _kind(cursor, line[-1])).astype(np.int64)
+        return starts, whole_numbers(cursor.numbers(size, _kind(cursor, line[-1])))
     cursor.at = place
     row = cursor.numbers(size, "i4").astype(np.int64)
     starts, at, numbers = array("q"), 0, row.tolist()

@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.geometry.cells import Cells
-from hydrostat.geometry.cursor import Cursor
+from hydrostat.geometry.cursor import Cursor, whole_numbers
 from hydrostat.geometry.soup import MOST_BYTES
 from hydrostat.geometry.vtk_file import cells_of
 
@@ -63,7 +63,7 @@ def read_vtu(content: bytes, name: str) -> Cells:
         places = reader.values(piece["points"]).astype(float)
         if len(places) % 3:
             raise reader.damaged("has points without three coordinates")
-        arrays = [reader.values(piece[key]).astype(np.int64) for key in ("offsets", "connectivity", "types")]
+        arrays = [whole_numbers(reader.values(piece[key])) for key in ("offsets", "connectivity", "types")]
         cells = cells_of(places.reshape(-1, 3), np.append(0, arrays[0]), arrays[1], arrays[2], name)
         points.append(cells.points)
         tetrahedra.append(before + cells.tetrahedra)
