@@ -52,22 +52,24 @@ def _sampled(points: Points) -> Float[np.ndarray, "places dim"]:
 
 
 def _leaving(robot: Robot) -> Iterator[Found]:
-    outline = robot.body.outline
-    slack = _CORNER * float(np.median(spacings(robot.body.mesh)))
+    """Cables of which a straight piece lies outside: of a drawing however little, of a mesh more than a corner."""
     for index, cable in enumerate(robot.cables):
         inside = _points_in_body(robot, cable)
         if len(inside) < 2:
             continue
-        if outline is not None:
-            from shapely import LineString, contains
-
-            if not contains(outline.polygon, LineString(inside)):
-                text = "leaves the body between two points; add a point to lead it round"
-                yield Found(f"cable[{index}]", 0.0, text)
-            continue
         places = _sampled(inside)
-        out = locate(robot.body.mesh, places).distances
-        if out.max() > slack:
+        if robot.body.outline is None:
+            out = locate(robot.body.mesh, places).distances
+            leaves = out.max() > _CORNER * np.median(spacings(robot.body.mesh))
+        else:
+            from shapely import LineString, distance, points
+
+            drawing, line = robot.body.outline.polygon, LineString(inside)
+            leaves = not drawing.contains(line)
+            if leaves:  # the middle of what is outside too: a slit may be narrower than a step
+                places = np.concatenate([places, [line.difference(drawing).centroid.coords[0]]])
+            out = np.asarray(distance(drawing, points(places)))
+        if leaves:
             where = place(places[np.argmax(out)])
             text = f"leaves the body by {mm(float(out.max()))} at {where}; add a point to lead it round"
             yield Found(f"cable[{index}]", float(out.max()), text)
