@@ -26,9 +26,11 @@ difference between two sources for the same material. Measure a sample before be
 **Nearly incompressible materials** (Poisson's ratio 0.48 and above) make linear elements lock: write
 `volume = "patch"` ([decision 0012](decisions/0012-locking.md)).
 
-**What was read.** The tensile curves, the abstracts of the papers and the 100 % moduli of the silicones were looked up;
-elongations at break, NinjaFlex and the density of Mold Max 30 are quoted without the data sheet at hand. What is
-assumed is called so.
+**What was read.** At first hand: the tensile curves of the silicones, the data sheet of the polyethylene foam, and the
+abstracts of the papers on PDMS and on Poisson's ratio of foam. At second hand, from public programs that quote them: the
+100 % moduli and densities of the silicones, the fit to flexfoam-it v and Allard's foam. Quoted without the source at
+hand: elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, how the maker names its
+foams. What is assumed is called so.
 
 Names such as R52, N5 and E30 refer to the thesis ([references](references.md)).
 """
