@@ -46,7 +46,7 @@ class Labels:
 
     def flag(self, at: Place, words: str, colour: str) -> None:
         """Write words on a coloured flag that is tied to a point."""
-        extent = np.array([0.64 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
+        extent = np.array([0.71 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
         centre = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0), 0.0)
         self._sheet.curve(np.array([at, centre]), color=colour, linewidth=0.9, zorder=10)
         self._sheet.text(
