@@ -28,8 +28,8 @@ difference between two sources for the same material. Measure a sample before be
 
 **What was read.** At first hand: the tensile curves of the silicones, the data sheet of the polyethylene foam, and the
 abstracts of the papers on PDMS and on Poisson's ratio of foam. At second hand, from public programs that quote them:
-the 100 % moduli and densities of the silicones, the fit to flexfoam-it v and Allard's foam. Quoted without the source at
-hand: elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, how the maker names its
+the 100 % moduli and densities of the silicones, the fit to flexfoam-it v and Allard's foam. Quoted without the source
+at hand: elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, how the maker names its
 foams. What is assumed is called so.
 
 Names such as R52, N5 and E30 refer to the thesis ([references](references.md)).
