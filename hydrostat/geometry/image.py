@@ -178,5 +178,5 @@ class _Words:
     def _largest(self, patches: tuple[Patch, ...]) -> str:
         patch = max(patches, key=lambda one: one.area)
         x, y = patch.place[0] - self.middle[0], self.middle[1] - patch.place[1]
-        across, where = 1e3 * self.scale * patch.extent, (1e3 * self.scale * x, 1e3 * self.scale * y)
-        return f"the largest {across:.2g} mm across at ({where[0]:.3g}, {where[1]:.3g}) mm"
+        across, where = 1e3 * self.scale * patch.extent, [round(1e3 * self.scale * value, 1) + 0.0 for value in (x, y)]
+        return f"the largest {across:.2g} mm across at ({where[0]:.1f}, {where[1]:.1f}) mm"
