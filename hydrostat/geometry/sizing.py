@@ -15,8 +15,11 @@ CLOSE = 0.1
 
 _TRIES = 12
 
+_DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
+"""Nodes in a square or cube of the element size, and on a piece of the boundary as long or large, in 2D and 3D."""
 
-def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, dim: int) -> float:
+
+def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: float = 0.0, dim: int) -> float:
     """Element size [m], to three digits, with which a mesh has a number of nodes to within a tenth.
 
     Steps on logarithms, kept between the sizes that gave too many and too few. Bodies of few elements may jump over
@@ -26,6 +29,7 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, dim: 
         nodes: wanted.
         make: the mesh for an element size [m]; raises InputError where that is too large or too small.
         content: area [m^2] or volume [m^3] of the body.
+        rim: length [m] or area [m^2] of its boundary, for a better first guess.
         dim: 2 or 3.
 
     Raises:
@@ -33,7 +37,7 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, dim: 
     """
     if not FEWEST <= nodes <= MOST:
         raise InputError(f"the number of nodes must be from {FEWEST} to {MOST}, not {nodes}")
-    size, low, high = (1.3 * content / nodes) ** (1 / dim), 0.0, np.inf
+    size, low, high = _guess(nodes, content, rim, dim), 0.0, np.inf
     tried: dict[float, int] = {}
     for _ in range(_TRIES):
         size = _three_digits(size)
@@ -59,6 +63,13 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, dim: 
 
 def _mm(size: float) -> str:
     return f"{1e3 * size:.3g} mm"
+
+
+def _guess(nodes: int, content: float, rim: float, dim: int) -> float:
+    """Size h at which nodes = inside content / h^dim + outside rim / h^(dim - 1), as lattices have them."""
+    inside, outside = _DENSITY[dim]
+    factors = [nodes, *[0.0] * (dim - 2), -outside * rim, -inside * content]
+    return float(np.max(np.roots(factors).real))
 
 
 def _three_digits(size: float) -> float:
