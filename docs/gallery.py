@@ -38,7 +38,7 @@ def write_robot(sheet: Sheet, examples: Path = EXAMPLES) -> Path:
     """The folder of a robot, with its robot.toml and its surface."""
     folder = examples / sheet.name
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{sheet.name}.ply").write_bytes(ply_bytes(decimated(sheet.surface, sheet.faces)))
+    (folder / f"{sheet.name}.ply").write_bytes(ply_bytes(decimated(sheet.surface(), sheet.faces)))
     (folder / "robot.toml").write_text(sheet.text(), encoding="utf-8")
     return folder
 

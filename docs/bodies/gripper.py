@@ -1,5 +1,7 @@
 """The gripper with four fingers."""
 
+from functools import partial
+
 from bodies.sheet import Line, Play, Sheet
 from hydrostat.shapes import BASE, Limb, Place, caging_gripper
 
@@ -20,7 +22,7 @@ def caging() -> Sheet:
             "edges of its inner side; together they close it, one alone swings it to its side. Lengths are in mm; "
             "x runs to the right, y to the back, z from the base to the fingers."
         ),
-        surface=shape.surface(2.5e-3),
+        surface=partial(shape.surface, 2.5e-3),
         element_size=11.5,
         held=("the base below the palm.", [-60, -60, -1e3 * BASE - 5], [60, 60, -17]),
         winch_words="motors stand on a base below the gripper, outside the foam, so they stay where they are\n"

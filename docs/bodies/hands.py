@@ -1,5 +1,7 @@
 """The two hands of human shape."""
 
+from functools import partial
+
 from bodies.sheet import Line, Play, Sheet
 from hydrostat.shapes import FOREARM, Limb, Place, Shape, cupping_hand, extended_hand
 
@@ -28,7 +30,7 @@ def cupping() -> Sheet:
             "straightens it. Lengths are in mm; x runs to the thumb, y from the palm to the back, z from the "
             "wrist to the fingers."
         ),
-        surface=shape.surface(2.5e-3),
+        surface=partial(shape.surface, 2.5e-3),
         element_size=11.6,
         held=_held(),
         winch_words=TUBES,
@@ -76,7 +78,7 @@ def extended() -> Sheet:
             "the second cable of the thumb crosses the palm, so that it can stand before the fingers. Lengths are "
             "in mm; x runs to the thumb, y from the palm to the back, z from the wrist to the fingers."
         ),
-        surface=shape.surface(2.5e-3),
+        surface=partial(shape.surface, 2.5e-3),
         element_size=11.6,
         held=_held(),
         winch_words=TUBES,
@@ -160,7 +162,7 @@ def _extensor(shape: Shape, name: str) -> Line:
     return Line(
         name=f"{name} extensor",
         words=f"straightens the {name} finger",
-        points=[*route, *_along(finger, _shares(finger, 0.6), up=0.5)],
+        points=[*route, *_along(finger, _shares(finger, 0.6), up=0.45)],
         sheath=3,
     )
 

@@ -1,6 +1,7 @@
 """Trunk, octopus arm, tongue and fish tail."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def elephant_trunk() -> Sheet:
             "way, so that the halves can bend against each other. Lengths are in mm; x runs to the right, y away "
             "from you to the mouth, z up; it hangs from z = 0."
         ),
-        surface=shape.surface(2.5e-3),
+        surface=partial(shape.surface, 2.5e-3),
         faces=4000,
         element_size=13,
         held=("the end at the head.", [-60, -60, -14], [60, 60, 5]),
@@ -45,7 +46,7 @@ def elephant_trunk() -> Sheet:
             "feed": Play(words="It curls back to the mouth.", contractions={"back": 75}),
             "trumpet": Play(words="It lifts to the front.", contractions={"front": 70, "upper front": 20}),
             "wave": Play(words="It swings to one side.", contractions={"right": 60}),
-            "swan": Play(words="An S: forwards above, back below.", contractions={"upper front": 45, "back": 52}),
+            "swan": Play(words="An S: forwards above, back below.", contractions={"upper front": 36, "back": 46}),
         },
     )
 
@@ -72,7 +73,7 @@ def arm_of_octopus() -> Sheet:
             "it, one winds about it like an oblique muscle. Lengths are in mm; x runs along the arm, y to the "
             "left, z up; it is held at x = 0."
         ),
-        surface=shape.surface(2.5e-3),
+        surface=partial(shape.surface, 2.5e-3),
         faces=4000,
         element_size=10,
         held=("the end at the body.", [-5, -40, -40], [14, 40, 40]),
@@ -110,7 +111,7 @@ def tongue_of_foam() -> Sheet:
             "muscles: two cables run above, one below, and one goes to and fro across it. Lengths are in mm; x "
             "runs to the tip, y to the left, z up; it is held at x = 0."
         ),
-        surface=shape.surface(2.5e-3),
+        surface=partial(shape.surface, 2.5e-3),
         faces=4000,
         material="ecoflex 00-30",
         volume="patch",
@@ -146,7 +147,7 @@ def tail_of_fish() -> Sheet:
             "the other. Lengths are in mm; x runs to the fin, y to the right of the fish, z up; it is held at x = "
             "0."
         ),
-        surface=shape.surface(2.5e-3),
+        surface=partial(shape.surface, 2.5e-3),
         faces=4000,
         element_size=9,
         held=("the end at the body.", [-5, -60, -60], [12, 60, 60]),

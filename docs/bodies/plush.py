@@ -23,7 +23,7 @@ def bear() -> Sheet:
             "A plush bear that hugs: its outline is a drawing, blown up as if it were stuffed. Four winches in its "
             "belly pull five cables. Lengths are in mm; x runs to the right, y to its back, z up."
         ),
-        surface=_standing(inflate(read_outline(OUTLINE.read_bytes(), name=OUTLINE.name), 72e-3, spacing=6e-3)),
+        surface=_surface,
         faces=5000,
         material="polyester fibre",
         element_size=14,
@@ -46,8 +46,10 @@ def bear() -> Sheet:
     )
 
 
-def _standing(surface: Surface) -> Surface:
-    """The outline upright, its back to +y."""
+def _surface() -> Surface:
+    """The outline blown up to 72 mm, upright, its back to +y."""
+    outline = read_outline(OUTLINE.read_bytes(), name=OUTLINE.name)
+    surface = inflate(outline, 72e-3, spacing=6e-3)
     x, y, z = surface.vertices.T
     return Surface(np.column_stack([x, -z, y]), surface.triangles)
 

@@ -2,7 +2,7 @@
 
 import json
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -65,7 +65,7 @@ class Sheet:
     Attributes:
         name: of the robot and of its folder.
         words: what the file begins with.
-        surface: of the body [m].
+        surface: makes that of the body [m].
         faces: triangles that are kept of it.
         material: a name of the table.
         volume: how its change is measured, for materials that keep it.
@@ -80,7 +80,7 @@ class Sheet:
 
     name: str
     words: str
-    surface: Surface
+    surface: Callable[[], Surface]
     faces: int = 7000
     material: str = "flexfoam-it x"
     volume: str | None = None

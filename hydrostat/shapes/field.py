@@ -40,7 +40,7 @@ def round_cone(start: Place, end: Place, start_radius: float, end_radius: float)
     def distance(points: Points) -> Vector:
         along = (points - first) @ axis / length
         away = np.linalg.norm(points - first - np.outer(along, axis / length), axis=1)
-        foot = np.clip(along + away * sine / cosine, 0.0, length)
+        foot = np.clip(along - away * sine / cosine, 0.0, length)
         return np.hypot(along - foot, away) - (start_radius - sine * foot)
 
     return distance

@@ -133,8 +133,8 @@ def _finger(name: str, place: int, posture: Posture) -> Limb:
         [*joints[:-1], end],
         side=side,
         breadths=[0.95 * broad, 1.02 * broad, broad, 0.90 * broad, 0.80 * broad],
-        backs=[0.90 * palm, 0.80 * palm * _SIZES[name], deep, 0.88 * deep, 0.72 * deep],
-        bellies=[0.95 * palm, 0.92 * palm * _SIZES[name], deep, 0.95 * deep, 0.88 * deep],
+        backs=[0.92 * palm, 0.95 * palm * _SIZES[name], deep, 0.88 * deep, 0.72 * deep],
+        bellies=[0.95 * palm, 1.05 * palm * _SIZES[name], deep, 0.95 * deep, 0.88 * deep],
         caps=(8e-3, cap),
     )
     return replace(drawn, joints=np.array(joints))
@@ -164,7 +164,7 @@ def _thumb(posture: Posture) -> Limb:
         [*joints[:-1], end],
         side=side,
         breadths=[1.2 * broad, 1.02 * broad, broad, 0.86 * broad],
-        backs=[1.1 * deep, 0.98 * deep, 0.92 * deep, 0.66 * deep],
+        backs=[1.1 * deep, 1.05 * deep, deep, 0.72 * deep],
         bellies=[1.4 * deep, 1.10 * deep, deep, 0.90 * deep],
         caps=(8e-3, cap),
     )

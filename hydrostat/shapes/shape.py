@@ -32,4 +32,5 @@ class Shape:
         Raises:
             SurfaceError: the spacing is not above 0, too fine for the memory or so coarse that nothing is left.
         """
-        return contour(self.field, self.box, spacing, distance=True)
+        # Halved, for the distance from a flat section can change by more than the way, though by less than twice.
+        return contour(lambda points: self.field(points) / 2, self.box, spacing, distance=True)
