@@ -36,7 +36,8 @@ def read_image(content: bytes, *, name: str, size: float | None = None) -> Outli
     A picture with transparent parts tells the body by them; else the body is what differs in colour from the ground,
     darker or lighter, which is taken from the border of the picture and may change slowly across it. A drawing of lines
     is filled to the outer side of its outer line, and what is drawn inside plays no part. Elsewhere ground within the
-    body is a hole if it is larger than 1 % of the body. A soft shadow is left out where the body is much stronger.
+    body is a hole if it is larger than 1 % of the body and nothing lies in it. A soft shadow is left out where the body
+    is much stronger.
 
     Args:
         content: the bytes of the file.
@@ -88,7 +89,8 @@ def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 
                 if columns * rows > MOST_PIXELS:
                     raise _too_large(name, f"{columns} x {rows}")
                 step = max(1, -(-max(columns, rows) // _LONGEST))
-                return _plain(ImageOps.exif_transpose(image), step), step
+                ImageOps.exif_transpose(image, in_place=True)
+                return _plain(image, step), step
     except Image.DecompressionBombError as error:
         raise _too_large(name, "far too many") from error
     except Image.UnidentifiedImageError as error:
@@ -114,10 +116,12 @@ def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
         values = np.asarray(image, dtype=float)
         top = max(float(np.max(values, initial=0.0)), 1.0)
         image = Image.fromarray((255.0 * np.clip(values / top, 0.0, 1.0)).astype(np.uint8))
-    # Through premultiplied colours, so that what hides in transparent pixels plays no part.
-    coloured = image.convert("RGBA")
-    if step > 1:
-        coloured = coloured.convert("RGBa").reduce(step).convert("RGBA")
+    if image.has_transparency_data:
+        # Through premultiplied colours, so that what hides in transparent pixels plays no part.
+        coloured = image if image.mode == "RGBA" else image.convert("RGBA")
+        coloured = coloured.convert("RGBa").reduce(step).convert("RGBA") if step > 1 else coloured
+    else:
+        coloured = image.convert("RGB").reduce(step).convert("RGBA")
     return np.asarray(coloured, dtype=float)
 
 
@@ -125,7 +129,7 @@ def _body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silho
     """The body in a picture, and a note on how it was told from its ground."""
     opacity = pixels[..., 3]
     if float((opacity < 128.0).mean()) > 0.005:
-        return silhouette(opacity, 127.5, name), ()
+        return silhouette(opacity, 127.5, 127.5, name), ()
     if min(opacity.shape) < 8:
         raise OutlineError(
             f"{name}: the picture is too small, {opacity.shape[1]} x {opacity.shape[0]} pixels: take a larger one"
@@ -138,7 +142,7 @@ def _body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silho
         )
     level, shadow = _level(seen)
     note = ("a grey part beside the body was taken for its shadow and left out",) if shadow else ()
-    return silhouette(seen.field, level, name), note
+    return silhouette(seen.field, level, seen.faint, name), note
 
 
 def _level(seen: Contrast) -> tuple[float, bool]:
@@ -166,7 +170,7 @@ class _Words:
         if found.cut:
             notes.append("the body reaches the border of the picture and is cut off there")
         if found.filled:
-            notes.append(f"filled {counted(len(found.filled), 'small hole')}, {self._largest(found.filled)}")
+            notes.append(f"filled {counted(len(found.filled), 'hole')}, {self._largest(found.filled)}")
         if found.specks:
             notes.append(
                 f"left out {counted(len(found.specks), 'speck')} beside the body, {self._largest(found.specks)}"

@@ -17,6 +17,7 @@ _THIN = 0.025
 _LINE = 0.03
 _INKED = 0.15
 _LEAST_PIXELS = 200
+_NOISE = 3
 _MOST_CORNERS = 2000
 
 _Mask = Bool[np.ndarray, "rows columns"]
@@ -63,16 +64,18 @@ def covered(mask: _Mask) -> int:
     return max((patch.area for patch in _patches(_filled(mask))[1]), default=0)
 
 
-def silhouette(field: Field, level: float, name: str) -> Silhouette:
+def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouette:
     """The body in a picture: where the field is above a level, or within the lines where it is drawn with lines.
 
     Of all that stands out, the part that covers most with its holes filled is the body. Where hardly anything in it is
     thicker than a line, it is a line drawing: all within the outer line is body. Else parts of the ground inside it
-    are holes, if they are larger than 1 % of it. Parts outside are specks if they are smaller than 2 % of it.
+    are holes, if they are larger than 1 % of it and hold nothing: the white of an eye holds a pupil. Parts outside are
+    specks if they are smaller than 2 % of it.
 
     Args:
         field: what tells the body from the ground.
         level: above which it is body.
+        faint: up to which it is surely ground; at most `level`.
         name: what errors call the picture.
 
     Raises:
@@ -84,8 +87,8 @@ def silhouette(field: Field, level: float, name: str) -> Silhouette:
     if not patches or max(patch.area for patch in patches) < _LEAST_PIXELS:
         raise OutlineError(f"{name}: no body is seen in the picture: draw or photograph it large on plain ground")
     body = labels == 1 + int(np.argmax([patch.area for patch in patches]))
-    lines = _is_lines(mask & body, body, name)
-    holes, shut = _holes(body & ~mask, body, lines)
+    lines = _is_lines((field > faint) & body, body, name)
+    holes, shut = (np.zeros_like(body), ()) if lines else _holes(body & ~mask, body, field <= faint)
     solid = body & ~holes
     inner, islands = _patches(solid)
     main = inner == 1 + int(np.argmax([patch.area for patch in islands]))
@@ -142,16 +145,20 @@ def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
     return float((opened & whole).sum()) < _INKED * float(whole.sum())
 
 
-def _holes(ground: _Mask, body: _Mask, lines: bool) -> tuple[_Mask, tuple[Patch, ...]]:
-    """Where the body has holes, and the parts of the ground within it that are none."""
-    labels = _parts(ground, corners=False)
+def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[Patch, ...]]:
+    """Which of the gaps in a body are holes in it, and those that are ground but too small, or hold something."""
+    labels = _parts(gaps, corners=False)
     areas = np.bincount(labels.ravel())
-    open_ = (areas >= _HOLE * body.sum()) & (not lines)
+    bare = np.bincount(labels.ravel(), weights=ground.ravel()) > 0.5 * areas  # else a pale part of the body
+    open_ = bare & (areas >= _HOLE * body.sum())
     open_[0] = False
-    if lines:
-        return open_[labels], ()
-    _, patches = _patches(ground & ~open_[labels])
-    return open_[labels], tuple(patches)
+    for number in np.flatnonzero(open_):
+        hole = labels == number
+        held = _filled(hole) & ~hole
+        open_[number] = not _HOLE * areas[number] < held.sum() <= _SECOND * body.sum()
+    bare[0] = False
+    shut = _patches((bare & ~open_)[labels])[1]
+    return open_[labels], tuple(patch for patch in shut if patch.area > _NOISE)
 
 
 def _specks(mask: _Mask, body: int, name: str) -> tuple[Patch, ...]:
@@ -164,7 +171,7 @@ def _specks(mask: _Mask, body: int, name: str) -> tuple[Patch, ...]:
             f"{name}: a second shape, {100 * second.area / body:.2g} % as large as the body, lies apart from it "
             f"at pixel ({x:.0f}, {y:.0f}) from the top left: cut it away, or join the two"
         )
-    return tuple(patches)
+    return tuple(patch for patch in patches if patch.area > _NOISE)
 
 
 def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:

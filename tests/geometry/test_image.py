@@ -109,6 +109,18 @@ def test_holes(radius: float) -> None:
     assert drawing.notes == ("kept 1 hole",)
 
 
+def test_pale_parts_and_eyes_are_no_holes() -> None:
+    """Oracle: the disc's area: rings of other colours are body; the white of an eye, which holds a pupil, is filled."""
+    rings = canvas(disc("red"), disc((255, 235, 120), 200), disc("navy", 150), disc((255, 200, 60), 60))
+    eye = canvas(disc("orange"), disc("white", 40, (200, 250)), disc("black", 12, (200, 250)))
+    for image, notes in ((rings, 0), (eye, 1)):
+        drawing = image_drawing(picture(image), name="a.png", size=SIZE)
+        assert drawing.outline.holes == ()
+        assert drawing.outline.area == pytest.approx(np.pi * 0.01, rel=5e-3)
+        assert len(drawing.notes) == notes
+    assert drawing.notes[0].startswith("filled 1 hole, the largest 32 mm across at (-40.0, 20.0) mm")
+
+
 def test_small_things_are_named() -> None:
     """Oracle: what was drawn: two specks and a hole too small to be meant, with size and place."""
     image = canvas(
@@ -116,7 +128,7 @@ def test_small_things_are_named() -> None:
     )
     drawing = image_drawing(picture(image), name="a.png", size=SIZE)
     filled, specks = drawing.notes
-    assert filled == "filled 1 small hole, the largest 8 mm across at (0.0, 40.0) mm"
+    assert filled == "filled 1 hole, the largest 8 mm across at (0.0, 40.0) mm"
     assert specks.startswith("left out 2 specks beside the body, the largest ")
     assert "at (108.0, -108.0) mm" in specks
     assert drawing.outline.area == pytest.approx(np.pi * 0.01, rel=5e-3)
