@@ -53,7 +53,8 @@ def animate(
 
     Example: hydrostat animate examples/starfish --pose wave --out build/wave
     """
-    from hydrostat.plot import WIDTHS, film, find_ffmpeg
+    from hydrostat.plot import film, find_ffmpeg
+    from hydrostat.plot.animation import WIDTHS
     from hydrostat.robot import load_robot
 
     require_folder(out)

@@ -39,7 +39,7 @@ def draw_healing(
     """A surface as it came, and healed, both seen by one eye to one scale.
 
     On the first view red is what is wrong: the inside, seen through holes or on triangles that are turned over, edges
-    that do not belong to two triangles that agree, and a ring about each of the places.
+    that do not belong to two triangles that agree, and rings about the places, one where several would meet.
 
     Args:
         before: as it came.
@@ -55,13 +55,13 @@ def draw_healing(
     shown = np.concatenate([marked, first.vertices[edges].mean(axis=1)])
     camera = three_quarter(second.vertices, shown)
     views = [camera.see(points)[:, :2] for points in (first.vertices, second.vertices, marked)]
-    lines = [line for note in notes for line in _lines(note, width)]
+    lines = _fitted([line for note in notes for line in _lines(note, width)], width)
     layout = _lay_out(np.concatenate(views), lines, width)
     sheet = new_sheet(layout.corners, title=title, width=width, ruled=False, room=0.0)
     image = _both_sides(camera.see(first.vertices), first.triangles, _pixel(sheet, camera, first), camera)
     _show(sheet, image, layout.shifts[0])
     _draw_edges(sheet, image, camera.see(first.vertices)[edges], layout.shifts[0])
-    rings = camera.see(marked)[:, :2] + layout.shifts[0]
+    rings = _apart(camera.see(marked)[:, :2] + layout.shifts[0], 10 * sheet.scale)
     sheet.dots(rings, 13, color="none", markeredgecolor=LIGHT, markeredgewidth=3.2, zorder=20)
     sheet.dots(rings, 13, color="none", markeredgecolor=ERROR, markeredgewidth=1.6, zorder=20.1)
     pixel = _pixel(sheet, camera, second)
@@ -105,6 +105,22 @@ def _lay_out(view: Float[np.ndarray, "_ 2"], lines: Sequence[str], width: float)
 
 def _lines(note: str, width: float) -> list[str]:
     return wrap(note, max(int(LETTERS * width / WIDTH), 20), subsequent_indent="   ") or [""]
+
+
+def _fitted(lines: list[str], width: float) -> list[str]:
+    """So many lines as leave place for the views; the last says how many more there are."""
+    most = max(int((0.55 * TALLEST * 72 * (width - 0.1) - 26 - HEAD) / LINE), 1)
+    more = len(lines) - most + 1
+    return lines if more <= 1 else [*lines[: most - 1], f"... and {more} lines more"]
+
+
+def _apart(rings: Float[np.ndarray, "_ 2"], gap: float) -> Float[np.ndarray, "_ 2"]:
+    """Places without those that are nearer than a gap [mm] to one before."""
+    kept: list[Place] = []
+    for ring in rings:
+        if all(np.linalg.norm(ring - other) > gap for other in kept):
+            kept.append(ring)
+    return np.array(kept).reshape(-1, 2)
 
 
 def _welded(surface: Surface) -> Surface:

@@ -52,7 +52,7 @@ def test_edges_that_do_not_agree() -> None:
 def test_what_is_wrong_is_red() -> None:
     """Oracle: a sound surface shows no red, and more red the more is wrong."""
     after = whole()
-    counts = [reds(plot.draw_healing(soup(after, away=n, over=n), after)) for n in (0, 2, 8)]
+    counts = [reds(plot.draw_healing(soup(after, away=n, over=n), after, width=3.2)) for n in (0, 2, 8)]
     assert counts[0] == 0
     assert 50 < counts[1] < counts[2]
 
@@ -85,11 +85,31 @@ def test_notes_and_counts_are_written_within_the_picture() -> None:
         assert box.y1 <= figure.bbox.y1 + 1, text
 
 
+@pytest.mark.parametrize("width", [3.0, 6.4])
+def test_a_hundred_notes_do_not_fill_the_page(width: float) -> None:
+    """Oracle: the picture is no taller than twice its width, and what is left out and written is all there is."""
+    notes = [f"part {number} was removed" for number in range(100)]
+    figure = plot.draw_healing(whole(), whole(), notes=notes, width=width)
+    assert figure.get_size_inches()[1] < 2 * width
+    texts = [text.get_text() for text in figure.axes[0].texts]
+    written = sum(text.startswith("part") for text in texts)
+    assert 3 < written < 40
+    assert f"... and {100 - written} lines more" in texts
+
+
+def test_places_close_together_have_one_ring() -> None:
+    after = whole()
+    places = np.array([[0.12, 0.02, 0.03], [0.1201, 0.02, 0.03], [0.02, 0.02, 0.06]])
+    figure = plot.draw_healing(after, after, places=places)
+    (rings,) = (line for line in figure.axes[0].lines if line.get_markeredgecolor() == ERROR)
+    assert len(np.asarray(rings.get_xdata())) == 2
+
+
 @pytest.mark.parametrize("size", [(0.01, 0.01, 0.2), (0.2, 0.01, 0.01), (1e-4, 1e-4, 1e-4), (3.0, 2.0, 1.0)])
 def test_bodies_of_any_shape_and_size(size: tuple[float, float, float], tmp_path: Path) -> None:
     mesh = box_mesh((2, 2, 2), size=size)
     surface = Surface(mesh.nodes, mesh.boundary)
-    path = plot.save_png(plot.draw_healing(surface, surface), tmp_path / "a.png", dpi=50)
+    path = plot.save_png(plot.draw_healing(surface, surface, width=3.2), tmp_path / "a.png", dpi=50)
     with Image.open(path) as image:
         assert len(image.convert("RGB").getcolors(1 << 20) or []) > 50
 
