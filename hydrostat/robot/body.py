@@ -85,10 +85,18 @@ class Body:
 
         if self.outline is not None:
             outline = self.outline
-            return size_for(nodes, lambda trial: triangulate(outline, trial), content=outline.area, dim=2)
+            return size_for(
+                nodes,
+                lambda trial: triangulate(outline, trial),
+                content=outline.area,
+                rim=outline.polygon.length,
+                dim=2,
+            )
         if self.healing is not None:
             closed = self.healing.surface
-            return size_for(nodes, lambda trial: tetrahedralise(closed, trial), content=closed.volume, dim=3)
+            return size_for(
+                nodes, lambda trial: tetrahedralise(closed, trial), content=closed.volume, rim=closed.area, dim=3
+            )
         raise InputError("a ready mesh has its own elements, their number cannot be chosen")
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:

@@ -73,7 +73,8 @@ def sketch_robot(
 def _element_size(outline: Outline, nodes: int | None) -> float:
     if nodes is None:
         return _round(float(np.sqrt(outline.area / 215)))
-    return size_for(nodes, lambda trial: triangulate(outline, trial), content=outline.area, dim=2)
+    rim = outline.polygon.length
+    return size_for(nodes, lambda trial: triangulate(outline, trial), content=outline.area, rim=rim, dim=2)
 
 
 def _round(length: float) -> float:

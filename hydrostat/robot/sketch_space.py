@@ -9,9 +9,10 @@ from jaxtyping import Float
 from hydrostat.arrays import Points, Vector
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.heal import Healing, heal
+from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.sizing import size_for
 from hydrostat.geometry.surface import Surface
-from hydrostat.robot.body import Body, mesh_body, surface_body
+from hydrostat.robot.body import Body, Source, mesh_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.materials import find_material
@@ -74,11 +75,25 @@ def sketch_surface(
     known = find_material(material)
     before = read_surface(content, name=file, size=size)
     healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
-    closed = healing.surface
-    length = element_size or size_for(nodes, lambda trial: tetrahedralise(closed, trial), content=closed.volume, dim=3)
+    closed, meshes = healing.surface, {}
+
+    def fill(trial: float) -> Mesh:
+        meshes[trial] = tetrahedralise(closed, trial)
+        return meshes[trial]
+
+    length = element_size or size_for(nodes, fill, content=closed.volume, rim=closed.area, dim=3)
     if not healing.clean:
         content, file, size = write_ply(closed), f"{PurePath(file).stem}_healed.ply", None
-    body = surface_body(content, file=file, unit=1e-3, material=known, element_size=length, size=size)
+    body = Body(
+        source=Source.SURFACE,
+        file=file,
+        content=content,
+        material=known,
+        size=size,
+        element_size=length,
+        mesh=meshes[length] if length in meshes else fill(length),
+        healing=healing,
+    )
     return SurfaceSketch(_rigged(body, name), before, healing)
 
 
