@@ -256,6 +256,12 @@ def test_other_kinds_of_file(name: str) -> None:
         read_outline(GOOD, name=name, size=SIZE)
 
 
+def test_notes_of_svg() -> None:
+    """Oracle: what is in the drawing: one open line beside the body."""
+    svg = b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0,0h20v20h-20z"/><path d="M5,5h4"/></svg>'
+    assert read_drawing(svg, name="a.svg", size=SIZE).notes == ("left out 1 open line, the largest at (5, 5)",)
+
+
 def test_endings_in_capitals() -> None:
     """Oracle: the disc, whatever the case of its ending; the outline is that of the drawing."""
     for name in ("A.PNG", "b.Jpeg"):
