@@ -124,9 +124,9 @@ def test_what_a_picture_says_of_a_pose() -> None:
     pose = Simulation(robot).solve(np.array([0.005, 0.0]))
     failed = replace(pose, result=replace(pose.result, reason=Reason.ITERATION_LIMIT))
     for drawn, words in (
-        (plot.draw_pose(robot, pose), "at rest under the given contractions"),
-        (plot.draw_pose(robot, failed), "not at rest under the given contractions: iteration limit reached"),
-        (plot.draw_pose(robot, pose, note="after 2 s of motion"), "after 2 s of motion"),
+        (plot.draw_pose(robot, pose, width=3.2), "at rest under the given contractions"),
+        (plot.draw_pose(robot, failed, width=3.2), "not at rest under the given contractions: iteration limit reached"),
+        (plot.draw_pose(robot, pose, note="after 2 s of motion", width=3.2), "after 2 s of motion"),
     ):
         assert words in {text.get_text() for text in drawn.texts}
 
