@@ -7,7 +7,10 @@ from jaxtyping import Bool, Float, Int
 
 from hydrostat.geometry.surface import Surface
 
-_CHUNK = 20_000  # triangles whose neighbours are looked up at once
+_PAIRS = 1_000_000  # about as many are looked at at once
+MOST_PAIRS = 100_000
+"""Where so many pairs cross, no more are looked for."""
+
 _NEAR = 1e-9  # of the size of the surface: what is nearer to a plane than this touches it, and does not cross it
 # a turn that no CAD model is aligned with: its walls are not seen from the side, where many boxes overlap
 _TURN = np.linalg.qr(np.array([[0.61, 0.33, -0.72], [-0.47, 0.88, 0.05], [0.64, 0.31, 0.70]]))[0]
@@ -18,7 +21,8 @@ _Corners = Float[np.ndarray, "pairs 3 3"]
 def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
     """Pairs of triangles of which a side of one runs through the other, or that are folded flat on each other.
 
-    Triangles that touch each other, or lie in one plane and overlap there without a common edge, do not count.
+    Triangles that touch each other, or lie in one plane and overlap there without a common edge, do not count. Ends
+    early where a surface is nothing but crossings.
     """
     found = [np.zeros((0, 2), dtype=np.int64)]
     for pairs in _candidates(surface):
@@ -32,6 +36,8 @@ def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
             two = _rolled(second[some], same[some].any(axis=1), count)
             cross[some] = test(surface.vertices[one], surface.vertices[two], _NEAR * surface.size)
         found.append(pairs[cross])
+        if sum(map(len, found)) >= MOST_PAIRS:
+            break
     return np.concatenate(found)
 
 
@@ -51,9 +57,12 @@ def _candidates(surface: Surface) -> Iterator[Int[np.ndarray, "pairs 2"]]:
     low, high = corners.min(axis=1), corners.max(axis=1)
     boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
     tree = shapely.STRtree(boxes)
-    for start in range(0, len(boxes), _CHUNK):
-        first, second = tree.query(boxes[start : start + _CHUNK])
+    start, chunk = 0, 16
+    while start < len(boxes):
+        first, second = tree.query(boxes[start : start + chunk])
         first = first + start
+        start += chunk
+        chunk = int(np.clip(chunk * _PAIRS / max(len(first), 1), 16, 4 * chunk))
         meets = (first < second) & (low[first, 2] <= high[second, 2]) & (low[second, 2] <= high[first, 2])
         yield np.stack([first[meets], second[meets]], axis=1).astype(np.int64)
 

@@ -11,6 +11,7 @@ from hydrostat.errors import InputError
 _PIECE = 1_000_000  # bytes of text taken apart at once
 _LONGEST = 10_000  # characters of a word
 _SPACE = re.compile(rb"\s")
+_BLANK = re.compile(rb"\s*")
 _WORD = re.compile(rb"\S+")
 
 
@@ -39,13 +40,14 @@ class Cursor:
 
     def line(self, *, blank: bool = False) -> bytes | None:
         """The next line with anything in it, or the very next; None at the end."""
-        while self.at < len(self.content):
-            end = self.content.find(b"\n", self.at)
-            end = len(self.content) if end < 0 else end
-            line, self.at = self.content[self.at : min(end, self.at + 10_000)].strip(), end + 1
-            if line or blank:
-                return line
-        return None
+        if not blank:
+            self.at = _BLANK.match(self.content, self.at).end()  # pyright: ignore[reportOptionalMemberAccess]
+        if self.at >= len(self.content):
+            return None
+        end = self.content.find(b"\n", self.at)
+        end = len(self.content) if end < 0 else end
+        line, self.at = self.content[self.at : min(end, self.at + _LONGEST)].strip(), end + 1
+        return line
 
     def seek_after(self, mark: bytes) -> None:
         """Go on behind a mark.

@@ -12,7 +12,7 @@ from hydrostat.geometry.holes import Holes, holes_of, with_closed
 from hydrostat.geometry.one_way import one_way
 from hydrostat.geometry.remake import Remade, remake
 from hydrostat.geometry.shells import Role, Shells, shells_of
-from hydrostat.geometry.sides import sides_of
+from hydrostat.geometry.sides import members, sides_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.surface_faults import Piece, pieces_of, sliver_count, told
 from hydrostat.geometry.weld import Welded, weld
@@ -21,6 +21,7 @@ from hydrostat.units import counted
 _MOST_PATCHED = 0.25
 _MOST_LOST = 0.1
 _LISTED = 5
+_MOST_CROSSED = 20
 _SMALL_HOLE = 24.0  # resolutions around: about two elements across
 
 
@@ -98,6 +99,7 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     filled = with_closed(turned, holes, small) if small.any() else turned
     flipped = np.concatenate([flipped, np.zeros(len(filled.triangles) - len(flipped), dtype=bool)])
     crossing = crossing_pairs(filled)
+    _check_tangle(crossing)
     shells = shells_of(filled, flipped, crossing, resolution)
     keep = shells.of_role(Role.BODY, Role.CAVITY)[shells.label]
     kept = _part(shells.surface, keep)
@@ -109,6 +111,15 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
         clean = not (done or removed)
         return Healing(kept, found, done, removed, kept.volume, kept.volume, 0.0, float(patched), clean)
     return _made_anew(kept, shells, found, done, removed, resolution)
+
+
+def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
+    """Refuse what is no surface: most of the triangles that were looked at cross many others."""
+    if len(crossing) > _MOST_CROSSED * (crossing[:, 0].max(initial=0) + 1):
+        raise SurfaceError(
+            f"the triangles run through each other everywhere, each through more than {_MOST_CROSSED} others: this is no "
+            "surface of a body, perhaps the file is damaged; export it again"
+        )
 
 
 def _small(surface: Surface, holes: Holes, resolution: float) -> Bool[np.ndarray, " holes"]:
@@ -201,7 +212,5 @@ def _lost(kept: Surface, lost: Int[np.ndarray, " lost"], made: Remade) -> tuple[
         )
     sides = sides_of(kept.triangles[lost])
     label = sides.groups(sides.counts > 1)
-    return tuple(
-        Piece.of(kept, lost[label == part], "open, or too thin for the grid it was healed with")
-        for part in range(label.max() + 1)
-    )
+    why = "open, or too thin for the grid it was healed with"
+    return tuple(Piece.of(kept, lost[numbers], why) for numbers in members(label))

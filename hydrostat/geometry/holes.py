@@ -65,7 +65,7 @@ def _part_rings(edges: Int[np.ndarray, "edges 2"], label: Int[np.ndarray, " edge
             at = int(edges[way[-1], 1])
             if at in seen:
                 ring = way[seen[at] :]
-                label[ring] = label.max() + 1
+                label[ring] = -1 - ring[0]  # no other ring has its first edge
                 del way[seen[at] :]
                 for edge in ring[:-1]:
                     del seen[int(edges[edge, 1])]

@@ -120,16 +120,17 @@ def _old_elements(cursor: Cursor) -> _Found:
 def _old_rows(cursor: Cursor, count: int) -> _Found:
     """The same from text: number, kind, how many tags, tags, nodes; a row for each element."""
     numbers = cursor.all_numbers(max(cursor.content.find(b"$EndElements", cursor.at), cursor.at), "i8")
-    look, at = numbers.data, 0
+    look, at, end = numbers.data, 0, len(numbers)
     places: dict[int, array] = {_TETRAHEDRON: array("q"), _TRIANGLE: array("q")}
     for _ in range(min(count, len(numbers))):
-        corners = _CORNERS.get(look[at + 1]) if at + 3 <= len(look) else None
-        if corners is None or look[at + 2] < 0 or at + 3 + look[at + 2] + corners > len(look):
+        kind, tags = (look[at + 1], look[at + 2]) if at + 3 <= end else (0, 0)
+        first = at + 3 + tags
+        at = first + _CORNERS.get(kind, end + 1)
+        if tags < 0 or at > end:
             raise cursor.damaged("has an element that is not whole, or of a kind that is not known")
-        if look[at + 1] in places:
-            places[look[at + 1]].append(at + 3 + look[at + 2])
-        at += 3 + look[at + 2] + corners
-    if at != len(look):
+        if kind in places:
+            places[kind].append(first)
+    if at != end:
         raise cursor.damaged("has elements that do not fit their number")
     return {
         kind: [numbers[np.array(some, dtype=np.int64)[:, None] + np.arange(_CORNERS[kind])]]

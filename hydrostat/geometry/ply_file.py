@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.soup import MOST_TRIANGLES, Soup, check_count, fans
+from hydrostat.geometry.soup import MOST_TRIANGLES, Soup, check_count, check_text, fans
 from hydrostat.geometry.surface import Surface
 
 _MOST_HEAD = 100_000
@@ -46,6 +46,8 @@ def read_ply(content: bytes, name: str) -> Soup:
         SurfaceError: its head is not understood, its counts do not fit its size, or it is cut short.
     """
     order, elements, start = _head(content, name)
+    if not order:
+        check_text(content, name)
     vertices, faces = np.zeros((0, 3)), None
     for element in elements:
         check_count(name, f"{element.name} rows", element.count, room=_room(element, order, content, start), most=_MOST)
@@ -157,23 +159,27 @@ def _row_by_row(content: bytes, start: int, element: _Element, order: str, name:
     """Numbers of rows whose lists have different lengths."""
     pieces = {each.name: bytearray() for each in element.properties}
     counts = {each.name: array("q") for each in element.properties}
-    sizes = [np.dtype(each.kind).itemsize for each in element.properties]
-    heads = [np.dtype(order + each.length_kind) if each.length_kind else None for each in element.properties]
+    byte_order = "little" if order == "<" else "big"
+    steps = [
+        (
+            pieces[each.name],
+            counts[each.name],
+            np.dtype(each.kind).itemsize,
+            np.dtype(each.length_kind).itemsize if each.length_kind else 0,
+        )
+        for each in element.properties
+    ]
     for row in range(element.count):
-        for each, size, head in zip(element.properties, sizes, heads, strict=True):
-            length = 1
-            if head is not None:
-                piece = content[start : start + head.itemsize]
-                length = int(np.frombuffer(piece, head)[0]) if len(piece) == head.itemsize else -1
-                start += head.itemsize
-            end = start + length * size
-            if length < 0 or length > _LONGEST_ROW or end > len(content):
+        for piece, count, size, head in steps:
+            length = int.from_bytes(content[start : start + head], byte_order) if head else 1
+            end = start + head + length * size
+            if length > _LONGEST_ROW or end > len(content):
                 raise SurfaceError(
                     f"{name}: ends within {element.name} {row} of {element.count}: the file is damaged or cut short, "
                     "export or copy it again"
                 )
-            pieces[each.name] += content[start:end]
-            counts[each.name].append(length)
+            piece += content[start + head : end]
+            count.append(length)
             start = end
     values = {
         each.name: (np.frombuffer(pieces[each.name], order + each.kind), np.array(counts[each.name]))

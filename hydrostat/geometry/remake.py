@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.contour import MOST_GRID_POINTS, contour
-from hydrostat.geometry.sides import sides_of
+from hydrostat.geometry.sides import members, sides_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.surface_faults import Piece
 
@@ -46,7 +46,7 @@ def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolu
     Raises:
         SurfaceError: there is no such region, or it is several bodies.
     """
-    field = _Winding(surface)
+    field = WindingField(surface)
     spacing = _spacing(surface, resolution)
     box = surface.box + 2.0 * spacing * np.array([[-1.0], [1.0]])
     try:
@@ -59,7 +59,7 @@ def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolu
     return _one_body(made, cavities, spacing)
 
 
-class _Winding:
+class WindingField:
     """One half minus the winding number, and how far from a point its sign cannot change."""
 
     def __init__(self, surface: Surface) -> None:
@@ -77,6 +77,7 @@ class _Winding:
         self.length = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) @ np.abs(sides.turns[rim]))
 
     def __call__(self, points: Points) -> Vector:
+        """One half minus the winding number."""
         return 0.5 - np.array(self.sum.winding_number(np.ascontiguousarray(points)))
 
     def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
@@ -109,28 +110,28 @@ def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacin
     """The largest part of a contour with its cavities; small parts are removed, pockets of air filled."""
     sides = sides_of(made.triangles)
     label = sides.groups(sides.counts > 1)
-    volumes = np.array([_part(made, label, part).volume for part in range(label.max() + 1)])
+    inside = made.vertices[made.triangles[:, 0]] - made.box.mean(axis=0)
+    volumes = np.bincount(label, np.einsum("td,td->t", inside, made.crosses) / 6)
+    numbers = members(label)
     body = int(np.argmax(volumes))
     keep, removed, filled = np.zeros(len(volumes), dtype=bool), [], []
     keep[body] = True
     for part in np.flatnonzero(~keep).tolist():
-        piece = _part(made, label, part)
+        piece = _part(made, numbers[part])
         if volumes[part] > _SMALL * volumes[body]:
-            raise SurfaceError(_several(_part(made, label, body), piece))
+            raise SurfaceError(_several(_part(made, numbers[body]), piece))
         if volumes[part] > 0.0:
             removed.append(Piece.of_box(piece.box, len(piece.triangles), "loose speck"))
         elif (np.abs(cavities - piece.box).max(axis=(1, 2)) < 2.0 * spacing).any():
             keep[part] = True
         else:
             filled.append(Piece.of_box(piece.box, len(piece.triangles), "a pocket of air filled"))
-    chosen = keep[label]
-    used, triangles = np.unique(made.triangles[chosen], return_inverse=True)
-    surface = Surface(made.vertices[used], triangles.reshape(-1, 3))
+    surface = _part(made, np.flatnonzero(keep[label]))
     return Remade(surface, spacing, tuple(removed), tuple(piece.text for piece in filled))
 
 
-def _part(surface: Surface, label: np.ndarray, part: int) -> Surface:
-    used, triangles = np.unique(surface.triangles[label == part], return_inverse=True)
+def _part(surface: Surface, numbers: Int[np.ndarray, " some"]) -> Surface:
+    used, triangles = np.unique(surface.triangles[numbers], return_inverse=True)
     return Surface(surface.vertices[used], triangles.reshape(-1, 3))
 
 

@@ -59,6 +59,11 @@ class Sides:
         return np.unique(labels, return_inverse=True)[1].astype(np.int64)
 
 
+def members(label: Int[np.ndarray, " some"]) -> list[Int[np.ndarray, " _"]]:
+    """Which have each label, for labels from 0 on that all occur."""
+    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
+
+
 def sides_of(triangles: Int[np.ndarray, "triangles 3"]) -> Sides:
     """The edges of triangles."""
     pairs = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)

@@ -12,6 +12,9 @@ from hydrostat.errors import SurfaceError
 MOST_BYTES = 120_000_000
 """A surface file larger than this, or that unpacks to more, is refused."""
 
+MOST_TEXT_BYTES = 60_000_000
+"""The same for what is read word by word, which takes longer: text, and the XML of 3MF."""
+
 MOST_TRIANGLES = 2_000_000
 """A surface with more triangles is refused; of vertices it may have three times as many."""
 
@@ -57,12 +60,26 @@ def check_count(name: str, what: str, count: int, *, room: float, most: int = MO
         )
 
 
+def check_text(content: bytes, name: str) -> None:
+    """Refuse text that would take long.
+
+    Raises:
+        SurfaceError: it has too many bytes.
+    """
+    if len(content) > MOST_TEXT_BYTES:
+        raise SurfaceError(
+            f"{name}: has {len(content) / 1e6:.0f} MB of text, at most {MOST_TEXT_BYTES / 1e6:.0f} MB are read: "
+            "save it as binary STL or PLY, or simplify the surface"
+        )
+
+
 def lines(content: bytes, name: str) -> Iterator[tuple[int, bytes]]:
     """Lines of a text file with their numbers, one after the other, so that no list of all is ever made.
 
     Raises:
         SurfaceError: a line is too long for text, as in a file that is none.
     """
+    check_text(content, name)
     if b"\r" in content:
         content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     for number, line in enumerate(BytesIO(content), start=1):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Int
 
+from hydrostat.geometry.crossings import MOST_PAIRS
 from hydrostat.geometry.holes import Holes
 from hydrostat.geometry.shells import Role, Shells
 from hydrostat.geometry.sides import sides_of
@@ -92,6 +93,7 @@ def told(
     sides = sides_of(surface.triangles)
     longest = 1e3 * holes.length.max(initial=0.0)
     roles = shells.roles
+    most = "at least " if len(crossing) >= MOST_PAIRS else ""
     lines = (
         (welded.merged, counted(welded.merged, "corner") + " in the place of another"),
         (welded.flat, counted(welded.flat, "triangle") + " without an area"),
@@ -102,7 +104,7 @@ def told(
         (flipped, counted(flipped, "flipped triangle")),
         (sides.twisted.sum(), counted(int(sides.twisted.sum()), "edge") + " where inside and outside change sides"),
         (shells.inside_out.sum(), counted(int(shells.inside_out.sum()), "part") + " inside out"),
-        (len(crossing), counted(len(crossing), "pair") + " of triangles that run through each other"),
+        (len(crossing), f"{most}{counted(len(crossing), 'pair')} of triangles that run through each other"),
         (len(roles) > 1, f"{len(roles)} parts that are not joined"),
         (roles.count(Role.CAVITY), counted(roles.count(Role.CAVITY), "pocket") + " of air inside, clean and thus kept"),
         (slivers, counted(slivers, "sliver")),

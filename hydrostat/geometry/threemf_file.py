@@ -11,7 +11,7 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile
 import numpy as np
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.soup import MOST_BYTES, MOST_TRIANGLES, Soup, check_count
+from hydrostat.geometry.soup import MOST_TEXT_BYTES, MOST_TRIANGLES, Soup, check_count
 
 _MOST_MEMBERS = 2000
 _MOST_PLACED = 10_000
@@ -69,7 +69,7 @@ def _read_archive(archive: ZipFile, name: str) -> _Model:
     """The root model of an archive, and the parts that it names."""
     model = _Model()
     root = _root(archive, name)
-    waiting, done, left = [root], set(), MOST_BYTES
+    waiting, done, left = [root], set(), MOST_TEXT_BYTES
     while waiting:
         part = waiting.pop()
         done.add(part)
@@ -112,7 +112,8 @@ def _member(archive: ZipFile, part: str, name: str, most: int) -> bytes:
         if len(text) <= most:
             return text
     raise SurfaceError(
-        f"{name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: simplify the surface, such as to 100000 triangles"
+        f"{name}: unpacks to more than {MOST_TEXT_BYTES / 1e6:.0f} MB: simplify the surface, such as to 100000 "
+        "triangles, or save it as binary STL"
     )
 
 

@@ -20,9 +20,11 @@ from geometry.dirty import (
 )
 
 from hydrostat.errors import SurfaceError
+from hydrostat.geometry.contour import contour
 from hydrostat.geometry.crossings import crossing_pairs
 from hydrostat.geometry.heal import Healing, heal
 from hydrostat.geometry.holes import holes_of
+from hydrostat.geometry.remake import WindingField
 from hydrostat.geometry.sides import sides_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.weld import weld
@@ -272,9 +274,24 @@ def test_a_grid_that_would_be_too_fine_is_coarser_and_says_so() -> None:
         assert _says(heal(pair, resolution=0.001), "coarser than the 1 mm asked for")
 
 
+@pytest.mark.parametrize("dirty", [with_hole(_BALL, _TOP, 0.02), both(_BALL, sphere(0.02, (0.025, 0.0, 0.0), 3))])
+def test_settled_blocks_change_nothing(dirty: Surface) -> None:
+    """Oracle: the same contour with the winding number summed at every grid point."""
+    field = WindingField(dirty)
+    box = dirty.box + 0.003 * np.array([[-1.0], [1.0]])
+    every, some = contour(field, box, _FINE), contour(field, box, _FINE, settled=field.settled)
+    assert every.vertices.tobytes() == some.vertices.tobytes()
+    assert every.triangles.tobytes() == some.triangles.tobytes()
+    middle = np.array([[0.0, 0.0, 0.0]])
+    assert field.settled(middle, np.array([0.002])).all()
+    assert not field.settled(_TOP[None], np.array([0.012])).any()
+
+
 _SHEET = Surface(np.array([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0.0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 
 _CROSS = both(cuboid((0, 0, 0), (0.1, 0.1, 2e-4)), cuboid((0.05, 0.03, -0.05), (0.0502, 0.07, 0.05)))
+
+_TANGLE = Surface(np.random.default_rng(0).random((900, 3)), np.arange(900).reshape(-1, 3))
 
 
 @pytest.mark.parametrize(
@@ -285,9 +302,10 @@ _CROSS = both(cuboid((0, 0, 0), (0.1, 0.1, 2e-4)), cuboid((0.05, 0.03, -0.05), (
         (with_hole(_BALL, _TOP, 0.03 * 2**0.5), "holes so large"),
         (both(_BALL, sphere(0.02, (0.08, 0.0, 0.0), 3)), r"two bodies .* at \(80, "),
         (_CROSS, "smaller elements"),
+        (_TANGLE, "run through each other everywhere"),
         (both(with_hole(_BALL, _TOP, 0.005), Surface(0.05 + _SHEET.vertices, _SHEET.triangles)), "are open"),
     ],
-    ids=["sheet", "no area", "half", "two bodies", "thin", "body and sheet"],
+    ids=["sheet", "no area", "half", "two bodies", "thin", "tangle", "body and sheet"],
 )  # fmt: skip
 def test_what_cannot_be_mended_is_refused_with_the_reason(dirty: Surface, word: str) -> None:
     with pytest.raises(SurfaceError, match=word) as caught:

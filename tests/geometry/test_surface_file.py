@@ -19,7 +19,7 @@ from geometry.surface_writers import (
 )  # fmt: skip
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.soup import MOST_BYTES
+from hydrostat.geometry.soup import MOST_BYTES, MOST_TEXT_BYTES
 from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.surface_file import SURFACE_SUFFIXES, read_surface, write_ply
 
@@ -230,7 +230,8 @@ _BAD = {
     "3mf transform": ("a.3mf", _model(f'<object id="1">{_BOX_XML}</object>',
                                       '<item objectid="1" transform="1 2 3"/>'), "item"),
     "3mf deep": ("a.3mf", _model("<a>" * 60 + "</a>" * 60), "deeper"),
-    "3mf bomb": ("a.3mf", _model(" " * (MOST_BYTES + 10)), "unpacks to more"),
+    "3mf bomb": ("a.3mf", _model(" " * (MOST_TEXT_BYTES + 10)), "unpacks to more"),
+    "too much text": ("a.obj", b"v 0 0 0\n" * (MOST_TEXT_BYTES // 8 + 1), "MB of text"),
 }  # fmt: skip
 
 
