@@ -8,6 +8,7 @@ from io import BytesIO
 from pathlib import Path
 
 import matplotlib.image
+import numpy as np
 from matplotlib.figure import Figure
 
 import hydrostat as hs
@@ -30,6 +31,7 @@ def main() -> None:
     save_png(draw_network(network.robot, title=""), HERE / "network.png", dpi=110)
     save_png(draw_reached(network.robot, network.reached[0], title=""), HERE / "reached.png", dpi=110)
     draw_gallery()
+    draw_bodies()
     draw_hand()
 
 
@@ -41,20 +43,50 @@ def draw_hand() -> None:
 
 
 def draw_gallery() -> None:
-    """Every gallery robot at rest above, in its first pose by its own hand-placed cables below."""
+    """Every flat gallery robot at rest above, in its first pose by its own hand-placed cables below."""
     rows: list[list[Figure]] = [[], []]
-    for name in gallery_names():
-        robot = hs.load_robot(gallery_folder(name))
+    for robot in _gallery(dim=2):
         reached = hs.solve_ik(hs.Simulation(robot), next(iter(robot.poses.values())))
         rows[0].append(draw_portrait(robot, robot.body.mesh.nodes, width=PORTRAIT))
         rows[1].append(draw_portrait(robot, reached.pose.nodes, width=PORTRAIT))
-    sheet = Figure(figsize=(2.0 * len(rows[0]), 4.0), facecolor="white")
+    save_png(_contact_sheet(rows, side=2.0), HERE / "gallery.png", dpi=110)
+
+
+def draw_bodies() -> None:
+    """Every gallery robot in space, a row each: at rest, then in its poses, as its own winches reach them."""
+    rows, names = [], []
+    for robot in _gallery(dim=3):
+        simulation = hs.Simulation(robot)
+        states = [robot.body.mesh.nodes]
+        states += [hs.solve_ik(simulation, pose).pose.nodes for pose in robot.poses.values()]
+        frame = np.concatenate([*states, [winch.at for winch in robot.winches]])
+        rows.append([draw_portrait(robot, nodes, frame=frame, width=PORTRAIT) for nodes in states])
+        names.append([robot.name, *robot.poses])
+    save_png(_contact_sheet(rows, side=1.9, names=names), HERE / "bodies.png", dpi=90)
+
+
+def _gallery(*, dim: int) -> list[hs.Robot]:
+    """The robots of the gallery that are flat (2) or in space (3)."""
+    robots = [hs.load_robot(gallery_folder(name)) for name in gallery_names()]
+    return [robot for robot in robots if robot.body.mesh.dim == dim]
+
+
+def _contact_sheet(rows: list[list[Figure]], *, side: float, names: list[list[str]] | None = None) -> Figure:
+    """Figures side by side in squares of a side [inches], with names below them."""
+    columns = max(map(len, rows))
+    sheet = Figure(figsize=(side * columns, side * len(rows)), facecolor="white")
     for row, figures in enumerate(rows):
         for column, figure in enumerate(figures):
-            axes = sheet.add_axes((column / len(figures), 0.5 - 0.5 * row, 1 / len(figures), 0.5))
+            place = (column / columns, 1 - (row + 1) / len(rows), 1 / columns, 1 / len(rows))
+            below = 0.0 if names is None else 0.1 * place[3]
+            axes = sheet.add_axes((place[0], place[1] + below, place[2], place[3] - below))
             axes.imshow(_pixels(figure))
             axes.set_axis_off()
-    save_png(sheet, HERE / "gallery.png", dpi=110)
+            if names is not None:
+                weight = "normal" if column else "bold"
+                middle = (place[0] + place[2] / 2, place[1] + 0.02 * place[3])
+                sheet.text(*middle, names[row][column].replace("_", " "), ha="center", fontsize=8, weight=weight)
+    return sheet
 
 
 def _pixels(figure: Figure) -> object:

@@ -26,7 +26,7 @@ def bear() -> Sheet:
         surface=_surface,
         faces=5000,
         material="polyester fibre",
-        element_size=14,
+        element_size=12,
         held=("by its hips.", [-45, -60, -100], [45, 60, -55]),
         winch_words="little motors in its belly; they move with it.",
         lines=lines,
