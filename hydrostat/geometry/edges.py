@@ -3,7 +3,7 @@
 from itertools import combinations
 
 import numpy as np
-from jaxtyping import Int
+from jaxtyping import Float, Int
 
 from hydrostat.arrays import Elements
 
@@ -15,6 +15,12 @@ Edges = Int[np.ndarray, "_ 2"]
 
 Numbers = Int[np.ndarray, " _"]
 """Numbers of edges, nodes or elements."""
+
+Places = Float[np.ndarray, "_ 3"]
+"""Nodes [m], of whatever number beside others."""
+
+Tetrahedra = Int[np.ndarray, "_ 4"]
+"""Nodes of each tetrahedron, of whatever number beside others."""
 
 
 def edges_of(elements: Elements) -> tuple[Edges, Int[np.ndarray, "elements 6"]]:
@@ -31,6 +37,6 @@ def find_edges(every: Edges, some: Edges) -> Numbers:
     return np.searchsorted(every[:, 0] * count + every[:, 1], some[:, 0] * count + some[:, 1])
 
 
-def halves(elements: Elements, edges: Edges, middles: Numbers) -> Elements:
+def halves(elements: Tetrahedra, edges: Edges, middles: Numbers) -> Tetrahedra:
     """Two tetrahedra for each, whose edge gets a node in its middle: first those with the edge's second end."""
     return np.concatenate([np.where(elements == edges[:, end, None], middles[:, None], elements) for end in (0, 1)])

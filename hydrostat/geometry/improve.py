@@ -62,7 +62,7 @@ def improve(mesh: Mesh, solid: Solid, *, element_size: float, stages: tuple[Stag
     return Mesh(nodes * element_size, mesh.elements)
 
 
-def _stars(simplices: Elements, count: int) -> tuple[Int[np.ndarray, " _"], Int[np.ndarray, " corners"]]:
+def _stars(simplices: Elements, count: int) -> tuple[Int[np.ndarray, " _"], Int[np.ndarray, " _"]]:
     """Where the list of each node begins, and the lists: corners (corner count x simplex + corner) at the node."""
     start = np.concatenate([[0], np.cumsum(np.bincount(simplices.ravel(), minlength=count))])
     return start, np.argsort(simplices.ravel(), kind="stable")

@@ -16,17 +16,21 @@ def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:
     """The largest part that faces join, with a node of its own for each group of elements that faces join about it.
 
     So what touches at an edge or a node only, such as two fingers, is parted. Where an edge is left between two groups
-    about it that are joined elsewhere, the smaller group goes. Nodes keep their order.
+    about it that are joined elsewhere, the smaller group goes; where two hollows meet at a node, what lies at the
+    smaller. Nodes keep their order.
 
     Returns:
-        the mesh, and for each other part its places nearest to the rest [m].
+        the mesh; and for each other part its places nearest to the rest, and the middles of what went [m].
     """
     part = _parts(elements)
-    mesh = _parted(nodes, elements[part == _largest(part)])
-    while (crowded := _crowded(mesh)).any():
-        left = mesh.elements[~crowded]
-        mesh = _parted(mesh.nodes, left[_parts(left) == _largest(_parts(left))])
-    return mesh, _breaks(nodes, elements, part)
+    mesh, breaks = _parted(nodes, elements[part == _largest(part)]), [_breaks(nodes, elements, part)]
+    while (gone := _crowded(mesh)).any() or (gone := _pinched(mesh)).any():
+        left = np.flatnonzero(~gone)
+        part = _parts(mesh.elements[left])
+        left = left[part == _largest(part)]
+        breaks.append(mesh.nodes[np.delete(mesh.elements, left, axis=0)].mean(axis=1))
+        mesh = _parted(mesh.nodes, mesh.elements[left])
+    return mesh, np.concatenate(breaks)
 
 
 def _breaks(nodes: Nodes, elements: Elements, part: Numbers) -> Points:
@@ -38,12 +42,13 @@ def _breaks(nodes: Nodes, elements: Elements, part: Numbers) -> Points:
     return np.concatenate(places)
 
 
-def _joins(elements: Elements) -> Int[np.ndarray, "2 joins"]:
-    """Pairs of corners (4 x element + corner) that are the same node of a face that two elements share."""
-    corners = np.arange(elements.size).reshape(-1, 4)
-    corners = np.take_along_axis(corners, np.argsort(elements, axis=1), axis=1)
-    faces = np.concatenate([np.delete(corners, corner, axis=1) for corner in range(4)])
-    names = elements.ravel()[faces]
+def _joins(simplices: Elements) -> Int[np.ndarray, "2 joins"]:
+    """Pairs of corners (corner count x simplex + corner) that are the same node of a side that two simplices share."""
+    count = simplices.shape[1]
+    corners = np.arange(simplices.size).reshape(-1, count)
+    corners = np.take_along_axis(corners, np.argsort(simplices, axis=1), axis=1)
+    faces = np.concatenate([np.delete(corners, corner, axis=1) for corner in range(count)])
+    names = simplices.ravel()[faces]
     order = np.lexsort(names.T)
     same = np.flatnonzero((names[order][1:] == names[order][:-1]).all(axis=1))
     return np.stack([faces[order[same]].ravel(), faces[order[same + 1]].ravel()])
@@ -60,7 +65,7 @@ def _parts(elements: Elements) -> Numbers:
 
 
 def _largest(part: Numbers) -> int:
-    return int(np.argmax(np.bincount(part)))
+    return int(np.argmax(np.bincount(part, minlength=1)))
 
 
 def _parted(nodes: Nodes, elements: Elements) -> Mesh:
@@ -87,4 +92,17 @@ def _crowded(mesh: Mesh) -> np.ndarray:
         volumes = signed_volumes(mesh.nodes, mesh.elements[around])
         sizes = np.bincount(group, weights=volumes)
         out[around[group != np.argmax(sizes)]] = True
+    return out
+
+
+def _pinched(mesh: Mesh) -> np.ndarray:
+    """Which elements to leave out for nodes of the boundary with several fans of facets: those at the smaller fans."""
+    fan = _groups(_joins(mesh.boundary), mesh.boundary.size)
+    _, first, sizes = np.unique(fan, return_index=True, return_counts=True)
+    owner = mesh.boundary.ravel()[first]
+    order = np.lexsort((first, -sizes, owner))
+    smaller = np.zeros(len(sizes), dtype=bool)
+    smaller[order[1:]] = owner[order[1:]] == owner[order[:-1]]
+    out = np.zeros(len(mesh.elements), dtype=bool)
+    out[mesh.boundary_elements[np.flatnonzero(smaller[fan]) // 3]] = True
     return out

@@ -41,7 +41,7 @@ class Solid:
         _, triangles, places = self._distance_tree.squared_distance(
             self.surface.vertices, self.surface.triangles, np.ascontiguousarray(points)
         )
-        return places, triangles
+        return places, triangles.astype(np.int64)  # from long long, another type to NumPy
 
     @cached_property
     def normals(self) -> Float[np.ndarray, "triangles 3"]:

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Elements, Nodes, Vector
-from hydrostat.geometry.edges import Edges, Numbers, edges_of
+from hydrostat.geometry.edges import Edges, Numbers, Places, Tetrahedra, edges_of
 from hydrostat.geometry.orient import turned_outward
 from hydrostat.geometry.solid import Solid
 
@@ -20,14 +20,14 @@ _DEEP = 0.1
 """A tetrahedron with all corners on the surface is kept if its middle is deeper, in lengths of an edge."""
 
 
-def stuff(solid: Solid, nodes: Nodes, elements: Elements) -> tuple[Nodes, Elements]:
+def stuff(solid: Solid, nodes: Nodes, elements: Elements) -> tuple[Places, Tetrahedra]:
     """What a solid takes of a lattice: nodes [m] and elements."""
     return _cut(solid, *_snapped(solid, nodes, elements, solid.distances(nodes)))
 
 
 def _snapped(
     solid: Solid, nodes: Nodes, elements: Elements, distances: Vector
-) -> tuple[Nodes, Elements, Int[np.ndarray, " nodes"], Edges, Nodes]:
+) -> tuple[Nodes, Elements, Int[np.ndarray, " nodes"], Edges, Places]:
     """Nodes with the side they are on (-1 in, 0 on the surface, 1 out), edges that are cut and where.
 
     A node near to a cut moves onto the nearest, and its own cuts are gone.
@@ -70,8 +70,8 @@ def _crossings(
 
 
 def _cut(
-    solid: Solid, nodes: Nodes, elements: Elements, sides: Int[np.ndarray, " nodes"], edges: Edges, cuts: Nodes
-) -> tuple[Nodes, Elements]:
+    solid: Solid, nodes: Nodes, elements: Elements, sides: Int[np.ndarray, " nodes"], edges: Edges, cuts: Places
+) -> tuple[Places, Tetrahedra]:
     """The parts of all tetrahedra inside: whole ones, corners, wedges."""
     count = len(nodes)
     keys = edges[:, 0] * count + edges[:, 1]

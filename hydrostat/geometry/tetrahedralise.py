@@ -8,7 +8,7 @@ from jaxtyping import Bool
 from hydrostat.arrays import Elements, Nodes, Points
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.bisect import bisect
-from hydrostat.geometry.edges import PAIRS
+from hydrostat.geometry.edges import PAIRS, Places, Tetrahedra
 from hydrostat.geometry.fit import fit
 from hydrostat.geometry.improve import Stage, improve
 from hydrostat.geometry.lattice import MEAN_EDGE, lattice
@@ -134,7 +134,7 @@ def _check(surface: Surface, element_size: float) -> None:
         raise InputError(f"{size} would be about {count:.2g}, at most {_MOST} are made: take {least:.2g} mm or more")
 
 
-def _near(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Nodes, Elements]:
+def _near(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:
     """Those elements of which some node is inside or near, and the nodes they have."""
     near = solid.distances(nodes)
     used, kept = np.unique(elements[(near[elements] < cell).any(axis=1)], return_inverse=True)
