@@ -117,8 +117,8 @@ def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
     """Refuse what is no surface: most of the triangles that were looked at cross many others."""
     if len(crossing) > _MOST_CROSSED * (crossing[:, 0].max(initial=0) + 1):
         raise SurfaceError(
-            f"the triangles run through each other everywhere, each through more than {_MOST_CROSSED} others: this is no "
-            "surface of a body, perhaps the file is damaged; export it again"
+            f"the triangles run through each other everywhere, each through more than {_MOST_CROSSED} others: this "
+            "is no surface of a body, perhaps the file is damaged; export it again"
         )
 
 
