@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from hand_body import SPACING, hand_robot
+from hand_body import ELEMENT_SIZE, hand_robot
 from machine import machine
 
 from hydrostat.geometry.thickness import measure_thickness, thin_parts
@@ -45,7 +45,7 @@ def cases() -> Iterator[tuple[str, Callable[[float], Robot], tuple[float, ...]]]
     for name in gallery_names():
         if load_robot(gallery_folder(name)).body.source is Source.OUTLINE:
             yield name, lambda finer, name=name: drawn(name, finer), (1, 2, 4)
-    yield "hand", lambda finer: hand_robot(SPACING / finer), (1, 1.5, 2.2)
+    yield "hand", lambda finer: hand_robot(ELEMENT_SIZE / finer), (1, 1.5, 2.2)
 
 
 def pose(robot: Robot) -> tuple[np.ndarray, float]:

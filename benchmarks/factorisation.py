@@ -92,11 +92,11 @@ def bodies(largest: int) -> list[Body]:
     """From a flat robot to a fine hand."""
     flat = load_robot(gallery_folder("starfish")).body.mesh
     result = [Body("starfish", flat.nodes, flat.elements)]
-    for spacing in (16e-3, 9.85e-3, 7e-3, 5.5e-3, 4.3e-3, 3.6e-3):
-        mesh = hand_mesh(spacing)
+    for element_size in (17e-3, 11.6e-3, 8e-3, 6.4e-3, 5e-3, 4.2e-3):
+        mesh = hand_mesh(element_size)
         if len(mesh.nodes) > largest:
             break
-        result.append(Body(f"hand, {1e3 * spacing:g} mm", mesh.nodes, mesh.elements))
+        result.append(Body(f"hand, {1e3 * element_size:g} mm", mesh.nodes, mesh.elements))
     return result
 
 

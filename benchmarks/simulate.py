@@ -29,8 +29,8 @@ os.environ["NUMBA_NUM_THREADS"] = "1"
 import numpy as np
 
 ROBOTS = Path(__file__).parents[2] / "shared" / "robots"
-SIZES = {1_000: 9.45e-3, 2_000: 7.33e-3, 5_000: 5.19e-3, 10_000: 4.0e-3, 20_000: 3.11e-3}
-"""About how many nodes a hand has at which spacing of its lattice [m]."""
+SIZES = {1_000: 11.2e-3, 2_000: 8.5e-3, 5_000: 6.0e-3, 10_000: 4.6e-3, 20_000: 3.55e-3}
+"""About how many nodes a hand has at which element size [m]."""
 
 FINGER_TIPS = {
     0: (-101.011, -8.132, 7.0),
@@ -140,8 +140,8 @@ def stream(robot: Any, random: np.random.Generator, count: int) -> Iterator[Solv
 
 
 def lengths(robot: Any) -> np.ndarray:
-    """Rest length of each winch's cable [m]; every winch has one."""
-    return np.array([cable.length for cable in robot.cables])
+    """Rest length of each winch's cable outside sheaths [m]; every winch has one."""
+    return np.array([cable.segments[cable.bare].sum() for cable in robot.cables])
 
 
 CASES = {
@@ -158,7 +158,7 @@ CASES = {
 
 
 def read_robot(name: str, folder: Path) -> Any:
-    """The robot of a case; a name such as "hand 3.8e-3" is a hand of that spacing with one cable."""
+    """The robot of a case; a name such as "hand 3.8e-3" is a hand of that element size with one cable."""
     from hand_body import hand_robot
     from sofa_robots import sofa_robots
 
@@ -294,7 +294,7 @@ def print_first_solve(folder: Path) -> None:
 
 
 def print_sizes(largest: int, folder: Path, *, quick: bool) -> None:
-    """One cable of the hand, at several spacings."""
+    """One cable of the hand, at several element sizes."""
     print_heads(
         "nodes",
         "elements",
@@ -308,10 +308,10 @@ def print_sizes(largest: int, folder: Path, *, quick: bool) -> None:
         "MB",
     )
     points = []
-    for size, spacing in SIZES.items():
+    for size, element_size in SIZES.items():
         if size > largest:
             continue
-        found = in_own_process(folder, "--measure", f"hand {spacing}", "1" if quick else "3")
+        found = in_own_process(folder, "--measure", f"hand {element_size}", "1" if quick else "3")
         if found is None:
             continue
         row = Row(**found)

@@ -36,7 +36,7 @@ def seconds(command: list[str]) -> float | None:
 
 ROBOTS = {
     "starfish": "robot = hydrostat.robot.load_robot(hydrostat.robot.gallery_folder('starfish'))",
-    "hand": "from hand_body import hand_robot\nrobot = hand_robot(spacing=16e-3)",
+    "hand": "from hand_body import hand_robot\nrobot = hand_robot(17e-3)",
 }
 """How to make a robot."""
 

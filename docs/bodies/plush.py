@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from bodies.sheet import Line, Play, Sheet
+from hydrostat.geometry.files.outline_file import read_outline
 from hydrostat.geometry.inflate import inflate
-from hydrostat.geometry.outline_file import read_outline
 from hydrostat.geometry.surface import Surface
 from hydrostat.shapes import Place
 

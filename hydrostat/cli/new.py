@@ -116,8 +116,8 @@ def _made_whole(name: Path) -> Iterator[Path]:
 
 def _begin(source: str, folder: Path, wish: _Wish) -> list[str]:
     """Make the robot; returns what there is to tell."""
-    from hydrostat.geometry.outline_file import OUTLINE_SUFFIXES
-    from hydrostat.geometry.surface_file import SURFACE_SUFFIXES
+    from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
+    from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
 
     if source.startswith("gallery:"):
         return _from_gallery(source.removeprefix("gallery:"), folder, wish)
@@ -149,9 +149,9 @@ def _from_gallery(robot: str, folder: Path, wish: _Wish) -> list[str]:
 
 
 def _from_drawing(path: Path, folder: Path, wish: _Wish) -> list[str]:
+    from hydrostat.geometry.files.outline_file import read_drawing
+    from hydrostat.geometry.files.ply_file import write_ply
     from hydrostat.geometry.inflate import inflate
-    from hydrostat.geometry.outline_file import read_drawing
-    from hydrostat.geometry.ply_file import write_ply
     from hydrostat.robot import save_robot, sketch_robot
 
     content, file = path.read_bytes(), _file_name(path.name)

@@ -10,7 +10,7 @@ from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.triangulate import triangulate
+from hydrostat.geometry.triangles.triangulate import triangulate
 
 _STEPS = 4
 

@@ -10,9 +10,9 @@ from numba import njit
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.kernel import KERNEL
 from hydrostat.mechanics.energy import Energy
 from hydrostat.mechanics.factorisation import Analysis
-from hydrostat.kernel import KERNEL
 from hydrostat.mechanics.stiffness import Stiffness
 
 

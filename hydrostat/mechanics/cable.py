@@ -8,8 +8,8 @@ from jaxtyping import Float, Int
 from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 from hydrostat.kernel import KERNEL
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 
 

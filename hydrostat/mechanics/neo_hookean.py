@@ -8,8 +8,8 @@ from jaxtyping import Float
 from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.kernel import INNER, KERNEL
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 
 
 class NeoHookean(Energy):

@@ -19,6 +19,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
+from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.blas import (
     Scratch,
     divide_right,
@@ -27,7 +28,6 @@ from hydrostat.mechanics.blas import (
     subtract_product,
     subtract_square,
 )
-from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.symbolic import Tree, children
 
 BLOCK = 24

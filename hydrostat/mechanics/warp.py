@@ -8,9 +8,9 @@ from jaxtyping import Float, Int
 from numba import njit
 
 from hydrostat.arrays import Nodes
+from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.factorisation import Analysis
-from hydrostat.kernel import INNER, KERNEL
 
 
 class Warp:

@@ -10,7 +10,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Points
 from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.heal import Healing, heal
+from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.solid import Solid
@@ -80,8 +80,8 @@ class Body:
             InputError: a ready mesh, or no mesh has about so few or so many.
         """
         from hydrostat.geometry.sizing import size_for
-        from hydrostat.geometry.tetrahedralise import tetrahedralise
-        from hydrostat.geometry.triangulate import triangulate
+        from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+        from hydrostat.geometry.triangles.triangulate import triangulate
 
         if self.outline is not None:
             outline = self.outline
@@ -133,8 +133,8 @@ def outline_body(
     Raises:
         InputError: the drawing is no closed outline, or a number is out of its range.
     """
-    from hydrostat.geometry.outline_file import read_outline
-    from hydrostat.geometry.triangulate import triangulate
+    from hydrostat.geometry.files.outline_file import read_outline
+    from hydrostat.geometry.triangles.triangulate import triangulate
 
     _check_lengths(size=size, element_size=element_size)
     outline = read_outline(content, name=file, size=size)
@@ -184,8 +184,8 @@ def surface_body(
     Raises:
         InputError: the file holds no surface, it encloses no body, or a number is out of its range.
     """
-    from hydrostat.geometry.surface_file import read_surface
-    from hydrostat.geometry.tetrahedralise import tetrahedralise
+    from hydrostat.geometry.files.surface_file import read_surface
+    from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 
     _check_lengths(size=size, element_size=element_size, thickness=thickness)
     surface = read_surface(content, name=file, unit=unit, size=size)
@@ -224,7 +224,7 @@ def mesh_body(
     Raises:
         InputError: the file cannot be read or holds no such mesh.
     """
-    from hydrostat.geometry.mesh_file import read_mesh
+    from hydrostat.geometry.files.mesh_file import read_mesh
 
     _check_lengths(size=size, thickness=thickness)
     return Body(

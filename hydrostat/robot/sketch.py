@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from hydrostat.geometry.files.outline_file import read_outline
 from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.outline_file import read_outline
 from hydrostat.geometry.sizing import size_for
-from hydrostat.geometry.triangulate import triangulate
+from hydrostat.geometry.triangles.triangulate import triangulate
 from hydrostat.robot.body import outline_body
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.materials import find_material

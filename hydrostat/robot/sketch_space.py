@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.heal import Healing, heal
+from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.sizing import size_for
 from hydrostat.geometry.surface import Surface
@@ -68,9 +68,9 @@ def sketch_surface(
     Raises:
         InputError: the file is no body.
     """
-    from hydrostat.geometry.ply_file import write_ply
-    from hydrostat.geometry.surface_file import read_surface
-    from hydrostat.geometry.tetrahedralise import tetrahedralise
+    from hydrostat.geometry.files.ply_file import write_ply
+    from hydrostat.geometry.files.surface_file import read_surface
+    from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 
     known = find_material(material)
     before = read_surface(content, name=file, size=size)

@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
-from hydrostat.geometry.mesh_file import write_mesh
+from hydrostat.geometry.files.mesh_file import write_mesh
 from hydrostat.robot import Robot, replace_file
 from hydrostat.simulation.motion import Motion
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.geometry.mesh_file import write_mesh
+from hydrostat.geometry.files.mesh_file import write_mesh
 from hydrostat.robot import Robot, replace_file, robot_hash
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import SolvedPose

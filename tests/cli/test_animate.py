@@ -55,7 +55,7 @@ def test_without_poses_one_winch_after_the_other(run: Run, tmp_path: Path) -> No
 def save_strip(folder: Path) -> None:
     from dataclasses import replace
 
-    from hydrostat.geometry.mesh_file import write_mesh
+    from hydrostat.geometry.files.mesh_file import write_mesh
 
     folder.mkdir()
     robot = strip_robot(columns=8, rows=2)

@@ -9,7 +9,7 @@ import pytest
 from builders import box_mesh
 
 from hydrostat.cli.main import main
-from hydrostat.geometry.mesh_file import write_mesh
+from hydrostat.geometry.files.mesh_file import write_mesh
 
 Check = Callable[[Path], list[str]]
 

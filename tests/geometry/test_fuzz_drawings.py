@@ -9,8 +9,8 @@ import pytest
 from drawings import canvas, disc, dxf, fish, mutants, picture, shape, star
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.outline_file import read_outline
 from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.outline_file import read_outline
 
 
 def _all_kinds(space: Any, document: Any) -> None:

@@ -12,9 +12,9 @@ from geometry.surface_writers import archive, mesh_xml, model_xml, obj, off, ply
 from geometry.test_mesh_file import FORMATS, written
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.heal import heal
-from hydrostat.geometry.mesh_file import read_mesh
-from hydrostat.geometry.surface_file import read_surface, write_ply
+from hydrostat.geometry.files.mesh_file import read_mesh
+from hydrostat.geometry.files.surface_file import read_surface, write_ply
+from hydrostat.geometry.healing.heal import heal
 
 _EACH = 17
 _MOST_SECONDS = 10.0

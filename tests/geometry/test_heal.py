@@ -21,13 +21,13 @@ from geometry.dirty import (
 
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.contour import contour
-from hydrostat.geometry.crossings import crossing_pairs
-from hydrostat.geometry.heal import Healing, heal
-from hydrostat.geometry.holes import holes_of
-from hydrostat.geometry.remake import WindingField
-from hydrostat.geometry.sides import sides_of
+from hydrostat.geometry.healing.crossings import crossing_pairs
+from hydrostat.geometry.healing.heal import Healing, heal
+from hydrostat.geometry.healing.holes import holes_of
+from hydrostat.geometry.healing.remake import WindingField
+from hydrostat.geometry.healing.sides import sides_of
+from hydrostat.geometry.healing.weld import weld
 from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.weld import weld
 
 _BALL = sphere(divisions=3)
 _FINE = 0.002
@@ -267,7 +267,7 @@ def test_the_same_bytes_on_every_run() -> None:
 
 def test_a_grid_that_would_be_too_fine_is_coarser_and_says_so() -> None:
     pair = both(_BALL, sphere(0.03, (0.03, 0.0, 0.001), 3))
-    from hydrostat.geometry import remake
+    from hydrostat.geometry.healing import remake
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(remake, "MOST_GRID_POINTS", 30_000)

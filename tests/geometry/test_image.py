@@ -7,9 +7,9 @@ from PIL import Image, PngImagePlugin
 from shapely import Polygon, get_coordinates, hausdorff_distance, segmentize
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.image import image_drawing, read_image
+from hydrostat.geometry.files.image import image_drawing, read_image
+from hydrostat.geometry.files.outline_file import read_drawing, read_outline
 from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.outline_file import read_drawing, read_outline
 
 STAR = star()
 SIZE = 0.2

@@ -10,10 +10,10 @@ from shapely.affinity import rotate, scale
 from shapes import SHAPES, outline
 
 from hydrostat.errors import InputError, OutlineError
+from hydrostat.geometry.files.outline_file import read_outline
 from hydrostat.geometry.inflate import inflate, torsion
-from hydrostat.geometry.outline_file import read_outline
 from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.triangulate import triangulate
+from hydrostat.geometry.triangles.triangulate import triangulate
 from hydrostat.units import LENGTH, parse_quantity
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

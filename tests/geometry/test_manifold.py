@@ -7,7 +7,7 @@ import pytest
 from builders import box_mesh
 from solids import assert_proper, boundary, euler
 
-from hydrostat.geometry.manifold import manifold
+from hydrostat.geometry.tetrahedra.manifold import manifold
 
 Cubes = list[tuple[int, int, int]]
 

@@ -7,7 +7,7 @@ import pytest
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.geometry.mesh_file import read_mesh, write_mesh
+from hydrostat.geometry.files.mesh_file import read_mesh, write_mesh
 
 _NODES = np.array([[0, 0, 0], [10, 0, 0], [0, 20, 0], [0, 0, 30], [10, 20, 30.5]], dtype=float)
 _TETRAHEDRA = np.array([[0, 1, 2, 3], [1, 4, 2, 3]])

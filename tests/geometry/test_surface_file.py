@@ -19,9 +19,9 @@ from geometry.surface_writers import (
 )  # fmt: skip
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.soup import MOST_BYTES, MOST_TEXT_BYTES
+from hydrostat.geometry.files.soup import MOST_BYTES, MOST_TEXT_BYTES
+from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES, read_surface, write_ply
 from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.surface_file import SURFACE_SUFFIXES, read_surface, write_ply
 
 WRITERS = {
     "a.stl": stl, "b.STL": stl_text, "c.obj": obj, "d.off": off, "e.ply": ply_text, "f.ply": ply_big, "g.3mf": threemf,

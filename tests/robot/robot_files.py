@@ -144,7 +144,7 @@ MAXIMAL_IN = {
 
 def mesh_once(patch: pytest.MonkeyPatch) -> None:
     """From now on the same outline and size are meshed once: that a mesh is the same again is tested elsewhere."""
-    module = sys.modules["hydrostat.geometry.triangulate"]
+    module = sys.modules["hydrostat.geometry.triangles.triangulate"]
     mesh, kept = module.triangulate, {}
 
     def once(outline, element_size):

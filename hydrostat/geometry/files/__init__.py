@@ -1,0 +1,1 @@
+"""Shapes from and to files: drawings and pictures, surfaces, ready meshes."""

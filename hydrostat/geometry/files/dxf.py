@@ -1,0 +1,249 @@
+"""Outlines from DXF drawings."""
+
+import io
+import logging
+import re
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.interpolate import BSpline
+
+from hydrostat.errors import OutlineError
+from hydrostat.geometry.files.chains import join
+from hydrostat.geometry.files.drawing import Drawing
+from hydrostat.geometry.files.rings import (
+    CHORD_ERROR,
+    MOST_POINTS,
+    body_and_holes,
+    check_size,
+    checked,
+    closed_rings,
+    counted,
+    placed,
+)
+from hydrostat.geometry.outline import Outline, Ring
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+
+MOST_BYTES = 10_000_000
+"""A file larger than this is refused."""
+
+MOST_ENTITIES = 20_000
+"""A drawing with more entities, counting what its blocks repeat, is refused."""
+
+_MOST_DEPTH = 20
+_FARTHEST = 1e100
+_METRES = {
+    1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 25.4e-9, 9: 25.4e-6, 10: 0.9144,
+    13: 1e-6, 14: 0.1,
+}  # fmt: skip
+_LINES = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "LINE", "ARC"}
+_BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError, AssertionError)
+
+
+def read_dxf(content: bytes, *, name: str, size: float | None = None) -> Outline:
+    """Read the outline of a body from a DXF drawing.
+
+    The largest closed line is the body, those inside it are holes. Polylines, circles, ellipses, splines, lines and
+    arcs are read, also in blocks; lines and arcs whose ends meet are joined. All else (text, dimensions, hatches), what
+    is hidden, and open lines smaller than the body are ignored. Heights (z) play no part. Curves become chords.
+
+    Args:
+        content: the bytes of the file, in DXF's text form.
+        name: what errors call the file.
+        size: longest side of the body's bounding box [m]; if not given, the file must name its unit ($INSUNITS).
+
+    Returns:
+        The outline [m], x to the right, y up, origin at the centre of its bounding box.
+
+    Raises:
+        OutlineError: the file is no DXF, or no body can be made of it; the message says where, in the drawing's units.
+        InputError: `size` is not positive.
+    """
+    return dxf_drawing(content, name=name, size=size).outline
+
+
+def dxf_drawing(content: bytes, *, name: str, size: float | None = None) -> Drawing:
+    """Read the outline of a body, and in words what was left out; all else is as in `read_dxf`."""
+    check_size(size, name)
+    document, mended = _open(content, name)
+    unit = _unit(document)
+    if size is None and unit is None:
+        raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): give its size")
+    layout = _Layout(document, name)
+    lines = list(checked(layout.lines(), name))
+    chains = join([line for line, closed in lines if not closed], name)
+    rings, left_out = closed_rings([pair for pair in lines if pair[1]] + chains, name)
+    body, holes = body_and_holes(rings, name)
+    return Drawing(placed(body, holes, (unit or 1.0, unit or 1.0), size, name), (*mended, *layout.notes(), *left_out))
+
+
+def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
+    """The document, and a note on what the reader mended in it."""
+    if not content.strip():
+        raise OutlineError(f"{name}: the file is empty: export the drawing again as DXF")
+    if len(content) > MOST_BYTES:
+        raise OutlineError(
+            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read: "
+            "save the outline alone"
+        )
+    if content.startswith(b"AutoCAD Binary DXF"):
+        raise OutlineError(f"{name}: a binary DXF, which is not read: save it as DXF in text form (ASCII)")
+    if not re.search(rb"\bEOF\s*\Z", content):
+        raise OutlineError(f"{name}: not a whole DXF drawing, it does not end with EOF: export it again")
+    from ezdxf import recover
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        with _listening() as said:
+            document, auditor = recover.read(io.BytesIO(content))
+    except (DXFError, OSError, *_BROKEN) as error:
+        raise OutlineError(f"{name}: cannot be read as DXF ({_line(error)}): export the drawing again") from error
+    if auditor.errors:
+        raise OutlineError(f"{name}: the file is damaged ({_line(auditor.errors[0].message)}): export it again")
+    mended = [_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
+    return document, (f"mended {counted(len(mended), 'fault')} of the file: {mended[0]}",) if mended else ()
+
+
+@contextmanager
+def _listening() -> Iterator[list[str]]:
+    """What ezdxf says while it reads, which would else go to the screen."""
+    said: list[str] = []
+    handler = logging.Handler(logging.WARNING)
+    handler.emit = lambda record: said.append(record.getMessage())
+    logger = logging.getLogger("ezdxf")
+    before = logger.propagate
+    logger.addHandler(handler)
+    logger.propagate = False
+    try:
+        yield said
+    finally:
+        logger.removeHandler(handler)
+        logger.propagate = before
+
+
+def _unit(document: "Document") -> float | None:
+    """Length of one unit of the drawing [m]; None if it names none."""
+    return _METRES.get(document.header.get("$INSUNITS", 0))
+
+
+@dataclass
+class _Layout:
+    """Walks through the model space of a document; counts what it leaves out."""
+
+    document: "Document"
+    name: str
+    budget: int = MOST_ENTITIES
+    ignored: Counter[str] = field(default_factory=Counter)
+
+    def lines(self) -> Iterator[tuple[Ring, bool]]:
+        """Every visible line as points in the drawing's units, and whether it closes itself."""
+        from ezdxf.lldxf.const import DXFError
+
+        try:
+            yield from self._lines_of(self.document.modelspace(), 0)
+        except (DXFError, *_BROKEN) as error:
+            raise OutlineError(f"{self.name}: cannot be read as DXF ({_line(error)}): export it again") from error
+
+    def notes(self) -> tuple[str, ...]:
+        """In words, what was left out."""
+        kinds = [f"{count} {kind}" for kind, count in sorted(self.ignored.items())]
+        return (f"left out {', '.join(kinds)}",) if kinds else ()
+
+    def _lines_of(self, entities: Any, depth: int) -> Iterator[tuple[Ring, bool]]:
+        for entity in entities:
+            self._spend(1, depth)
+            kind = entity.dxftype()
+            if self._hidden(entity):
+                self.ignored["hidden"] += 1
+            elif kind == "INSERT":
+                block = entity.block()
+                if block is None:
+                    raise OutlineError(f"{self.name}: the block {entity.dxf.name!r} is missing: explode the blocks")
+                self._spend(abs(entity.mcount) * (1 + len(block)), depth)
+                for insert in entity.multi_insert() if entity.mcount > 1 else (entity,):
+                    yield from self._lines_of(insert.virtual_entities(), depth + 1)
+            elif kind in _LINES and not (kind == "POLYLINE" and (entity.is_poly_face_mesh or entity.is_polygon_mesh)):
+                points = _flatten(entity)
+                if len(points) > 1:
+                    yield points, _closed(entity, points)
+            else:
+                self.ignored[kind] += 1
+
+    def _spend(self, count: int, depth: int) -> None:
+        """Refuse drawings that repeat their blocks without end."""
+        self.budget -= count
+        if self.budget < 0:
+            raise OutlineError(f"{self.name}: more than {MOST_ENTITIES} entities: save the outline alone")
+        if depth > _MOST_DEPTH:
+            raise OutlineError(f"{self.name}: blocks nested deeper than {_MOST_DEPTH}: explode the blocks")
+
+    def _hidden(self, entity: Any) -> bool:
+        """Whether an entity or its layer is switched off."""
+        layers = self.document.layers
+        layer = entity.dxf.get("layer", "0")
+        off = layer in layers and (layers.get(layer).is_off() or layers.get(layer).is_frozen())
+        return off or bool(entity.dxf.get("invisible", 0))
+
+
+def _flatten(entity: Any) -> Ring:
+    """Points along an entity, close enough that its chords stray less than a fixed part of its box."""
+    from ezdxf.path import make_path
+
+    if entity.dxftype() == "SPLINE":
+        return _without_repeats(_spline(entity))
+    path = make_path(entity, segments=16)
+    control = np.array([(point.x, point.y) for point in path.control_vertices()]).reshape(-1, 2)
+    if not len(control):
+        return control
+    if not (np.abs(control) < _FARTHEST).all():
+        return np.full((2, 2), np.nan)
+    tolerance = CHORD_ERROR * float(np.ptp(control, axis=0).max()) or 1.0
+    points = [(point.x, point.y) for point in islice(path.flattening(tolerance, segments=2), MOST_POINTS + 1)]
+    return _without_repeats(np.array(points).reshape(-1, 2))
+
+
+def _spline(entity: Any) -> Ring:
+    """Points along a spline, where its knots say it is: not all begin and end at a control point."""
+    tool = entity.construction_tool()
+    control = np.array([(point.x, point.y) for point in tool.control_points]).reshape(-1, 2)
+    knots, degree = np.array(tool.knots(), dtype=float), tool.order - 1
+    weights = np.array(tool.weights() or np.ones(len(control)), dtype=float)
+    if not all((np.abs(values) < _FARTHEST).all() for values in (control, knots, weights)):
+        return np.full((2, 2), np.nan)
+    curve = BSpline(knots, np.column_stack([control * weights[:, None], weights]), degree)
+    ends = np.unique(knots[degree : len(control) + 1])
+    tolerance = CHORD_ERROR * float(np.ptp(control, axis=0).max()) or 1.0
+    count = 4
+    while True:
+        shares = np.arange(2 * count) / (2 * count)
+        at = np.r_[(ends[:-1, None] + np.diff(ends)[:, None] * shares).ravel(), ends[-1]]
+        points = curve(at)[:, :2] / curve(at)[:, 2:]
+        bends = np.linalg.norm(points[1:-1:2] - 0.5 * (points[:-2:2] + points[2::2]), axis=1)
+        if not (bends > tolerance).any() or 4 * count * len(ends) > MOST_POINTS:
+            return points[::2]
+        count *= 2
+
+
+def _without_repeats(points: Ring) -> Ring:
+    """The points, none repeated in a row."""
+    return points[np.r_[True, np.any(np.diff(points, axis=0) != 0.0, axis=1)]] if len(points) else points
+
+
+def _closed(entity: Any, points: Ring) -> bool:
+    """Whether an entity returns to where it begins, by what it says of itself or by its points."""
+    if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") and entity.is_closed:
+        return True
+    extent = float(np.ptp(points, axis=0).max())
+    return float(np.linalg.norm(points[0] - points[-1])) <= 1e-9 * extent
+
+
+def _line(error: object) -> str:
+    """The text of an error as the part of a line."""
+    return re.sub(r"[^ -~]+", " ", str(error))[:120]

@@ -1,0 +1,186 @@
+"""Outlines from pictures: photographs and drawings on plain ground."""
+
+import io
+import re
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.errors import OutlineError
+from hydrostat.geometry.files.contrast import Contrast, contrast
+from hydrostat.geometry.files.drawing import Drawing
+from hydrostat.geometry.files.rings import check_size, counted, placed
+from hydrostat.geometry.files.silhouette import Patch, Silhouette, covered, silhouette
+from hydrostat.geometry.outline import Outline
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+MOST_BYTES = 50_000_000
+"""A file larger than this is refused."""
+
+MOST_PIXELS = 50_000_000
+"""A picture with more pixels is refused."""
+
+_LONGEST = 1600
+_EDGE = 0.35
+_UNEVEN = 80.0
+_BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, AttributeError, EOFError)
+
+
+def read_image(content: bytes, *, name: str, size: float | None = None) -> Outline:
+    """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG.
+
+    A picture with transparent parts tells the body by them; else the body is what differs in colour from the ground,
+    darker or lighter, which is taken from the border of the picture and may change slowly across it. A drawing of lines
+    is filled to the outer side of its outer line, and what is drawn inside plays no part. Elsewhere ground within the
+    body is a hole if it is larger than 1 % of the body and nothing lies in it. A soft shadow is left out where the body
+    is much stronger.
+
+    Args:
+        content: the bytes of the file.
+        name: what errors call the file.
+        size: longest side of the body's bounding box [m]; needed, for a picture has none.
+
+    Returns:
+        The outline [m], x to the right, y up, origin at the centre of its bounding box; it strays from the picture by
+        about half a pixel, of at most 1600 along the longer side.
+
+    Raises:
+        OutlineError: no picture, too large, without size, or no single body on plain ground; the message says where.
+        InputError: `size` is not positive.
+    """
+    return image_drawing(content, name=name, size=size).outline
+
+
+def image_drawing(content: bytes, *, name: str, size: float | None = None) -> Drawing:
+    """Read the outline of a body, and in words what was left out; all else is as in `read_image`."""
+    check_size(size, name)
+    if size is None:
+        raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')
+    pixels, step = _pixels(content, name)
+    found, notes = _body(pixels, name)
+    outline = placed(found.body, list(found.holes), (1.0, -1.0), size, name)
+    scale = size / float(np.ptp(found.body, axis=0).max())
+    middle = 0.5 * (found.body.min(axis=0) + found.body.max(axis=0))
+    words = _Words(scale, (float(middle[0]), float(middle[1])))
+    coarse = (f"read at one pixel in {step * step}: the outline is known to {1e3 * scale:.2g} mm",) if step > 1 else ()
+    return Drawing(outline, (*notes, *words.of(found), *coarse))
+
+
+def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 4"], int]:
+    """Red, green, blue and opacity from 0 to 255, upright, and how many pixels of the file are one along each side."""
+    from PIL import Image, ImageOps
+
+    if not content:
+        raise OutlineError(f"{name}: the file is empty: save the picture again")
+    if len(content) > MOST_BYTES:
+        raise OutlineError(
+            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read: "
+            "save a smaller picture"
+        )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with Image.open(io.BytesIO(content), formats=("PNG", "JPEG")) as image:
+                columns, rows = image.size
+                if columns * rows > MOST_PIXELS:
+                    raise _too_large(name, f"{columns} x {rows}")
+                step = max(1, -(-max(columns, rows) // _LONGEST))
+                ImageOps.exif_transpose(image, in_place=True)
+                return _plain(image, step), step
+    except Image.DecompressionBombError as error:
+        raise _too_large(name, "far too many") from error
+    except Image.UnidentifiedImageError as error:
+        raise OutlineError(f"{name}: neither PNG nor JPEG, whatever its name says: save it as one of them") from error
+    except OutlineError:
+        raise
+    except _BROKEN as error:
+        reason = re.sub(r"[^ -~]+", " ", str(error))[:120]
+        raise OutlineError(f"{name}: cannot be read as a picture ({reason}): save it again") from error
+
+
+def _too_large(name: str, pixels: str) -> OutlineError:
+    return OutlineError(
+        f"{name}: the picture has {pixels} pixels, at most {MOST_PIXELS / 1e6:.0f} million are read: make it smaller"
+    )
+
+
+def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
+    """The pixels of any mode of image as red, green, blue and opacity, averaged over squares of `step`."""
+    from PIL import Image
+
+    if image.mode.startswith(("I", "F")):
+        values = np.asarray(image, dtype=float)
+        top = max(float(np.max(values, initial=0.0)), 1.0)
+        image = Image.fromarray((255.0 * np.clip(values / top, 0.0, 1.0)).astype(np.uint8))
+    if image.has_transparency_data:
+        # Through premultiplied colours, so that what hides in transparent pixels plays no part.
+        coloured = image if image.mode == "RGBA" else image.convert("RGBA")
+        coloured = coloured.convert("RGBa").reduce(step).convert("RGBA") if step > 1 else coloured
+    else:
+        coloured = image.convert("RGB").reduce(step).convert("RGBA")
+    return np.asarray(coloured, dtype=float)
+
+
+def _body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silhouette, tuple[str, ...]]:
+    """The body in a picture, and a note on how it was told from its ground."""
+    opacity = pixels[..., 3]
+    if float((opacity < 128.0).mean()) > 0.005:
+        return silhouette(opacity, 127.5, 127.5, name), ()
+    if min(opacity.shape) < 8:
+        raise OutlineError(
+            f"{name}: the picture is too small, {opacity.shape[1]} x {opacity.shape[0]} pixels: take a larger one"
+        )
+    seen = contrast(pixels[..., :3])
+    if seen.edge > _EDGE or seen.faint > _UNEVEN:
+        raise OutlineError(
+            f"{name}: the ground is not plain: put the body on a sheet of one colour, away from the picture's border, "
+            "or cut it out"
+        )
+    level, shadow = _level(seen)
+    note = ("a grey part beside the body was taken for its shadow and left out",) if shadow else ()
+    return silhouette(seen.field, level, seen.faint, name), note
+
+
+def _level(seen: Contrast) -> tuple[float, bool]:
+    """The contrast at which the body begins, and whether a shadow lies below it."""
+    faint, strong = covered(seen.field > seen.faint), covered(seen.field > seen.strong)
+    if faint < 1.1 * strong or strong == 0:
+        return seen.strong, False
+    between = (seen.field > seen.faint) & (seen.field <= seen.strong)
+    if faint < 3.0 * strong and float(seen.shaded[between].mean()) > 0.7:
+        return seen.strong, True
+    return 0.5 * (seen.faint + min(seen.strong, 3.0 * seen.faint)), False
+
+
+class _Words:
+    """Says where things of a picture are and how large, in millimetres of the body."""
+
+    def __init__(self, scale: float, middle: tuple[float, float]) -> None:
+        self.scale, self.middle = scale, middle
+
+    def of(self, found: Silhouette) -> tuple[str, ...]:
+        """Notes on what was left out, filled or assumed."""
+        notes = []
+        if found.lines:
+            notes.append("a drawing of lines: filled to its outer line, what is drawn inside plays no part")
+        if found.cut:
+            notes.append("the body reaches the border of the picture and is cut off there")
+        if found.filled:
+            notes.append(f"filled {counted(len(found.filled), 'hole')}, {self._largest(found.filled)}")
+        if found.specks:
+            notes.append(
+                f"left out {counted(len(found.specks), 'speck')} beside the body, {self._largest(found.specks)}"
+            )
+        if found.holes:
+            notes.append(f"kept {counted(len(found.holes), 'hole')}")
+        return tuple(notes)
+
+    def _largest(self, patches: tuple[Patch, ...]) -> str:
+        patch = max(patches, key=lambda one: one.area)
+        x, y = patch.place[0] - self.middle[0], self.middle[1] - patch.place[1]
+        across, where = 1e3 * self.scale * patch.extent, [round(1e3 * self.scale * value, 1) + 0.0 for value in (x, y)]
+        return f"the largest {across:.2g} mm across at ({where[0]:.1f}, {where[1]:.1f}) mm"

@@ -1,0 +1,78 @@
+"""Meshes from and to files.
+
+They are read by our own lines, which believe no count before the bytes for it are there; meshio writes them.
+"""
+
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.files.msh_file import read_msh
+from hydrostat.geometry.files.vtk_file import read_vtk
+from hydrostat.geometry.files.vtu_file import read_vtu
+from hydrostat.geometry.mesh import Mesh
+
+
+def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Mesh:
+    """Mesh of tetrahedra, or of triangles if there are none, from a VTK, VTU or Gmsh file.
+
+    Args:
+        path: the file.
+        unit: metres that one coordinate counts.
+        size: longest side of the bounding box [m] to scale to, instead of `unit`.
+
+    Raises:
+        InputError: the file cannot be read or holds neither tetrahedra nor flat triangles.
+    """
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path.name}: meshes are read from {', '.join(_READERS)} files only")
+    if path.stat().st_size > _MOST_BYTES:
+        raise InputError(f"{path.name}: is larger than {_MOST_BYTES / 1e6:.0f} MB: save it as bytes, or a coarser mesh")
+    cells = reader(path.read_bytes(), path.name)
+    for elements, dim in ((cells.tetrahedra, 3), (cells.triangles, 2)):
+        if len(elements):
+            return _simplices(path.name, cells.points, elements, dim, unit, size)
+    raise InputError(f"{path.name}: holds neither tetrahedra nor triangles")
+
+
+_MOST_BYTES = 60_000_000
+_READERS = {".vtk": read_vtk, ".vtu": read_vtu, ".msh": read_msh}
+
+
+def _simplices(name: str, points: np.ndarray, cells: np.ndarray, dim: int, unit: float, size: float | None) -> Mesh:
+    if cells.min(initial=0) < 0 or cells.max(initial=-1) >= len(points):
+        raise InputError(f"{name}: an element names a node that the file does not have")
+    used, elements = np.unique(cells, return_inverse=True)
+    elements = elements.reshape(cells.shape).astype(np.int64)
+    nodes = np.array(points[used], dtype=float)
+    if not (np.abs(nodes) < 1e100).all():
+        raise InputError(f"{name}: a coordinate is not a finite number below 1e100: save the mesh again")
+    if dim == 2 and nodes.shape[1] == 3 and np.ptp(nodes[:, 2]) > 1e-9 * np.ptp(nodes):
+        raise InputError(f"{name}: its triangles do not lie in a plane of constant z; a body in space needs tetrahedra")
+    nodes = nodes[:, :dim] * unit
+    if size is not None:
+        nodes = nodes * (size / max(float(np.ptp(nodes, axis=0).max()), 1e-100))
+    corners = nodes[elements]
+    flipped = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0
+    elements[flipped] = elements[flipped][:, [1, 0, *range(2, dim + 1)]]
+    return Mesh(nodes, elements)
+
+
+def write_mesh(path: Path, mesh: Mesh, nodes: np.ndarray, point_data: Mapping[str, np.ndarray]) -> None:
+    """Write a mesh with its nodes moved to `nodes` [m] as VTU, which ParaView opens."""
+    import meshio
+
+    kind = "triangle" if mesh.dim == 2 else "tetra"
+    data = meshio.Mesh(
+        _in_space(nodes), [(kind, mesh.elements)], {key: _in_space(array) for key, array in point_data.items()}
+    )
+    meshio.write(path, data, file_format="vtu", binary=sys.byteorder == "little")
+
+
+def _in_space(array: np.ndarray) -> np.ndarray:
+    """Vectors of the plane with a third component zero, which VTK wants."""
+    return np.pad(array, ((0, 0), (0, 1))) if array.ndim == 2 and array.shape[1] == 2 else array

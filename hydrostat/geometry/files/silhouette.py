@@ -1,0 +1,221 @@
+"""`Silhouette`: the one body in a picture, as rings of pixels' coordinates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Int
+from scipy.ndimage import distance_transform_edt, find_objects, gaussian_filter1d, label
+from shapely import Polygon, get_coordinates
+
+from hydrostat.errors import OutlineError
+from hydrostat.geometry.files.contrast import Field
+from hydrostat.geometry.outline import Ring
+
+_SECOND = 0.02
+_HOLE = 0.01
+_THIN = 0.025
+_LINE = 0.03
+_INKED = 0.15
+_LEAST_PIXELS = 200
+_NOISE = 3
+_MOST_CORNERS = 2000
+
+_Mask = Bool[np.ndarray, "rows columns"]
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A connected part of a picture.
+
+    Attributes:
+        area: [pixels].
+        place: column and row of its middle.
+        extent: longest side of its box [pixels].
+    """
+
+    area: int
+    place: tuple[float, float]
+    extent: float
+
+
+@dataclass(frozen=True, eq=False)
+class Silhouette:
+    """A body in a picture.
+
+    Attributes:
+        body: its outer ring, columns and rows [pixels].
+        holes: the rings of its holes.
+        specks: what lies outside the body, too small to be meant.
+        filled: holes that were filled.
+        lines: whether it was drawn with lines only.
+        cut: whether it reaches the border of the picture.
+    """
+
+    body: Ring
+    holes: tuple[Ring, ...]
+    specks: tuple[Patch, ...]
+    filled: tuple[Patch, ...]
+    lines: bool
+    cut: bool
+
+
+def covered(mask: _Mask) -> int:
+    """Pixels of the largest part of a mask, its holes filled."""
+    return max((patch.area for patch in _patches(_filled(mask))[1]), default=0)
+
+
+def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouette:
+    """The body in a picture: where the field is above a level, or within the lines where it is drawn with lines.
+
+    Of all that stands out, the part that covers most with its holes filled is the body. Where hardly anything in it is
+    thicker than a line, it is a line drawing: all within the outer line is body. Else parts of the ground inside it
+    are holes, if they are larger than 1 % of it and hold nothing: the white of an eye holds a pupil. Parts outside are
+    specks if they are smaller than 2 % of it.
+
+    Args:
+        field: what tells the body from the ground.
+        level: above which it is body.
+        faint: up to which it is surely ground; at most `level`.
+        name: what errors call the picture.
+
+    Raises:
+        OutlineError: nothing there, too small, a second body, or lines that do not close.
+    """
+    mask = field > level
+    filled = _filled(mask)
+    labels, patches = _patches(filled)
+    if not patches or max(patch.area for patch in patches) < _LEAST_PIXELS:
+        raise OutlineError(f"{name}: no body is seen in the picture: draw or photograph it large on plain ground")
+    body = labels == 1 + int(np.argmax([patch.area for patch in patches]))
+    lines = _is_lines((field > faint) & body, body, name)
+    holes, shut = (np.zeros_like(body), ()) if lines else _holes(body & ~mask, body, field <= faint)
+    solid = body & ~holes
+    inner, islands = _patches(solid)
+    main = inner == 1 + int(np.argmax([patch.area for patch in islands]))
+    specks = _specks(filled & ~main & ~holes, int(body.sum()), name)
+    cut = bool(main[0].any() or main[-1].any() or main[:, 0].any() or main[:, -1].any())
+    rings = _rings(_signed(field - level, main, mask), _is_stepped(field, level, main), int(body.sum()))
+    return Silhouette(rings[0], tuple(rings[1:]), specks, shut, lines, cut)
+
+
+def _filled(mask: _Mask) -> _Mask:
+    """A mask without its holes."""
+    parts = _parts(np.pad(~mask, 1, constant_values=True), corners=False)
+    return (parts != parts[0, 0])[1:-1, 1:-1]
+
+
+def _parts(mask: _Mask, *, corners: bool) -> Int[np.ndarray, "rows columns"]:
+    """Number of the connected part that each pixel belongs to, 0 outside; pixels that share a corner may connect."""
+    parts = np.zeros(mask.shape, dtype=np.int64)
+    label(mask, structure=np.ones((3, 3)) if corners else None, output=parts)
+    return parts
+
+
+def _depth(mask: _Mask) -> Field:
+    """How far each pixel of a mask lies from what is outside it [pixels]."""
+    return np.asarray(distance_transform_edt(mask), dtype=float)
+
+
+def _patches(mask: _Mask) -> tuple[np.ndarray, list[Patch]]:
+    """Number of the connected part that each pixel belongs to, and the parts; corners connect."""
+    labels = _parts(mask, corners=True)
+    areas = np.bincount(labels.ravel())[1:]
+    patches = []
+    for area, (rows, columns) in zip(areas, find_objects(labels), strict=True):
+        place = 0.5 * (columns.start + columns.stop - 1), 0.5 * (rows.start + rows.stop - 1)
+        patches.append(Patch(int(area), place, float(max(rows.stop - rows.start, columns.stop - columns.start))))
+    return labels, patches
+
+
+def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
+    """Whether a body is drawn with lines, most of its inside left as ground."""
+    rows, columns = np.nonzero(body)
+    extent = max(np.ptp(rows), np.ptp(columns)) + 1.0
+    box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
+    step = max(1, round(extent / 600))
+    whole = np.pad(body[box], 1)[::step, ::step]
+    width = 2.0 * step * float(_depth(whole).max())
+    if width < _THIN * extent:
+        raise OutlineError(
+            f"{name}: only a thin line is seen, {width:.3g} pixels wide: close the outline, or fill the body"
+        )
+    line = _LINE * float(np.sqrt(whole.sum()))
+    thick = _depth(np.pad(drawn[box], 1)[::step, ::step]) > line
+    opened = _depth(~thick) <= line if thick.any() else thick
+    return float((opened & whole).sum()) < _INKED * float(whole.sum())
+
+
+def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[Patch, ...]]:
+    """Which of the gaps in a body are holes in it, and those that are ground but too small, or hold something."""
+    labels = _parts(gaps, corners=False)
+    areas = np.bincount(labels.ravel())
+    bare = np.bincount(labels.ravel(), weights=ground.ravel()) > 0.5 * areas  # else a pale part of the body
+    open_ = bare & (areas >= _HOLE * body.sum())
+    open_[0] = False
+    for number in np.flatnonzero(open_):
+        hole = labels == number
+        held = _filled(hole) & ~hole
+        open_[number] = not _HOLE * areas[number] < held.sum() <= _SECOND * body.sum()
+    bare[0] = False
+    shut = _patches((bare & ~open_)[labels])[1]
+    return open_[labels], tuple(patch for patch in shut if patch.area > _NOISE)
+
+
+def _specks(mask: _Mask, body: int, name: str) -> tuple[Patch, ...]:
+    """What lies beside the body, if all of it is small."""
+    _, patches = _patches(mask)
+    second = max(patches, key=lambda patch: patch.area, default=None)
+    if second is not None and second.area > _SECOND * body:
+        x, y = second.place
+        raise OutlineError(
+            f"{name}: a second shape, {100 * second.area / body:.2g} % as large as the body, lies apart from it "
+            f"at pixel ({x:.0f}, {y:.0f}) from the top left: cut it away, or join the two"
+        )
+    return tuple(patch for patch in patches if patch.area > _NOISE)
+
+
+def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:
+    """A field that is above 0 in the body and nowhere else, and crosses 0 where the picture does."""
+    step = 1e-3 * max(float(np.ptp(field)), 1e-300)
+    field = np.where(main & ~mask, step, field)
+    return np.where(~main & mask, -step, field)
+
+
+def _is_stepped(field: Field, level: float, main: _Mask) -> bool:
+    """Whether the border of the body runs along pixels, with no half-tones to tell where within them."""
+    values = field[main & (_depth(main) < 3.0)]
+    top = float(np.quantile(values, 0.9))
+    return float((values < level + 0.5 * (top - level)).mean()) < 0.05
+
+
+def _rings(field: Field, stepped: bool, body: int) -> list[Ring]:
+    """The ring round the body and those of its holes, smooth, with few corners; columns and rows [pixels]."""
+    from contourpy import LineType, contour_generator
+
+    field = np.pad(field, 1, constant_values=-float(np.ptp(field)))
+    found = contour_generator(z=field, line_type=LineType.Separate).lines(0.0)
+    rings = [np.asarray(ring)[:-1] - 1.0 for ring in found if len(ring) > 3]
+    rings.sort(key=lambda ring: -Polygon(ring).area)
+    rings = [ring for ring in rings if Polygon(ring).area > 0.3 * _HOLE * body]
+    most = _MOST_CORNERS // (1 + len(rings[1:]) // 4)
+    smooth = [_smooth(ring, 4.0 if stepped else 1.0, 0.4 if stepped else 0.15, most) for ring in rings]
+    return smooth if Polygon(smooth[0], smooth[1:]).is_valid else rings  # a hole came too near to the outside
+
+
+def _smooth(ring: Ring, reach: float, tolerance: float, most: int) -> Ring:
+    """A ring without the grain of the pixels."""
+    closed = np.concatenate([ring, ring[:1]])
+    stations = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))]
+    count = max(int(2 * stations[-1]), 16)
+    at = stations[-1] * np.arange(count) / count
+    even = np.column_stack([np.interp(at, stations, closed[:, axis]) for axis in range(2)])
+    while reach > 0.25:
+        smooth = Polygon(gaussian_filter1d(even, 2.0 * reach, axis=0, mode="wrap"))
+        allowed = tolerance
+        while len(get_coordinates(smooth.simplify(allowed))) > most:
+            allowed *= 1.5
+        simple = smooth.simplify(allowed)
+        if simple.is_valid:
+            return get_coordinates(simple)[:-1]
+        reach *= 0.5  # a neck of a few pixels has closed
+    return ring

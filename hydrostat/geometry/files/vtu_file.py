@@ -1,0 +1,195 @@
+"""VTU files: unstructured grids as XML, their arrays as text, base64 or appended bytes, packed by zlib or not."""
+
+import base64
+import binascii
+import re
+import zlib
+from dataclasses import dataclass, field
+from xml.parsers import expat
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.files.cells import Cells
+from hydrostat.geometry.files.cursor import Cursor, whole_numbers
+from hydrostat.geometry.files.soup import MOST_BYTES
+from hydrostat.geometry.files.vtk_file import cells_of
+
+_KINDS = {
+    "Int8": "i1", "UInt8": "u1", "Int16": "i2", "UInt16": "u2", "Int32": "i4", "UInt32": "u4", "Int64": "i8",
+    "UInt64": "u8", "Float32": "f4", "Float64": "f8",
+}  # fmt: skip
+_MOST_DEPTH = 50
+_MOST_PIECES = 1000
+_APPENDED = re.compile(rb"<AppendedData([^>]{0,1000})>\s*_")
+
+
+@dataclass
+class _Array:
+    """A DataArray: what its tag says, and the text in it."""
+
+    attributes: dict[str, str]
+    text: list[str] = field(default_factory=list)
+
+
+@dataclass
+class _Grid:
+    """What the XML says: of the whole file, and the arrays of each piece by name."""
+
+    attributes: dict[str, str] = field(default_factory=dict)
+    pieces: list[dict[str, _Array]] = field(default_factory=list)
+
+
+def read_vtu(content: bytes, name: str) -> Cells:
+    """What a VTU file says of points, tetrahedra and triangles; all data on them is passed over.
+
+    Raises:
+        InputError: it is no unstructured grid, packed in an unknown way, too large when unpacked, or damaged.
+    """
+    appended, encoding = b"", "raw"
+    match = _APPENDED.search(content)
+    if match:
+        appended = content[match.end() :]
+        encoding = "base64" if b"base64" in match[1] else "raw"
+        content = content[: match.start()] + b"</VTKFile>"
+    grid = _parse(content, name)
+    reader = _Reader(grid.attributes, appended, encoding, name)
+    if not 0 < len(grid.pieces) <= _MOST_PIECES:
+        raise reader.damaged(f"has no piece, or more than {_MOST_PIECES}")
+    points, tetrahedra, triangles, before = [np.zeros((0, 3))], [], [], 0
+    for piece in grid.pieces:
+        if not {"points", "connectivity", "offsets", "types"} <= piece.keys():
+            raise reader.damaged("has a piece without points or cells")
+        places = reader.values(piece["points"]).astype(float)
+        if len(places) % 3:
+            raise reader.damaged("has points without three coordinates")
+        arrays = [whole_numbers(reader.values(piece[key])) for key in ("offsets", "connectivity", "types")]
+        cells = cells_of(places.reshape(-1, 3), np.append(0, arrays[0]), arrays[1], arrays[2], name)
+        points.append(cells.points)
+        tetrahedra.append(before + cells.tetrahedra)
+        triangles.append(before + cells.triangles)
+        before += len(cells.points)
+    return Cells(np.concatenate(points), np.concatenate(tetrahedra), np.concatenate(triangles))
+
+
+def _parse(content: bytes, name: str) -> _Grid:
+    """Walk through the XML and keep the arrays that matter; refuse what is broken, deep, or declares entities."""
+    grid, path = _Grid(), []
+    now: _Array | None = None
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal now
+        path.append(tag)
+        if len(path) > _MOST_DEPTH:
+            raise InputError(f"{name}: XML nested deeper than {_MOST_DEPTH}: save it again")
+        if tag == "VTKFile":
+            grid.attributes = attributes
+        elif tag == "Piece":
+            grid.pieces.append({})
+        elif tag == "DataArray" and grid.pieces and path[-2] in ("Points", "Cells"):
+            now = grid.pieces[-1]["points" if path[-2] == "Points" else attributes.get("Name", "")] = _Array(attributes)
+
+    def end(_tag: str) -> None:
+        nonlocal now
+        path.pop()
+        now = None
+
+    def text(piece: str) -> None:
+        if now is not None:
+            now.text.append(piece)
+
+    def entity(*_arguments: object) -> None:
+        raise InputError(f"{name}: declares XML entities, which are not read: save it again")
+
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler, parser.EndElementHandler = start, end
+    parser.CharacterDataHandler, parser.EntityDeclHandler = text, entity
+    try:
+        parser.Parse(content, True)
+    except (expat.ExpatError, LookupError, ValueError) as error:
+        raise InputError(f"{name}: its XML is broken ({error}): save or copy it again") from None
+    if grid.attributes.get("type") != "UnstructuredGrid":
+        raise InputError(f"{name}: holds no unstructured grid: save the mesh as an unstructured grid")
+    return grid
+
+
+class _Reader:
+    """How the arrays of a file are written."""
+
+    def __init__(self, attributes: dict[str, str], appended: bytes, encoding: str, name: str) -> None:
+        self.name, self.appended, self.encoding = name, appended, encoding
+        self.order = ">" if attributes.get("byte_order") == "BigEndian" else "<"
+        self.head = np.dtype(self.order + ("u8" if attributes.get("header_type") == "UInt64" else "u4"))
+        self.packed = "compressor" in attributes
+        if attributes.get("compressor", "vtkZLibDataCompressor") != "vtkZLibDataCompressor":
+            raise InputError(f"{name}: is packed by {attributes['compressor'][:40]}: save it with zlib or unpacked")
+
+    def damaged(self, what: str) -> InputError:
+        """The error for a file that is not as it should be."""
+        return Cursor(b"", self.name).damaged(what)
+
+    def values(self, data: _Array) -> np.ndarray:
+        """Numbers of an array."""
+        kind = _KINDS.get(data.attributes.get("type", ""))
+        if kind is None:
+            raise self.damaged("has an array of an unknown type")
+        how = data.attributes.get("format", "ascii")
+        try:
+            if how == "ascii":
+                return self._text(data, kind)
+            if how == "appended":
+                source, encoding = self.appended[int(data.attributes.get("offset", "0")) :], self.encoding
+            else:
+                source, encoding = "".join(data.text).strip().encode("ascii", "replace"), "base64"
+            content = self._unpacked(source, encoding) if self.packed else self._plain(source, encoding)
+            return np.frombuffer(content, np.dtype(self.order + kind))
+        except (ValueError, binascii.Error, zlib.error):
+            raise self.damaged("has an array that cannot be unpacked") from None
+
+    def _text(self, data: _Array, kind: str) -> np.ndarray:
+        """Numbers written as text."""
+        content = "".join(data.text).encode("ascii", "replace")
+        return Cursor(content, self.name).all_numbers(len(content), kind)
+
+    def _plain(self, source: bytes, encoding: str) -> bytes:
+        """Bytes behind their number."""
+        size = self.head.itemsize
+        count = int(np.frombuffer(self._cut(source, encoding, 0, size), self.head)[0])
+        return self._cut(source, encoding, size, count)
+
+    def _unpacked(self, source: bytes, encoding: str) -> bytes:
+        """Bytes of blocks that are packed one by one, behind their number and sizes."""
+        size = self.head.itemsize
+        blocks = int(np.frombuffer(self._cut(source, encoding, 0, size), self.head)[0])
+        heads = np.frombuffer(self._cut(source, encoding, 0, size * (3 + blocks)), self.head).tolist()
+        whole, last, packed = heads[1], heads[2], heads[3:]
+        if last > whole:
+            raise ValueError
+        if blocks * whole > MOST_BYTES:
+            raise InputError(f"{self.name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: save a coarser mesh")
+        # the head is encoded on its own, so the rest begins anew
+        start = size * (3 + blocks)
+        rest = source[start if encoding == "raw" else 4 * -(-start // 3) :]
+        content, at, result = self._cut(rest, encoding, 0, sum(packed)), 0, []
+        for number, length in enumerate(packed):
+            most = last if number == blocks - 1 and last else whole
+            result.append(zlib.decompressobj().decompress(content[at : at + length], max(most, 1)))
+            at += length
+        return b"".join(result)
+
+    def _cut(self, source: bytes, encoding: str, start: int, count: int) -> bytes:
+        """Some bytes of what is encoded.
+
+        Raises:
+            ValueError: there are not as many.
+        """
+        end = start + count
+        if encoding == "raw":
+            piece = source[start:end]
+        else:
+            letters = source[: 4 * -(-end // 3)]
+            piece = base64.b64decode(letters, validate=True)[start:end]
+        if len(piece) != count:
+            raise ValueError
+        return piece

@@ -1,0 +1,1 @@
+"""One closed body from a dirty surface."""

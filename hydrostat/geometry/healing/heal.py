@@ -1,0 +1,216 @@
+"""`heal`: one closed body of a surface as scans, careless CAD and damaged files give it, and what was done for it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Int
+
+from hydrostat.errors import SurfaceError
+from hydrostat.geometry.healing.crossings import crossing_pairs
+from hydrostat.geometry.healing.deviation import deviation
+from hydrostat.geometry.healing.holes import Holes, holes_of, with_closed
+from hydrostat.geometry.healing.one_way import one_way
+from hydrostat.geometry.healing.remake import Remade, remake
+from hydrostat.geometry.healing.shells import Role, Shells, shells_of
+from hydrostat.geometry.healing.sides import members, sides_of
+from hydrostat.geometry.healing.surface_faults import Piece, pieces_of, sliver_count, told
+from hydrostat.geometry.healing.weld import Welded, weld
+from hydrostat.geometry.surface import Surface
+from hydrostat.units import counted
+
+_MOST_PATCHED = 0.25
+_MOST_LOST = 0.1
+_LISTED = 5
+_MOST_CROSSED = 20
+_SMALL_HOLE = 24.0  # resolutions around: about two elements across
+
+
+@dataclass(frozen=True, eq=False)
+class Healing:
+    """A closed surface, and how it came to be.
+
+    Attributes:
+        surface: closed, manifold, turned outward, not crossing itself: one body, perhaps with cavities.
+        found: what was found, a line each.
+        done: what was done, a line each.
+        removed: parts that are not in the surface any more.
+        volume_before: what the triangles of the input add up to once turned [m^3]; of overlaps it counts both.
+        volume_after: of the body [m^3].
+        largest_distance: between input and result [m], where both are there: not over closed holes, nor inside.
+        patched: share of the result's area that lies over holes of the input.
+        clean: nothing was to be done, but for vertices in the same place.
+    """
+
+    surface: Surface
+    found: tuple[str, ...]
+    done: tuple[str, ...]
+    removed: tuple[Piece, ...]
+    volume_before: float
+    volume_after: float
+    largest_distance: float
+    patched: float
+    clean: bool
+
+    def lines(self) -> tuple[str, ...]:
+        """The report in plain words."""
+        if self.clean:
+            return ("the surface is clean", *(f"found: {line}" for line in self.found))
+        pieces = sorted(self.removed, key=lambda piece: -piece.size)
+        removed = [f"removed: {piece.text}" for piece in pieces[:_LISTED]]
+        if len(pieces) > _LISTED:
+            removed.append(f"removed: {len(pieces) - _LISTED} more, up to {1e3 * pieces[_LISTED].size:.3g} mm in size")
+        change = f", {self.volume_after / self.volume_before - 1.0:+.2%}" if self.volume_before > 0.0 else ""
+        return (
+            *(f"found: {line}" for line in self.found),
+            *(f"done: {line}" for line in self.done),
+            *removed,
+            f"volume: {1e6 * self.volume_before:.4g} cm^3 before, {1e6 * self.volume_after:.4g} cm^3 after{change}",
+            f"largest distance to the input: {1e3 * self.largest_distance:.2g} mm"
+            + (f"; {self.patched:.1%} of the surface closes holes" if self.patched > 0.0005 else ""),
+        )
+
+
+def heal(surface: Surface, *, resolution: float) -> Healing:
+    """One closed body of a surface that may have holes, flipped triangles, crossings, overlaps, slivers and specks.
+
+    Triangles are kept, and with them sharp edges, as long as that gives a closed body: vertices are merged, repeated
+    triangles left out, patches turned one way, holes closed that are no longer around than 24 times the
+    resolution, specks removed. Only where this is not enough (crossings, overlaps, larger holes, edges with more
+    than two triangles) the body is made anew, as the region whose generalised winding number is above one half
+    (Jacobson et al. 2013, by the fast sum of Barill et al. 2018), on a grid of the resolution; edges and corners are
+    rounded then by up to about half of it. What overlaps is united. Cavities stay if they are closed and clean:
+    all their triangles look one way, inward; a closed part that looks outward inside another is overlap.
+
+    Args:
+        surface: as it was read.
+        resolution: how fine a grid may be needed [m]; a quarter of the element size is a good choice.
+
+    Raises:
+        SurfaceError: it encloses nothing, its holes are too large, it is too thin for the resolution, or it is
+            several bodies apart from each other.
+    """
+    if not (np.isfinite(resolution) and resolution > 0.0):
+        raise SurfaceError(f"the resolution to heal with is {resolution!r} m, but has to be above 0")
+    welded = weld(surface)
+    triangles, flipped = one_way(welded.surface.triangles)
+    turned = Surface(welded.surface.vertices, triangles)
+    holes = holes_of(turned)
+    small = _small(turned, holes, resolution)
+    filled = with_closed(turned, holes, small) if small.any() else turned
+    flipped = np.concatenate([flipped, np.zeros(len(filled.triangles) - len(flipped), dtype=bool)])
+    crossing = crossing_pairs(filled)
+    _check_tangle(crossing)
+    shells = shells_of(filled, flipped, crossing, resolution)
+    keep = shells.of_role(Role.BODY, Role.CAVITY)[shells.label]
+    kept = _part(shells.surface, keep)
+    removed = pieces_of(shells)
+    found = told(welded, turned, holes, int(flipped.sum()), crossing, shells, sliver_count(filled))
+    done = _done(welded, int(flipped.sum()), shells, int(small.sum()))
+    if _is_closed(kept) and not keep[crossing].any() and shells.of_role(Role.BODY).sum() == 1:
+        patched = np.linalg.norm(filled.crosses, axis=1)[len(triangles) :].sum() / 2 / filled.area
+        clean = not (done or removed)
+        return Healing(kept, found, done, removed, kept.volume, kept.volume, 0.0, float(patched), clean)
+    return _made_anew(kept, shells, found, done, removed, resolution)
+
+
+def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
+    """Refuse what is no surface: most of the triangles that were looked at cross many others."""
+    if len(crossing) > _MOST_CROSSED * (crossing[:, 0].max(initial=0) + 1):
+        raise SurfaceError(
+            f"the triangles run through each other everywhere, each through more than {_MOST_CROSSED} others: this "
+            "is no surface of a body, perhaps the file is damaged; export it again"
+        )
+
+
+def _small(surface: Surface, holes: Holes, resolution: float) -> Bool[np.ndarray, " holes"]:
+    """Holes that are closed by fans: simple, short, and small beside the part that they are in."""
+    sides = sides_of(surface.triangles)
+    label = sides.groups(sides.counts > 1)
+    area = np.bincount(label, np.linalg.norm(surface.crosses, axis=1) / 2)
+    owner = np.zeros(len(surface.vertices), dtype=np.int64)
+    owner[surface.triangles] = label[:, None]
+    part = np.zeros(len(holes), dtype=np.int64)
+    part[holes.label] = owner[holes.edges[:, 0]]
+    return holes.simple & (holes.length <= _SMALL_HOLE * resolution) & (holes.length**2 < area[part])
+
+
+def _part(surface: Surface, keep: Bool[np.ndarray, " triangles"]) -> Surface:
+    """Some triangles of a surface, with the vertices that they use."""
+    used, triangles = np.unique(surface.triangles[keep], return_inverse=True)
+    return Surface(surface.vertices[used], triangles.reshape(-1, 3))
+
+
+def _is_closed(surface: Surface) -> bool:
+    """Whether every edge has two triangles that run along it in opposite ways, and every vertex one fan of them."""
+    import igl
+
+    sides = sides_of(surface.triangles)
+    return bool(
+        (sides.counts == 2).all() and not sides.twisted.any() and np.all(igl.is_vertex_manifold(sides.triangles))
+    )
+
+
+def _done(welded: Welded, flipped: int, shells: Shells, closed: int) -> tuple[str, ...]:
+    """What was done so far, in words."""
+    counts = (
+        (welded.flat + welded.repeated + welded.walls, "triangle", "without area or that stood there twice left out"),
+        (flipped, "flipped triangle", "turned"),
+        (int(shells.inside_out.sum()), "part", "turned, as what was inside was outside"),
+        (closed, "small hole", "closed"),
+    )
+    return tuple(f"{counted(count, noun)} {text}" for count, noun, text in counts if count)
+
+
+def _made_anew(
+    kept: Surface,
+    shells: Shells,
+    found: tuple[str, ...],
+    done: tuple[str, ...],
+    removed: tuple[Piece, ...],
+    want: float,
+) -> Healing:
+    """The body by its winding number."""
+    made = remake(kept, shells.boxes[shells.of_role(Role.CAVITY)], want)
+    off = deviation(kept, made.surface, made.spacing)
+    if off.patched > _MOST_PATCHED:
+        raise SurfaceError(
+            f"the surface has holes so large that {off.patched:.0%} of the body's surface would be guessed, at most "
+            f"{_MOST_PATCHED:.0%} are: scan what is missing, or close the holes in the program it comes from"
+        )
+    lost = _lost(kept, off.lost, made)
+    done = (
+        *done,
+        f"made anew on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it",
+    )
+    if made.spacing > want:
+        done = (*done, f"the grid is coarser than the {1e3 * want:.3g} mm asked for, which would have too many points")
+    done = (*done, *made.done)
+    return Healing(
+        surface=made.surface,
+        found=found,
+        done=done,
+        removed=(*removed, *made.removed, *lost),
+        volume_before=kept.volume,
+        volume_after=made.surface.volume,
+        largest_distance=off.largest,
+        patched=off.patched,
+        clean=False,
+    )
+
+
+def _lost(kept: Surface, lost: Int[np.ndarray, " lost"], made: Remade) -> tuple[Piece, ...]:
+    """What was too thin for the grid, a piece each; refused if it is much."""
+    if not len(lost):
+        return ()
+    areas = np.linalg.norm(kept.crosses, axis=1)
+    share = float(areas[lost].sum() / areas.sum())
+    if share > _MOST_LOST:
+        raise SurfaceError(
+            f"{share:.0%} of the surface belong to parts that are open, or thinner than the "
+            f"{1e3 * made.spacing:.3g} mm that it is healed with: close them where the surface comes from, or use "
+            "smaller elements"
+        )
+    sides = sides_of(kept.triangles[lost])
+    label = sides.groups(sides.counts > 1)
+    why = "open, or too thin for the grid it was healed with"
+    return tuple(Piece.of(kept, lost[numbers], why) for numbers in members(label))

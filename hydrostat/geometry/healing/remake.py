@@ -1,0 +1,145 @@
+"""A body made anew from triangles that do not close: the region whose winding number is above one half."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import SurfaceError
+from hydrostat.geometry.contour import MOST_GRID_POINTS, contour
+from hydrostat.geometry.healing.sides import members, sides_of
+from hydrostat.geometry.healing.surface_faults import Piece
+from hydrostat.geometry.surface import Surface
+
+_ACCURACY = 1e-3  # of the spacing: how near crossings are to where they should be
+_SUM_ERROR = 0.05  # how wrong the fast sum may be, amply
+_SMALL = 0.01
+"""A part with less than this share of the body's volume is removed; one with more is a body of its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Remade:
+    """A body made anew.
+
+    Attributes:
+        surface: closed, manifold, outward.
+        spacing: of the grid [m].
+        removed: parts beside the body.
+        done: what else was done, in words.
+    """
+
+    surface: Surface
+    spacing: float
+    removed: tuple[Piece, ...]
+    done: tuple[str, ...]
+
+
+def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolution: float) -> Remade:
+    """The region that triangles wind around by more than one half.
+
+    Args:
+        surface: triangles, turned outward as far as that is known.
+        cavities: boxes of cavities that stay [m]; other pockets of air are filled.
+        resolution: spacing of the grid [m]; coarser where the grid would have too many points.
+
+    Raises:
+        SurfaceError: there is no such region, or it is several bodies.
+    """
+    field = WindingField(surface)
+    spacing = _spacing(surface, resolution)
+    box = surface.box + 2.0 * spacing * np.array([[-1.0], [1.0]])
+    try:
+        made = contour(field, box, spacing, settled=field.settled, accuracy=_ACCURACY)
+    except SurfaceError as error:
+        raise SurfaceError(
+            f"the surface encloses nothing that a grid of {1e3 * spacing:.3g} mm finds: it is an open sheet or thinner "
+            "than that; close it where it comes from, or use smaller elements"
+        ) from error
+    return _one_body(made, cavities, spacing)
+
+
+class WindingField:
+    """One half minus the winding number, and how far from a point its sign cannot change."""
+
+    def __init__(self, surface: Surface) -> None:
+        import igl
+
+        self.surface = surface
+        self.sum = igl.FastWindingNumberBVH()
+        self.sum.init(surface.vertices, surface.triangles)
+        self.tree = igl.AABB()
+        self.tree.init(surface.vertices, surface.triangles)
+        sides = sides_of(surface.triangles)
+        rim = sides.turns != 0
+        self.rim = sides.ends[rim]
+        ends = surface.vertices[self.rim]
+        self.length = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) @ np.abs(sides.turns[rim]))
+
+    def __call__(self, points: Points) -> Vector:
+        """One half minus the winding number."""
+        return 0.5 - np.array(self.sum.winding_number(np.ascontiguousarray(points)))
+
+    def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
+        """Whether the sign is the same all within a reach [m] of points: where no triangle is, and no rim is near.
+
+        Away from the triangles the winding number has the gradient of the magnetic potential of a current along
+        their open edges, by the law of Biot and Savart at most (length of the edges) / (4 pi distance^2).
+        """
+        import igl
+
+        vertices, triangles = self.surface.vertices, self.surface.triangles
+        free = np.sqrt(np.array(self.tree.squared_distance(vertices, triangles, points)[0])) > reach
+        if not len(self.rim):
+            return free
+        rim = np.sqrt(np.array(igl.point_mesh_squared_distance(points, vertices, self.rim)[0])) - reach
+        change = reach * self.length / (4.0 * np.pi * np.maximum(rim, 1e-12) ** 2)
+        return free & (rim > 0.0) & (np.abs(self(points)) > change + _SUM_ERROR)
+
+
+def _spacing(surface: Surface, resolution: float) -> float:
+    """The resolution, or the least spacing above it whose grid has not too many points."""
+    extent = np.ptp(surface.box, axis=0)
+    spacing = resolution
+    while (np.ceil(extent / spacing) + 8.0).prod() > MOST_GRID_POINTS:
+        spacing *= 1.05
+    return float(spacing)
+
+
+def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacing: float) -> Remade:
+    """The largest part of a contour with its cavities; small parts are removed, pockets of air filled."""
+    sides = sides_of(made.triangles)
+    label = sides.groups(sides.counts > 1)
+    inside = made.vertices[made.triangles[:, 0]] - made.box.mean(axis=0)
+    volumes = np.bincount(label, np.einsum("td,td->t", inside, made.crosses) / 6)
+    numbers = members(label)
+    body = int(np.argmax(volumes))
+    keep, removed, filled = np.zeros(len(volumes), dtype=bool), [], []
+    keep[body] = True
+    for part in np.flatnonzero(~keep).tolist():
+        piece = _part(made, numbers[part])
+        if volumes[part] > _SMALL * volumes[body]:
+            raise SurfaceError(_several(_part(made, numbers[body]), piece))
+        if volumes[part] > 0.0:
+            removed.append(Piece.of_box(piece.box, len(piece.triangles), "loose speck"))
+        elif (np.abs(cavities - piece.box).max(axis=(1, 2)) < 2.0 * spacing).any():
+            keep[part] = True
+        else:
+            filled.append(Piece.of_box(piece.box, len(piece.triangles), "a pocket of air filled"))
+    surface = _part(made, np.flatnonzero(keep[label]))
+    return Remade(surface, spacing, tuple(removed), tuple(piece.text for piece in filled))
+
+
+def _part(surface: Surface, numbers: Int[np.ndarray, " some"]) -> Surface:
+    used, triangles = np.unique(surface.triangles[numbers], return_inverse=True)
+    return Surface(surface.vertices[used], triangles.reshape(-1, 3))
+
+
+def _several(body: Surface, other: Surface) -> str:
+    """That there is a second body, and where."""
+    places = [", ".join(f"{1e3 * x:.4g}" for x in surface.box.mean(axis=0)) for surface in (body, other)]
+    return (
+        f"the surface is at least two bodies apart from each other, {1e3 * body.size:.3g} mm in size at "
+        f"({places[0]}) mm and {1e3 * other.size:.3g} mm at ({places[1]}) mm: join them where the surface comes from, "
+        "or keep one"
+    )

@@ -1,0 +1,1 @@
+"""Tetrahedra from a closed surface."""

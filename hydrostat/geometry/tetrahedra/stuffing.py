@@ -1,0 +1,127 @@
+"""`stuff`: tetrahedra cut from a lattice so that their outer faces follow the surface of a solid.
+
+Isosurface stuffing (Labelle and Shewchuk 2007): where an edge of the lattice leaves the solid there is a cut; a node
+that is near to a cut moves onto it; then the tetrahedra are cut. Unlike there, the sides of a prism are divided by the
+order of the nodes, and one nearness does for all edges: the shapes are improved afterwards (`improve.py`).
+"""
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Elements, Nodes, Vector
+from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.tetrahedra.edges import Edges, Numbers, Places, Tetrahedra, edges_of
+from hydrostat.geometry.tetrahedra.gaps import find_bridges
+from hydrostat.geometry.tetrahedra.orient import turned_outward
+
+_NEAR = 0.3
+"""A cut this near to a node, in lengths of the edge, draws the node onto it."""
+
+_DEEP = 0.1
+"""A tetrahedron with all corners on the surface is kept if its middle is deeper, in lengths of an edge."""
+
+
+def stuff(solid: Solid, nodes: Nodes, elements: Elements) -> tuple[Places, Tetrahedra, Places]:
+    """What a solid takes of a lattice: nodes [m] and elements, and gaps that the elements are too large for [m].
+
+    What would bridge such a gap is left out: a dent is better than fingers grown together.
+    """
+    distances = solid.distances(nodes)
+    bridging, gaps = find_bridges(solid, nodes, elements, distances)
+    return *_cut(solid, *_snapped(solid, nodes, elements[~bridging], distances)), gaps
+
+
+def _snapped(
+    solid: Solid, nodes: Nodes, elements: Elements, distances: Vector
+) -> tuple[Nodes, Elements, Int[np.ndarray, " nodes"], Edges, Places]:
+    """Nodes with the side they are on (-1 in, 0 on the surface, 1 out), edges that are cut and where.
+
+    A node near to a cut moves onto the nearest, and its own cuts are gone.
+    """
+    edges, _ = edges_of(elements)
+    sides = np.where(distances < 0, -1, 1)
+    edges = edges[sides[edges[:, 0]] != sides[edges[:, 1]]]
+    shares = _crossings(solid, nodes[edges], distances[edges])
+    ends = nodes[edges]
+    cuts = ends[:, 0] + shares[:, None] * (ends[:, 1] - ends[:, 0])
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    nodes = nodes.copy()
+    owner = np.concatenate([edges[:, 0], edges[:, 1]])
+    away = np.concatenate([shares, 1 - shares])
+    which = np.tile(np.arange(len(edges)), 2)
+    close = away < _NEAR
+    order = np.lexsort((which[close], (away * np.tile(lengths, 2))[close], owner[close]))
+    movers, first = np.unique(owner[close][order], return_index=True)
+    nodes[movers] = cuts[which[close][order][first]]
+    sides[movers] = 0
+    left = (sides[edges] != 0).all(axis=1)
+    return nodes, elements, sides, edges[left], cuts[left]
+
+
+def _crossings(
+    solid: Solid, ends: Float[np.ndarray, "edges 2 3"], distances: Float[np.ndarray, "edges 2"]
+) -> Float[np.ndarray, " edges"]:
+    """Share of each edge where it passes the surface, by the Illinois method, to a thousandth."""
+    low, high = ends[:, 0], ends[:, 1]
+    left, right = np.zeros(len(ends)), np.ones(len(ends))
+    at_left, at_right = distances.T
+    share = np.full(len(ends), 0.5)
+    for _ in range(5):
+        share = left + (right - left) * np.clip(at_left / (at_left - at_right), 0.02, 0.98)
+        value = solid.distances(low + share[:, None] * (high - low))
+        same = (value < 0) == (at_left < 0)
+        left, right = np.where(same, share, left), np.where(same, right, share)
+        at_left, at_right = np.where(same, value, 0.5 * at_left), np.where(same, 0.5 * at_right, value)
+    return share
+
+
+def _cut(
+    solid: Solid, nodes: Nodes, elements: Elements, sides: Int[np.ndarray, " nodes"], edges: Edges, cuts: Places
+) -> tuple[Places, Tetrahedra]:
+    """The parts of all tetrahedra inside: whole ones, corners, wedges."""
+    count = len(nodes)
+    keys = edges[:, 0] * count + edges[:, 1]
+
+    def cut(inner: Numbers, outer: Numbers) -> Numbers:
+        """The node of the cut between two nodes; a node that is on the surface is its own."""
+        low, high = np.minimum(inner, outer), np.maximum(inner, outer)
+        found = count + np.searchsorted(keys, low * count + high)
+        return np.where(sides[outer] == 0, outer, found)
+
+    order = np.argsort(sides[elements] * (count + 1.0) * 2 + elements, axis=1)
+    elements = np.take_along_axis(elements, order, axis=1)
+    inside = (sides[elements] < 0).sum(axis=1)
+    outside = (sides[elements] > 0).sum(axis=1)
+    flat = elements[(inside == 0) & (outside == 0)]
+    parts = [elements[(inside > 0) & (outside == 0)], flat[_deep(solid, nodes[flat])]]
+    a, b, c, d = elements[(inside == 1) & (outside > 0)].T
+    parts.append(np.column_stack([a, cut(a, b), cut(a, c), cut(a, d)]))
+    a, b, c, d = elements[(inside == 2) & (outside > 0)].T
+    parts += _wedge(np.concatenate([nodes, cuts]), a, cut(a, c), cut(a, d), b, cut(b, c), cut(b, d))
+    a, b, c, d = elements[(inside == 3) & (outside > 0)].T
+    lower, upper, top = cut(a, d), cut(b, d), cut(c, d)
+    parts += [np.column_stack(part) for part in ((a, b, c, top), (a, b, upper, top), (a, lower, upper, top))]
+    filled, places = np.concatenate(parts), np.concatenate([nodes, cuts])
+    filled = filled[_different(filled)]
+    return places, turned_outward(places, filled)
+
+
+def _wedge(nodes: Nodes, a: Numbers, ac: Numbers, ad: Numbers, b: Numbers, bc: Numbers, bd: Numbers) -> list[Elements]:
+    """Three tetrahedra of a prism with an inner edge a-b; its outer side is divided along its shorter diagonal."""
+    parts = [np.column_stack([a, b, bc, bd])]
+    first = np.linalg.norm(nodes[ac] - nodes[bd], axis=1) <= np.linalg.norm(nodes[ad] - nodes[bc], axis=1)
+    parts.append(np.where(first[:, None], np.column_stack([a, ac, ad, bd]), np.column_stack([a, ac, ad, bc])))
+    parts.append(np.where(first[:, None], np.column_stack([a, ac, bc, bd]), np.column_stack([a, ad, bc, bd])))
+    return parts
+
+
+def _deep(solid: Solid, corners: Float[np.ndarray, "elements 4 3"]) -> Bool[np.ndarray, " elements"]:
+    """Which tetrahedra that have all corners on the surface are no slices of it: their middles lie well inside."""
+    lengths = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+    return solid.distances(corners.mean(axis=1)) < -_DEEP * lengths
+
+
+def _different(elements: Elements) -> Bool[np.ndarray, " elements"]:
+    """Which tetrahedra have four different corners."""
+    ordered = np.sort(elements, axis=1)
+    return (ordered[:, 1:] != ordered[:, :-1]).all(axis=1)

@@ -1,0 +1,152 @@
+"""`tetrahedralise`: good tetrahedra from a closed surface."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool
+
+from hydrostat.arrays import Elements, Nodes, Points
+from hydrostat.errors import InputError, SurfaceError
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.tetrahedra.bisect import bisect
+from hydrostat.geometry.tetrahedra.edges import PAIRS, Places, Tetrahedra
+from hydrostat.geometry.tetrahedra.fit import fit
+from hydrostat.geometry.tetrahedra.improve import Stage, improve
+from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, lattice
+from hydrostat.geometry.tetrahedra.manifold import manifold
+from hydrostat.geometry.tetrahedra.orient import signed_volumes
+from hydrostat.geometry.tetrahedra.stuffing import stuff
+
+CLOSE = 0.25
+"""The boundary of a mesh should be as near to the surface, in element sizes."""
+
+_STAGES = (
+    Stage(rounds=4, sweeps=3, power=1.0, pull=30.0),
+    Stage(rounds=6, sweeps=3, power=2.0, pull=300.0),
+    Stage(rounds=8, sweeps=3, power=4.0, pull=5000.0),
+)
+"""From free to firm: first the shapes, then the surface."""
+
+_CRUMB = 0.01
+"""Parts that break off with this share of the volume are no crumbs of a thin tip."""
+
+_WHOLE = 0.7
+"""If a lattice takes less of the volume, then finer elements in some places do not help."""
+
+_FINER = 4
+"""Rounds of finer elements where the boundary is not close."""
+
+_BISECTIONS = 2
+"""Of the longest edges, in each round; three halve the elements."""
+
+_FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
+"""Elements, and cells of the lattice over the bounding box: what fits into memory."""
+
+
+def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
+    """Fill a closed surface with tetrahedra.
+
+    A lattice is cut along the surface (`stuffing.py`), then its nodes move until the elements are well shaped and their
+    outer faces lie on the surface (`improve.py`). Where that fails, as the body or a gap is thinner than the elements,
+    they are made smaller. The same surface and size give the same mesh.
+
+    Args:
+        surface: closed, oriented outward.
+        element_size: wanted mean length of the edges [m].
+
+    Raises:
+        InputError: so large that the body has too few elements, or so small that it has too many.
+        SurfaceError: the body is much thinner than the elements; the message says where, and what to take.
+    """
+    solid = Solid(surface)
+    _check(surface, element_size)
+    cell = element_size / MEAN_EDGE
+    nodes, elements = _near(solid, *lattice(surface.box, cell), cell)
+    draft = _stuffed(solid, nodes, elements, element_size)
+    if draft.whole < _WHOLE:
+        raise SurfaceError(f"much of the body is thinner than {_thin(surface, element_size)}")
+    for size in element_size / 2.0 ** (np.arange(_FINER) * _BISECTIONS / 3):
+        if not len(draft.places):
+            break
+        for _ in range(_BISECTIONS):
+            nodes, elements = bisect(nodes, elements, _about(nodes, elements, draft.places, size))
+        draft = _stuffed(solid, nodes, elements, element_size)
+    if draft.lost > _CRUMB:
+        x, y, z = 1e3 * draft.places[0]
+        raise SurfaceError(
+            f"near ({x:.4g}, {y:.4g}, {z:.4g}) mm the body is thinner than {_thin(surface, element_size)}"
+        )
+    return draft.mesh
+
+
+@dataclass(frozen=True, eq=False)
+class _Draft:
+    """What a lattice makes of a solid.
+
+    Attributes:
+        mesh: its largest part; improved if no other is of any size.
+        whole: volume of all parts, as a share of the solid's.
+        lost: volume of the other parts, as a share of the solid's.
+        places: where the lattice should be finer [m]: the body breaks, a gap is narrow, or its boundary is not close.
+    """
+
+    mesh: Mesh
+    whole: float
+    lost: float
+    places: Points
+
+
+def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Draft:
+    *inner, gaps = stuff(solid, nodes, elements)
+    if not len(inner[1]):
+        return _Draft(Mesh(np.zeros((0, 3)), inner[1]), 0.0, 0.0, np.zeros((0, 3)))
+    mesh, breaks = manifold(*inner)
+    whole = float(signed_volumes(*inner).sum()) / solid.surface.volume
+    lost = whole - float(mesh.volumes.sum()) / solid.surface.volume
+    if lost > _CRUMB:
+        return _Draft(mesh, whole, lost, np.concatenate([breaks, gaps]))
+    mesh = improve(mesh, solid, element_size=element_size, stages=_STAGES)
+    found = fit(mesh, solid, element_size / 3)
+    far = found.places[found.distances > CLOSE * element_size]
+    return _Draft(mesh, whole, lost, np.concatenate([far, breaks]) if len(far) else far)
+
+
+def _thin(surface: Surface, element_size: float) -> str:
+    """The end of a complaint, with a size that a body as thick as this on average can be filled with."""
+    return f"elements of {1e3 * element_size:.4g} mm; take {2e3 * surface.volume / surface.area:.2g} mm or less"
+
+
+def _check(surface: Surface, element_size: float) -> None:
+    """Refuse element sizes that make too few or too many elements."""
+    if not 0.0 < element_size < np.inf:
+        raise InputError(f"the element size must be positive, not {element_size} m")
+    count = 8.5 * surface.volume / element_size**3
+    size = f"elements of {1e3 * element_size:.4g} mm"
+    if count < _FEWEST:
+        most = 1e3 * min(0.9 * element_size * (count / _FEWEST) ** (1 / 3), 2 * surface.volume / surface.area)
+        body = f"a body of {1e6 * surface.volume:.3g} cm^3"
+        raise InputError(f"{size} are too large for {body}: take {most:.2g} mm or less")
+    cells = float(np.prod(np.ptp(surface.box, axis=0) / element_size + 3))
+    if count > _MOST or cells > _MOST_CELLS:
+        least = 1.1e3 * element_size * max(count / _MOST, cells / _MOST_CELLS) ** (1 / 3)
+        raise InputError(f"{size} would be about {count:.2g}, at most {_MOST} are made: take {least:.2g} mm or more")
+
+
+def _near(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:
+    """Those elements of which some node is inside or near, and the nodes they have."""
+    near = solid.distances(nodes)
+    used, kept = np.unique(elements[(near[elements] < cell).any(axis=1)], return_inverse=True)
+    return nodes[used], kept.reshape(-1, 4)
+
+
+def _about(nodes: Nodes, elements: Elements, places: Points, size: float) -> Bool[np.ndarray, " elements"]:
+    """Which elements about some places [m] have an edge longer than 0.6 of a size [m]."""
+    from scipy.spatial import KDTree
+
+    corners = nodes[elements]
+    middles = corners.mean(axis=1)
+    longest = np.max([np.linalg.norm(corners[:, one] - corners[:, two], axis=1) for one, two in PAIRS], axis=0)
+    distances = KDTree(places).query(middles, distance_upper_bound=size)[0]
+    return (distances < size) & (longest > 0.6 * size)

@@ -1,0 +1,1 @@
+"""Triangles from an outline."""

@@ -1,0 +1,117 @@
+"""Move the nodes of a draft until its triangles are as near to equilateral as they get."""
+
+import numpy as np
+from jaxtyping import Bool
+from scipy.optimize import minimize
+from shapely import contains_xy
+
+from hydrostat.arrays import Elements, Points, Vector
+from hydrostat.geometry.triangles.delaunay import doubled_areas
+from hydrostat.geometry.triangles.draft import Division, Draft
+from hydrostat.geometry.triangles.spacing import Spacing
+
+STRAY = 0.18
+"""No smoothing takes a side of the mesh farther from the outline than this, in element sizes."""
+
+_EQUILATERAL = 2.0 * np.sqrt(3.0)
+
+
+def spread(draft: Draft, spacing: Spacing, steps: int) -> Draft:
+    """Let neighbours that are too close push each other apart (DistMesh, Persson & Strang 2004)."""
+    first_inside = int(draft.starts[-1])
+    for _ in range(steps):
+        points, triangles = draft.points, draft.triangles
+        bars = np.unique(np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+        across = points[bars[:, 0]] - points[bars[:, 1]]
+        length = np.linalg.norm(across, axis=1)
+        wanted = 1.1 * spacing(0.5 * (points[bars[:, 0]] + points[bars[:, 1]]))
+        push = (np.maximum(wanted - length, 0.0) / np.maximum(length, 1e-12))[:, None] * across
+        force = np.zeros_like(points)
+        np.add.at(force, bars[:, 0], push)
+        np.add.at(force, bars[:, 1], -push)
+        moved = draft.interior + 0.2 * force[first_inside:]
+        stays = contains_xy(draft.polygon, moved[:, 0], moved[:, 1])
+        draft = Draft(draft.divisions, np.where(stays[:, None], moved, draft.interior))
+    return draft
+
+
+def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Draft:
+    """Minimise the sum over triangles of (mean ratio) ** power, triangulating anew between rounds.
+
+    The mean ratio is (a^2 + b^2 + c^2) / (4 sqrt(3) area): one for an equilateral triangle, without bound for a
+    flat one. Boundary nodes that are no corners slide along their ring.
+    """
+    for _ in range(rounds):
+        candidates = (_minimise(draft, power, iterations, slide) for slide in (True, False))
+        moved = next((moved for moved in candidates if sound(moved)), draft)
+        if not _score(moved, power) < _score(draft, power) - 1e-3:
+            return draft
+        draft = moved
+    return draft
+
+
+def sound(draft: Draft) -> bool:
+    """Whether nodes on the rings are in order and all sides are there, near to the outline."""
+    parts = draft.divisions
+    ordered = all(bool((part.ends > part.stations).all()) for part in parts)
+    near = max(float(part.sagitta().max()) for part in parts) < STRAY
+    return ordered and near and draft.polygon.is_valid and not draft.lost.size
+
+
+def _score(draft: Draft, power: float) -> float:
+    """Mean over triangles of (mean ratio) ** power."""
+    return _energy(draft.points, draft.triangles, power)[0] / len(draft.triangles)
+
+
+def _energy(points: Points, triangles: Elements, power: float) -> tuple[float, Points]:
+    """Sum of (mean ratio) ** power and its gradient by point; infinite where a triangle is turned over."""
+    gradient = np.zeros_like(points)
+    doubled = doubled_areas(points, triangles)
+    if not doubled.min(initial=1.0) > 0.0:
+        return np.inf, gradient
+    corners = points[triangles]
+    opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
+    squares = np.einsum("tcd,tcd->t", opposite, opposite)
+    ratio = squares / (_EQUILATERAL * doubled)
+    turned = np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1)
+    centred = 6.0 * (corners - corners.mean(axis=1, keepdims=True))
+    weight = (power * ratio ** (power - 1.0))[:, None, None]
+    slope = weight * (centred / (_EQUILATERAL * doubled)[:, None, None] - (ratio / doubled)[:, None, None] * turned)
+    for corner in range(3):
+        np.add.at(gradient, triangles[:, corner], slope[:, corner])
+    return float((ratio**power).sum()), gradient
+
+
+def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft:
+    """The draft moved at fixed triangles, its boundary nodes only if they may slide."""
+    slides = ~np.concatenate([part.fixed for part in draft.divisions]) & slide
+    triangles = draft.triangles
+    start = np.concatenate([np.zeros(int(slides.sum())), draft.interior.ravel()])
+
+    def objective(variables: Vector) -> tuple[float, Vector]:
+        moved = _moved(draft, variables, slides)
+        value, gradient = _energy(np.concatenate([_ring_points(moved), moved.interior]), triangles, power)
+        if not np.isfinite(value):
+            return 1e12, np.zeros_like(variables)
+        tangents = np.concatenate([part.curve.tangents(part.stations, 0.02) for part in moved.divisions])
+        along = np.einsum("ij,ij->i", gradient[: len(tangents)], tangents)[slides]
+        return value, np.concatenate([along, gradient[len(tangents) :].ravel()])
+
+    best = minimize(objective, start, jac=True, method="L-BFGS-B", options={"maxiter": iterations}).x
+    return _moved(draft, best, slides)
+
+
+def _ring_points(draft: Draft) -> Points:
+    """The boundary nodes."""
+    return np.concatenate([part.curve.at(part.stations) for part in draft.divisions])
+
+
+def _moved(draft: Draft, variables: Vector, slides: Bool[np.ndarray, " boundary"]) -> Draft:
+    """The draft with its sliding nodes shifted along their rings and its inner points placed anew."""
+    shifts = np.zeros(len(slides))
+    shifts[slides] = variables[: int(slides.sum())]
+    parts = tuple(
+        Division(part.curve, part.stations + shifts[first:last], part.fixed)
+        for part, first, last in zip(draft.divisions, draft.starts[:-1], draft.starts[1:], strict=True)
+    )
+    return Draft(parts, variables[int(slides.sum()) :].reshape(-1, 2))
