@@ -3,9 +3,9 @@
 Lengths of bones: means of radiographs of 66 adults (Buryanov and Kotiuk 2010, "Proportions of hand segments", Int. J.
 Morphol. 28(3), 755-758), from the base of the metacarpal to the tip of the distal phalanx, with the soft tissue beyond.
 
-Outer sizes: median of British men (Pheasant and Haslegrave 2006, "Bodyspace", 3rd edition, table of the hand). A survey
-of technical staff in the USA has almost the same (men, median: breadth 88 mm, index finger 21 mm broad; FAA Human
-Factors Design Standard HF-STD-001B).
+Outer sizes: median of British men (Pheasant and Haslegrave 2006, "Bodyspace", 3rd edition, table of the hand), as it is
+commonly quoted. A survey in the USA agrees where it has the same sizes (FAA Human Factors Design Standard, appendix on
+the anthropometry of technical staff; men, median): length 196 mm, breadth 88 mm, index finger 21 mm broad.
 
 Where the bases of the metacarpals lie, and how broad the fingers are that the tables leave out, is not in these
 sources: see `hand.py`, where such numbers are called assumed.
