@@ -46,7 +46,7 @@ def test_new_from_a_drawing_can_be_checked_and_simulated(run: Run, tmp_path: Pat
 
 
 def test_check_says_that_all_is_well(run: Run) -> None:
-    """All flat robots of the gallery, and one in space; the others are checked in tests/robot/test_gallery_bodies.py."""
+    """All flat robots of the gallery and one in space; for the others see tests/robot/test_gallery_bodies.py."""
     flat = [name for name in gallery_names() if list(Path("examples", name).glob("*.svg"))]
     for name in [*flat, "tongue"]:
         code, out, _ = run("check", Path("examples") / name)
