@@ -3,8 +3,8 @@
     python benchmarks/robustness.py [--count 1000] [--seed 0] [EXAMPLE ...]
 
 Each winch draws from 0 to 40 % of the length of its shortest cable outside sheaths, or, one time in five, lets out 0 to
-10 %. Every pose is judged afresh, not by what the solver says: the largest nodal force must be under 1e-8 of the largest
-cable force (or 1e-11 N), every element's J above 0, no number NaN. The exit code is 1 if one pose fails.
+10 %. Every pose is judged afresh, not by what the solver says: the largest nodal force must be under 1e-8 of the
+largest cable force (or 1e-11 N), every element's J above 0, no number NaN. The exit code is 1 if one pose fails.
 """
 
 import argparse
