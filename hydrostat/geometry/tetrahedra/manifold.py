@@ -33,6 +33,11 @@ def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:
     return mesh, np.concatenate(breaks)
 
 
+def euler(triangles: Elements) -> int:
+    """Euler characteristic of a closed surface: 2 for each part like a ball, 2 less for each handle."""
+    return len(np.unique(triangles)) - len(triangles) // 2
+
+
 def _breaks(nodes: Nodes, elements: Elements, part: Numbers) -> Points:
     places = [np.empty((0, 3))]
     for number in np.setdiff1d(part, _largest(part)):

@@ -11,7 +11,6 @@ from jaxtyping import Bool, Float, Int
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.tetrahedra.edges import Edges, Numbers, Places, Tetrahedra, edges_of
-from hydrostat.geometry.tetrahedra.gaps import find_bridges
 from hydrostat.geometry.tetrahedra.orient import turned_outward
 
 _NEAR = 0.3
@@ -21,14 +20,9 @@ _DEEP = 0.1
 """A tetrahedron with all corners on the surface is kept if its middle is deeper, in lengths of an edge."""
 
 
-def stuff(solid: Solid, nodes: Nodes, elements: Elements) -> tuple[Places, Tetrahedra, Places]:
-    """What a solid takes of a lattice: nodes [m] and elements, and gaps that the elements are too large for [m].
-
-    What would bridge such a gap is left out: a dent is better than fingers grown together.
-    """
-    distances = solid.distances(nodes)
-    bridging, gaps = find_bridges(solid, nodes, elements, distances)
-    return *_cut(solid, *_snapped(solid, nodes, elements[~bridging], distances)), gaps
+def stuff(solid: Solid, nodes: Nodes, elements: Elements, distances: Vector) -> tuple[Places, Tetrahedra]:
+    """What a solid takes of a lattice, whose nodes have these distances from it: nodes [m] and elements."""
+    return _cut(solid, *_snapped(solid, nodes, elements, distances))
 
 
 def _snapped(

@@ -13,9 +13,10 @@ from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.tetrahedra.bisect import bisect
 from hydrostat.geometry.tetrahedra.edges import PAIRS, Places, Tetrahedra
 from hydrostat.geometry.tetrahedra.fit import fit
+from hydrostat.geometry.tetrahedra.gaps import find_bridges
 from hydrostat.geometry.tetrahedra.improve import Stage, improve
 from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, lattice
-from hydrostat.geometry.tetrahedra.manifold import manifold
+from hydrostat.geometry.tetrahedra.manifold import euler, manifold
 from hydrostat.geometry.tetrahedra.orient import signed_volumes
 from hydrostat.geometry.tetrahedra.stuffing import stuff
 
@@ -99,10 +100,16 @@ class _Draft:
 
 
 def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Draft:
-    *inner, gaps = stuff(solid, nodes, elements)
+    distances = solid.distances(nodes)
+    inner = stuff(solid, nodes, elements, distances)
     if not len(inner[1]):
         return _Draft(Mesh(np.zeros((0, 3)), inner[1]), 0.0, 0.0, np.zeros((0, 3)))
-    mesh, breaks = manifold(*inner)
+    (mesh, breaks), gaps = manifold(*inner), np.zeros((0, 3))
+    if euler(mesh.boundary) != euler(solid.surface.triangles):
+        bridging, gaps = find_bridges(solid, nodes, elements, distances)
+        if bridging.any():
+            inner = stuff(solid, nodes, elements[~bridging], distances)
+            mesh, breaks = manifold(*inner)
     whole = float(signed_volumes(*inner).sum()) / solid.surface.volume
     lost = whole - float(mesh.volumes.sum()) / solid.surface.volume
     if lost > _CRUMB:
@@ -110,7 +117,7 @@ def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float
     mesh = improve(mesh, solid, element_size=element_size, stages=_STAGES)
     found = fit(mesh, solid, element_size / 3)
     far = found.places[found.distances > CLOSE * element_size]
-    return _Draft(mesh, whole, lost, np.concatenate([far, breaks]) if len(far) else far)
+    return _Draft(mesh, whole, lost, np.concatenate([far, gaps, *([breaks] if len(far) else [])]))
 
 
 def _thin(surface: Surface, element_size: float) -> str:
