@@ -24,7 +24,7 @@ OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm"><pat
         (("design", "STARFISH", "--winches", "3", "--cables", "2", "--out", "OUT"), ("3 winches", "2 cables")),
         (("design", "STARFISH", "--fibres", "hairs", "--out", "OUT"), ("hairs", "edges", "elements")),
         (("new", "OUT", "--from", "gallery:whale"), ("whale", "starfish")),
-        (("new", "OUT", "--from", "drawing.bmp"), ("drawing.bmp", "SVG")),
+        (("new", "OUT", "--from", "drawing.bmp"), ("drawing.bmp", ".svg", ".stl", ".vtu")),
         (("new", "OUT", "--from", "missing.svg"), ("missing.svg", "no such file")),
         (("new", "OUT", "--from", "OPEN", "--size", "90"), ("--size", "no unit")),
         (("new", "OUT", "--from", "OPEN"), ("open.svg", "open")),

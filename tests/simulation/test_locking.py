@@ -19,7 +19,7 @@ from hydrostat.mechanics import Assembly, Energy, NeoHookean
 from hydrostat.mechanics.patch_volume import PatchVolume
 from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
 from hydrostat.robot import Cable, Pin, Robot, Volume, Winch
-from hydrostat.robot.risks import LOCKING
+from hydrostat.robot.risks.body_risks import LOCKING
 from hydrostat.simulation import Simulation, body_energies
 
 HEIGHT, LENGTH, OFFSET, THICKNESS = 0.02, 0.12, 0.005, 0.03
