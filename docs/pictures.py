@@ -12,7 +12,18 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import hydrostat as hs
-from hydrostat.plot import draw_activation, draw_network, draw_portrait, draw_pose, draw_reached, save_png
+from hydrostat.geometry.contour import contour
+from hydrostat.geometry.healing.heal import heal
+from hydrostat.geometry.surface import Surface
+from hydrostat.plot import (
+    draw_activation,
+    draw_healing,
+    draw_network,
+    draw_portrait,
+    draw_pose,
+    draw_reached,
+    save_png,
+)
 from hydrostat.robot import gallery_folder, gallery_names
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
@@ -33,13 +44,35 @@ def main() -> None:
     draw_gallery()
     draw_bodies()
     draw_hand()
+    draw_dirt()
 
 
 def draw_hand() -> None:
     """The foam hand of the benchmarks, its five flexors taken in by a quarter."""
     robot = hand_robot()
-    pulled = {cable.winch: 0.25 * cable.length for cable in robot.cables if cable.winch.endswith("flexor")}
+    flexors = [cable for cable in robot.cables if cable.winch.endswith("flexor")]
+    pulled = {cable.winch: 0.25 * float(cable.segments[cable.bare].sum()) for cable in flexors}
     save_png(draw_pose(robot, hs.Simulation(robot).solve(pulled)), HERE / "hand.png", dpi=90)
+
+
+def draw_dirt() -> None:
+    """The same hand as a careless scan gives it, with a hole, flipped triangles, specks and a ball, and healed."""
+    clean = hand_robot().body.healing.surface
+    corners, random = clean.vertices[clean.triangles], np.random.default_rng(0)
+    corners = corners[np.linalg.norm(corners.mean(axis=1) - [0, -0.02, 0.05], axis=1) > 0.012]
+    flipped = random.random(len(corners)) < 0.1
+    corners[flipped] = corners[flipped][:, ::-1]
+    balls = [_ball((0.02, 0.0, 0.02), 0.02), _ball((0.06, 0.03, 0.15), 0.003), _ball((-0.07, 0.0, 0.1), 0.003)]
+    corners = np.concatenate([corners, *(ball.vertices[ball.triangles] for ball in balls)]).reshape(-1, 3)
+    dirty = Surface(corners, np.arange(len(corners)).reshape(-1, 3))
+    healing = heal(dirty, resolution=3e-3)
+    places = np.array([piece.place for piece in healing.removed])
+    save_png(draw_healing(dirty, healing.surface, notes=healing.lines(), places=places), HERE / "healing.png", dpi=80)
+
+
+def _ball(middle: tuple[float, float, float], radius: float) -> Surface:
+    box = np.array([np.subtract(middle, 1.2 * radius), np.add(middle, 1.2 * radius)])
+    return contour(lambda points: np.linalg.norm(points - middle, axis=1) - radius, box, radius / 6)
 
 
 def draw_gallery() -> None:

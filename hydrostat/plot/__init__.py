@@ -2,7 +2,6 @@
 
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
-from hydrostat.plot.contact_sheet import draw_sheet
 from hydrostat.plot.film import Film, Stop, film, pose_stops, winch_stops
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.healing_figure import draw_healing
@@ -27,7 +26,6 @@ __all__ = [
     "draw_pose",
     "draw_reached",
     "draw_rest",
-    "draw_sheet",
     "draw_target",
     "draw_trees",
     "film",

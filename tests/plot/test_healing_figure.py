@@ -4,14 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import box_mesh, box_robot, strip_robot
-from matplotlib.colors import to_hex
+from builders import box_mesh
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
 from hydrostat import plot
-from hydrostat.errors import InputError
 from hydrostat.geometry.surface import Surface
 from hydrostat.plot.healing_figure import _bad_edges, _welded
 from hydrostat.plot.palette import ERROR
@@ -117,22 +115,3 @@ def test_bodies_of_any_shape_and_size(size: tuple[float, float, float], tmp_path
 def test_a_surface_without_area_is_drawn_as_nothing_rather_than_failing() -> None:
     flat = Surface(np.array([[0.0, 0, 0], [0.1, 0, 0], [0.1, 0, 0]]), np.array([[0, 1, 2]]))
     assert plot.draw_healing(flat, whole()).axes
-
-
-def test_a_sheet_of_robots() -> None:
-    """Oracle: its titles, the counts of each mesh, and one image each."""
-    robots = [("one <b>", box_robot()), ("two", strip_robot()), ("three", box_robot())]
-    figure = plot.draw_sheet([(title, robot, robot.body.mesh.nodes) for title, robot in robots])
-    assert len(figure.axes) == 3
-    assert all(len(axes.images) == 1 for axes in figure.axes)
-    texts = [text.get_text() for text in figure.texts]
-    for title, robot in robots:
-        mesh = robot.body.mesh
-        assert title in texts
-        assert f"{len(mesh.nodes)} nodes, {len(mesh.elements)} elements, 2 winches" in texts
-    assert to_hex(figure.get_facecolor()) == "#ffffff"
-
-
-def test_an_empty_sheet_is_refused() -> None:
-    with pytest.raises(InputError, match="at least one robot"):
-        plot.draw_sheet([])
