@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
 
 FEWEST, MOST = 10, 200_000
@@ -14,6 +14,9 @@ CLOSE = 0.1
 """How far the number may be off, as a fraction of it."""
 
 _TRIES = 12
+
+_FINE = 0.01
+"""A size refused whose element has less than this share of the body is too fine, others are too coarse."""
 
 _DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
 """Nodes in a square or cube of the element size, and on a piece of the boundary as long or large, in 2D and 3D."""
@@ -38,22 +41,26 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
     if not FEWEST <= nodes <= MOST:
         raise InputError(f"the number of nodes must be from {FEWEST} to {MOST}, not {nodes}")
     size, low, high = _guess(nodes, content, rim, dim), 0.0, np.inf
+    refused: InputError | None = None
     tried: dict[float, int] = {}
     for _ in range(_TRIES):
         size = _three_digits(size)
-        if size in tried:
+        if size in tried or size in (low, high):
             break
         try:
             tried[size] = count = len(make(size).nodes)
-        except InputError:
-            tried[size] = count = 0  # too coarse: of what is too fine there are too many, which was looked at above
+        except InputError as error:
+            refused = error
+            count = 0 if isinstance(error, SurfaceError) or size**dim > _FINE * content else 10 * MOST
         if abs(count / nodes - 1) <= CLOSE:
             return size
         low, high = (size, high) if count > nodes else (low, size)
         size *= (max(count, 0.3 * nodes) / nodes) ** (1 / dim)
         if not low < size < high:
             size = np.sqrt(low * high) if low > 0 and high < np.inf else 1.3 * low if low > 0 else 0.7 * high
-    nearest = min(tried, key=lambda size: abs(np.log(max(tried[size], 1e-9) / nodes)))
+    if not tried:
+        raise InputError(f"no element size gives about {nodes} nodes: {refused}")
+    nearest = min(tried, key=lambda size: abs(np.log(max(tried[size], 1) / nodes)))
     if not 0.5 <= tried[nearest] / nodes <= 2:
         raise InputError(
             f"no element size gives about {nodes} nodes; the nearest, {_mm(nearest)}, gives {tried[nearest]}"
@@ -73,5 +80,5 @@ def _guess(nodes: int, content: float, rim: float, dim: int) -> float:
 
 
 def _three_digits(size: float) -> float:
-    """A length [m] to three digits of its millimetres."""
-    return float(f"{1e3 * size:.3g}e-3")
+    """A length to three digits."""
+    return float(f"{size:.3g}")

@@ -12,6 +12,8 @@ from hydrostat.geometry.surface import Surface
 
 make = trimesh.creation
 
+Maker = Callable[[], Surface]
+
 
 def surface(made: trimesh.Trimesh) -> Surface:
     """A surface of trimesh."""
@@ -128,6 +130,3 @@ def mean_edge(mesh: Mesh) -> float:
     """Mean length of the edges [m]."""
     ends = mesh.nodes[mesh.edges]
     return float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).mean())
-
-
-Maker = Callable[[], Surface]

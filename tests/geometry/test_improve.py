@@ -1,4 +1,4 @@
-"""Improvement. Oracles: the sum of the docstring in plain NumPy, finite differences, closed forms of symmetric shapes."""
+"""Improvement. Oracles: the sum of the docstring in NumPy, finite differences, closed forms of symmetric shapes."""
 
 from dataclasses import dataclass
 from itertools import combinations

@@ -1,0 +1,111 @@
+"""Element sizes for a number of nodes. Oracle: the mesh of that size, counted."""
+
+import numpy as np
+import pytest
+import shapes
+from shapely import box
+from solids import Maker, ball, brick, moved, ring, two_fingers
+
+from hydrostat.errors import InputError, SurfaceError
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.sizing import CLOSE, MOST, size_for
+from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.geometry.triangles.triangulate import triangulate
+
+SOLIDS: dict[str, tuple[Maker, int]] = {
+    "ball": (ball, 300),
+    "ball of many": (ball, 3000),
+    "ring": (ring, 900),
+    "plate": (lambda: brick(0.2, 0.2, 0.01), 2500),
+    "rod": (lambda: moved(brick(0.3, 0.01, 0.01), turned=0.3), 1000),
+    "fingers": (lambda: two_fingers(0.01), 900),
+}
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_within_a_tenth_in_space(name: str) -> None:
+    maker, nodes = SOLIDS[name]
+    body = maker()
+    size = size_for(nodes, lambda trial: tetrahedralise(body, trial), content=body.volume, dim=3)
+    assert len(tetrahedralise(body, size).nodes) == pytest.approx(nodes, rel=CLOSE)
+    assert float(f"{1e3 * size:.3g}") == pytest.approx(1e3 * size, rel=1e-12)  # short in a file
+
+
+@pytest.mark.parametrize(("name", "nodes"), [("star", 250), ("letter s", 600), ("annulus", 80)])
+def test_within_a_tenth_in_the_plane(name: str, nodes: int) -> None:
+    drawn = shapes.outline(shapes.SHAPES[name][0])
+    size = size_for(nodes, lambda trial: triangulate(drawn, trial), content=drawn.area, dim=2)
+    assert len(triangulate(drawn, size).nodes) == pytest.approx(nodes, rel=CLOSE)
+
+
+def _of_nodes(count: float) -> Mesh:
+    """A mesh of one triangle, and nodes that it does not use."""
+    nodes = np.concatenate([[[0.0, 0], [1, 0], [0, 1]], np.zeros((int(np.clip(count, 3, 20_000)) - 3, 2))])
+    return Mesh(nodes, np.array([[0, 1, 2]]))
+
+
+@pytest.mark.parametrize("power", [1.5, 2.0, 3.5])
+@pytest.mark.parametrize("factor", [0.2, 1.0, 50.0])
+def test_found_whatever_the_law_and_the_first_guess(power: float, factor: float) -> None:
+    """Closed form: nodes = 1000 (factor / size)^power."""
+    size = size_for(1000, lambda trial: _of_nodes(1000 * (factor / trial) ** power), content=1000.0, dim=3)
+    assert size == pytest.approx(factor, rel=0.1)
+
+
+def test_a_mesher_that_jumps_gives_the_nearest() -> None:
+    """By hand: 70 nodes above 2 m, 160 below; of both 160 is nearer to 120 in proportion."""
+    assert size_for(120, lambda trial: _of_nodes(70 if trial > 2.0 else 160), content=1e3, dim=2) <= 2.0
+
+
+@pytest.mark.parametrize("nodes", [-1, 0, 9, MOST + 1])
+def test_numbers_out_of_range(nodes: int) -> None:
+    with pytest.raises(InputError, match="the number of nodes must be from 10 to 200000, not "):
+        size_for(nodes, lambda trial: _of_nodes(trial), content=1.0, dim=3)
+
+
+def test_too_few_for_the_shape_is_told_with_what_comes_nearest() -> None:
+    """A long thin rod needs more than 12 nodes; the size that the message names gives what it says."""
+    body = brick(0.3, 0.01, 0.01)
+    with pytest.raises(InputError, match="no element size gives about 12 nodes; the nearest, ") as refused:
+        size_for(12, lambda trial: tetrahedralise(body, trial), content=body.volume, dim=3)
+    words = str(refused.value).split()
+    size, count = float(words[words.index("nearest,") + 1]), int(words[-1])
+    assert "\n" not in str(refused.value)
+    assert count > 12
+    assert len(tetrahedralise(body, 1e-3 * size).nodes) == count
+
+
+def test_too_many_for_memory_is_told() -> None:
+    """Only sizes of 4 m and more are meshed, with at most 100 nodes: as if too fine below."""
+
+    def make(trial: float) -> Mesh:
+        if trial < 4.0:
+            raise InputError("would be about 1e9")
+        return _of_nodes(400 / trial)
+
+    with pytest.raises(InputError, match=r"no element size gives about 5000 nodes; the nearest, .* gives [0-9]{2,3}$"):
+        size_for(5000, make, content=1000.0, dim=3)
+
+
+def test_thin_bodies_are_found_beyond_sizes_that_are_refused() -> None:
+    """The first guess is thicker than the plate, which the mesher refuses; smaller ones follow."""
+    body = brick(0.1, 0.1, 0.005)
+    with pytest.raises(SurfaceError):
+        tetrahedralise(body, 0.008)
+    size = size_for(2500, lambda trial: tetrahedralise(body, trial), content=20 * body.volume, dim=3)
+    assert len(tetrahedralise(body, size).nodes) == pytest.approx(2500, rel=CLOSE)
+
+
+def test_a_body_that_is_always_refused_says_why() -> None:
+    def make(trial: float) -> Mesh:
+        raise SurfaceError("thinner than a hair")
+
+    with pytest.raises(InputError, match="no element size gives about 500 nodes: thinner than a hair"):
+        size_for(500, make, content=1.0, dim=3)
+
+
+def test_a_square_in_the_plane_by_closed_form() -> None:
+    """Triangles of side h have area sqrt(3)/4 h^2 and there are two for each node: h^2 = 2 / sqrt(3) A / n, about."""
+    drawn = shapes.outline(box(0, 0, 100, 100))
+    size = size_for(2000, lambda trial: triangulate(drawn, trial), content=drawn.area, dim=2)
+    assert size == pytest.approx(np.sqrt(2 / np.sqrt(3) * 0.01 / 2000), rel=0.1)
