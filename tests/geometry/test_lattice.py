@@ -81,3 +81,24 @@ def test_inside_out_is_turned() -> None:
     elements = np.array([[0, 1, 2, 3], [1, 0, 2, 3]])
     np.testing.assert_allclose(signed_volumes(nodes, elements), [1 / 6, -1 / 6])
     np.testing.assert_array_equal(turned_outward(nodes, elements), [[0, 1, 2, 3], [0, 1, 2, 3]])
+
+
+def test_only_what_is_wanted_is_made() -> None:
+    """Oracle: the whole lattice, of which those are left that have the middle of a wanted cell."""
+    nodes, elements = lattice(BOX, CELL)
+    place = BOX.mean(axis=0)
+
+    def wanted(points: np.ndarray) -> np.ndarray:
+        return np.linalg.norm(points - place, axis=1) < 0.015
+
+    some, fewer = lattice(BOX, CELL, wanted)
+    np.testing.assert_array_equal(some, nodes)
+    middles = elements >= _corner_count(nodes)
+    left = (wanted(nodes)[elements] & middles).any(axis=1)
+    np.testing.assert_array_equal(np.sort(fewer, axis=1), np.sort(elements[left], axis=1))
+    assert 0 < len(fewer) < len(elements)
+
+
+def _corner_count(nodes: np.ndarray) -> int:
+    """Corners of cells come first, in planes of ever higher x; then the middles begin again at low x."""
+    return int(np.argmin(np.diff(nodes[:, 0]))) + 1

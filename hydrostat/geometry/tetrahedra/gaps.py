@@ -33,4 +33,4 @@ def find_bridges(
         outside = solid.distances(there) > _OPEN * lengths[asked]
         crossing[asked[outside]] = True
         places.append(there[outside])
-    return crossing[which].any(axis=1), np.concatenate(places)
+    return np.asarray(crossing[which].any(axis=1)), np.concatenate(places)

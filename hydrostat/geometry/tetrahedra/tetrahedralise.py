@@ -64,7 +64,9 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
     solid = Solid(surface)
     _check(surface, element_size)
     cell = element_size / MEAN_EDGE
-    nodes, elements = _near(solid, *lattice(surface.box, cell), cell)
+    nodes, elements = _near(
+        solid, *lattice(surface.box, cell, lambda middles: solid.distances(middles) < 2 * cell), cell
+    )
     draft = _stuffed(solid, nodes, elements, element_size)
     if draft.whole < _WHOLE:
         raise SurfaceError(f"much of the body is thinner than {_thin(surface, element_size)}")
@@ -143,6 +145,8 @@ def _check(surface: Surface, element_size: float) -> None:
 
 def _near(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:
     """Those elements of which some node is inside or near, and the nodes they have."""
+    used, kept = np.unique(elements, return_inverse=True)
+    nodes, elements = nodes[used], kept.reshape(-1, 4)
     near = solid.distances(nodes)
     used, kept = np.unique(elements[(near[elements] < cell).any(axis=1)], return_inverse=True)
     return nodes[used], kept.reshape(-1, 4)
