@@ -32,8 +32,8 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.quality import dihedral_angles
 from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.fit import fit
-from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, tetrahedralise
+from hydrostat.geometry.tetrahedra.fit import CLOSE, fit
+from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 
 BODIES: dict[str, tuple[Maker, float]] = {
     "ball": (ball, 0.02),

@@ -8,7 +8,10 @@ import pytest
 from builders import box_mesh, mesh_body
 
 from hydrostat.geometry import Mesh
-from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Winch, find_risks
+from hydrostat.geometry.contour import contour
+from hydrostat.geometry.files.ply_file import write_ply
+from hydrostat.geometry.surface import Surface
+from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Winch, find_risks, sketch_surface
 
 LENGTH, SIDE = 0.12, 0.04
 
@@ -103,3 +106,35 @@ def test_spool_sticks_out() -> None:
     robot = solid_robot(route=((10, 5, 28), (60, 12, 28), (110, 12, 28)))
     line = "winch[0] one: a spool of radius 6 mm sticks out, the surface is 5 mm away; move it inward"
     assert find_risks(robot) == [line]
+
+
+def test_a_mesh_unlike_its_surface() -> None:
+    """By hand: the tip of a needle is far thinner than the elements; a ball is not."""
+    turns = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    rim = np.column_stack([0.02 * np.cos(turns), 0.02 * np.sin(turns), np.zeros(24)])
+    vertices = np.concatenate([rim, [[0, 0, 0.2], [0, 0, 0]]])
+    sides = [(i, (i + 1) % 24, 24) for i in range(24)] + [((i + 1) % 24, i, 25) for i in range(24)]
+    needle = sketch_surface(write_ply(Surface(vertices, np.array(sides))), file="a.ply", name="a", element_size=0.009)
+    found = [risk for risk in find_risks(needle.robot) if "off the surface" in risk]
+    assert len(found) == 1
+    assert "mm the mesh is" in found[0]
+    assert not any("other holes" in risk for risk in find_risks(needle.robot))
+    ball = contour(lambda points: np.linalg.norm(points, axis=1) - 0.03, np.array([[-0.04] * 3, [0.04] * 3]), 0.004)
+    smooth = sketch_surface(write_ply(ball), file="b.ply", name="b", element_size=0.01)
+    assert not any("off the surface" in risk or "other holes" in risk for risk in find_risks(smooth.robot))
+
+
+def test_limbs_that_have_grown_together() -> None:
+    """By hand: a ring whose hole is a hundredth of an element wide has another Euler characteristic than a disc."""
+    ball = contour(lambda points: np.linalg.norm(points, axis=1) - 0.03, np.array([[-0.04] * 3, [0.04] * 3]), 0.004)
+    robot = sketch_surface(write_ply(ball), file="b.ply", name="b", element_size=0.01).robot
+    ring = contour(
+        lambda points: np.hypot(np.hypot(points[:, 0], points[:, 1]) - 0.02, points[:, 2]) - 0.008,
+        np.array([[-0.04] * 3, [0.04] * 3]),
+        0.004,
+    )
+    healing = robot.body.healing
+    assert healing is not None
+    other = replace(robot, body=replace(robot.body, healing=replace(healing, surface=ring)))
+    assert any("other holes" in risk for risk in find_risks(other))
+    assert not any("other holes" in risk for risk in find_risks(robot))

@@ -9,6 +9,9 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.surface import Surface
 
+CLOSE = 0.25
+"""The boundary of a mesh should be as near to the surface, in element sizes."""
+
 _PLASTIC = 1.32471795724474602596
 """Its powers spread points evenly over a square (Roberts 2018)."""
 

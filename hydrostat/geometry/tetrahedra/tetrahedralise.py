@@ -12,16 +12,13 @@ from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.tetrahedra.bisect import bisect
 from hydrostat.geometry.tetrahedra.edges import PAIRS, Places, Tetrahedra
-from hydrostat.geometry.tetrahedra.fit import fit
+from hydrostat.geometry.tetrahedra.fit import CLOSE, fit
 from hydrostat.geometry.tetrahedra.gaps import find_bridges
 from hydrostat.geometry.tetrahedra.improve import Stage, improve
 from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, lattice
 from hydrostat.geometry.tetrahedra.manifold import euler, manifold
 from hydrostat.geometry.tetrahedra.orient import signed_volumes
 from hydrostat.geometry.tetrahedra.stuffing import stuff
-
-CLOSE = 0.25
-"""The boundary of a mesh should be as near to the surface, in element sizes."""
 
 _STAGES = (
     Stage(rounds=4, sweeps=3, power=1.0, pull=30.0),

@@ -6,6 +6,9 @@ import numpy as np
 
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.quality import dihedral_angles, smallest_angle
+from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.tetrahedra.fit import CLOSE, fit
+from hydrostat.geometry.tetrahedra.manifold import euler
 from hydrostat.geometry.thickness import measure_thickness, thin_parts
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.risks.words import mm, place
@@ -37,9 +40,10 @@ TOO_STIFF = {2: {2: "50 % or more"}, 3: {2: "20 to 100 % or more", 3: "10 to 100
 
 
 def body_risks(robot: Robot) -> Iterator[str]:
-    """Bad angles, locking, and limbs of few elements."""
+    """Bad angles, meshes unlike their surface, locking, and limbs of few elements."""
     mesh = robot.body.mesh
     yield from _flat_angles(mesh) if mesh.dim == 2 else _slivers(mesh)
+    yield from _unlike(robot.body)
     yield from _locking(robot.body)
     yield from _thin(robot.body)
 
@@ -59,6 +63,26 @@ def _slivers(mesh: Mesh) -> Iterator[str]:
             f"body: {count} of {len(angles)} tetrahedra {'is a sliver' if count == 1 else 'are slivers'} (below "
             f"{LEAST_DIHEDRAL:.0f} degrees between two faces; the worst {angles[flattest]:.1f}, at {where}): too stiff "
             f"and slow to solve; mesh the body anew"
+        )
+
+
+def _unlike(body: Body) -> Iterator[str]:
+    """What of a surface its mesh does not follow, for all that it got finer elements there."""
+    if body.healing is None or body.element_size is None:
+        return
+    surface = body.healing.surface
+    found = fit(body.mesh, Solid(surface), body.element_size / 3)
+    worst = int(np.argmax(found.distances))
+    if found.largest > CLOSE * body.element_size:
+        yield (
+            f"body: near {place(found.places[worst])} the mesh is {mm(found.largest)} off the surface, which is "
+            f"sharper or thinner there than its elements (volume {100 * (found.volume - 1):+.1f} %); a smaller "
+            "element_size follows it"
+        )
+    if euler(body.mesh.boundary) != euler(surface.triangles):
+        yield (
+            "body: the mesh has other holes than the surface: limbs with a narrow gap between them have grown "
+            "together, or a thin wall is pierced; look at the picture, and take a smaller element_size"
         )
 
 
