@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.prepare import prepared
+from hydrostat.cli.prepare import prepared, read_robot
 from hydrostat.cli.progress import progress_bar
 from hydrostat.errors import InputError
 from hydrostat.units import counted
@@ -55,7 +55,6 @@ def animate(
     """
     from hydrostat.plot import film, find_ffmpeg
     from hydrostat.plot.animation import WIDTHS
-    from hydrostat.robot import load_robot
 
     require_folder(out)
     formats = list(dict.fromkeys(format or (Format.GIF, Format.GLB)))
@@ -65,7 +64,7 @@ def animate(
         raise InputError(f"--seconds {seconds:g}: must be above 0 and at most {LONGEST:g}")
     if not WIDTHS[0] <= width <= WIDTHS[1]:
         raise InputError(f"--width {width}: must be {WIDTHS[0]} to {WIDTHS[1]}")
-    loaded = load_robot(robot)
+    loaded = read_robot(robot)
     for pose in name or []:
         loaded.pose(pose)
     if not loaded.cables:

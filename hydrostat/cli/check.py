@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from hydrostat.cli.arguments import RobotFolder
+from hydrostat.cli.prepare import read_robot
 
 if TYPE_CHECKING:
     from hydrostat.robot import Body
@@ -13,10 +14,10 @@ def check(robot: RobotFolder) -> None:
 
     Example: hydrostat check examples/starfish
     """
-    from hydrostat.robot import find_risks, load_robot
+    from hydrostat.robot import find_risks
     from hydrostat.units import counted
 
-    found = load_robot(robot)
+    found = read_robot(robot)
     mesh = found.body.mesh
     kind = "triangles" if mesh.dim == 2 else "tetrahedra"
     print(f"{found.name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.prepare import read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def design(
     from hydrostat import __version__
     from hydrostat.cli.progress import progress_bar
     from hydrostat.design import DesignOptions, FibreKind, design_cables, score_card
-    from hydrostat.robot import load_robot, replace_file, save_robot
+    from hydrostat.robot import replace_file, save_robot
     from hydrostat.units import LENGTH, parse_quantity
 
     require_folder(out)
@@ -48,7 +49,7 @@ def design(
         raise InputError(f"--fibres {fibres}: must be one of {', '.join(FibreKind)}")
     options = DesignOptions(fibres=FibreKind(fibres), clearance=parse_quantity(clearance, LENGTH))
     began = time.perf_counter()
-    source = load_robot(robot)
+    source = read_robot(robot)
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
     with progress_bar() as progress:
         network = design_cables(source, poses, winches=winches, cables=cables, options=options, progress=progress)

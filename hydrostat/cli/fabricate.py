@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.prepare import read_robot
 
 
 def fabricate(
@@ -19,10 +20,9 @@ def fabricate(
     Example: hydrostat fabricate examples/starfish --out build/kit
     """
     from hydrostat.fabrication import PatternOptions, export_kit, plush_pattern
-    from hydrostat.robot import load_robot
 
     require_folder(out)
-    loaded = load_robot(robot)
+    loaded = read_robot(robot)
     options = PatternOptions(force=force)
     pattern = plush_pattern(loaded, options=options)
     for warning in pattern.warnings:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrostat.cli.prepare import patiently
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def new(
         inflate=_length("inflate", inflate),
         material=material,
     )
-    with _made_whole(name) as folder:
+    with _made_whole(name) as folder, patiently("healing and meshing the body ..."):
         lines = _begin(source, folder, wish)
         made = _draw(folder)
     _tell(made, name, [line.replace(str(folder), str(name)) for line in lines])

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.prepare import read_robot
 from hydrostat.errors import InputError
 
 
@@ -26,11 +27,11 @@ def pose(
     from hydrostat import __version__
     from hydrostat.ik import InverseReason, solve_ik
     from hydrostat.plot import draw_reached, save_png
-    from hydrostat.robot import load_robot, replace_file
+    from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation, write_pose
 
     require_folder(out)
-    loaded = load_robot(robot)
+    loaded = read_robot(robot)
     if not loaded.poses:
         raise InputError(f"{robot}: the robot has no [[pose]]; add one")
     targets = [loaded.pose(name)] if name else list(loaded.poses.values())

@@ -10,7 +10,7 @@ from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.contractions import check_contraction, contraction
 from hydrostat.cli.motion import move
 from hydrostat.cli.places import print_places
-from hydrostat.cli.prepare import prepared
+from hydrostat.cli.prepare import prepared, read_robot
 from hydrostat.cli.profiling import profiled
 from hydrostat.errors import InputError
 
@@ -46,12 +46,11 @@ def simulate(
     Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
     """
     from hydrostat import __version__
-    from hydrostat.robot import load_robot
     from hydrostat.simulation import write_pose
 
     require_folder(out)
     with profiled(profile, "reading"):
-        loaded = load_robot(robot)
+        loaded = read_robot(robot)
     contractions = dict(contraction(text) for text in contract or [])
     for name, value in contractions.items():
         check_contraction(loaded, name, value)
