@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 LONGEST = 60.0
 """Of a film [s]."""
 
-EACH_WAY, USUAL = 2.0, 12.0
-"""Time from one pose to the next, and most of a whole film [s], unless told otherwise."""
+EACH_WAY, USUAL, LEAST_WAY = 2.0, 12.0, 0.5
+"""Time from one pose to the next, most of a whole film, and least of a way in it [s], unless told otherwise."""
 
 
 class Format(StrEnum):
@@ -72,7 +72,8 @@ def animate(
     simulation = prepared(loaded)
     with progress_bar() as tell:
         stops = _stops(simulation, name or list(loaded.poses), tell)
-        length = min(EACH_WAY * (len(stops) + 1), USUAL) if seconds is None else seconds
+        ways = len(stops) + 1
+        length = max(min(EACH_WAY * ways, USUAL), LEAST_WAY * ways) if seconds is None else seconds
         made = film(simulation, stops, seconds=length, tell=tell)
         files = [_write(simulation, made, out, kind, width, tell) for kind in formats]
     print(f"{counted(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")

@@ -48,7 +48,7 @@ def move(
         )
     )
     files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
-    print_places(last)
+    print_places(last, simulation.robot)
     fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
     print(
         f"{counted(len(table.times) - 1, 'step')} to {last.time:g} s, {spent:.1f} s of work; no node is faster than",

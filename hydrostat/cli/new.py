@@ -2,8 +2,8 @@
 
 import re
 from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from shlex import quote
 from shutil import rmtree
@@ -19,6 +19,13 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
+CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
+
+_SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01
+"""Travels to try for a first pose, in shares of all; how near a pose is reached that is, in sizes of the body."""
+
+LONGEST = 20.0
+"""No length that is asked for is longer [m]."""
 
 
 def new(
@@ -95,24 +102,34 @@ def _length(key: str, text: str | None) -> float | None:
         value = parse_quantity(text, LENGTH)
     except InputError as error:
         raise InputError(f"--{key.replace('_', '-')}: {error}") from None
-    if not value > 0:
-        raise InputError(f"--{key.replace('_', '-')}: must be above 0, not {text}")
+    if not 0 < value <= LONGEST:
+        raise InputError(f"--{key.replace('_', '-')}: must be above 0 and at most {LONGEST:g} m, not {text}")
     return value
 
 
 @contextmanager
 def _made_whole(name: Path) -> Iterator[Path]:
     """A folder to fill beside where it will stand; it gets its name when all is well, else it is gone."""
-    name.resolve().parent.mkdir(parents=True, exist_ok=True)
-    folder = Path(mkdtemp(prefix=f".{name.name}.", dir=name.resolve().parent))
+    made = [parent for parent in name.resolve().parents if not parent.exists()]
+    try:
+        name.resolve().parent.mkdir(parents=True, exist_ok=True)
+        folder = Path(mkdtemp(prefix=f".{name.name}.", dir=name.resolve().parent))
+    except OSError as error:
+        raise InputError(f"{name}: cannot be made ({error.strerror})") from None
     try:
         yield folder
         folder.chmod(0o755)
         if name.is_dir():
             name.rmdir()
         folder.rename(name)
+        made = []
+    except InputError as error:
+        raise InputError(str(error).replace(str(folder), str(name))) from None
     finally:
         rmtree(folder, ignore_errors=True)
+        for parent in made:
+            with suppress(OSError):
+                parent.rmdir()
 
 
 def _begin(source: str, folder: Path, wish: _Wish) -> list[str]:
@@ -129,6 +146,10 @@ def _begin(source: str, folder: Path, wish: _Wish) -> list[str]:
             if not path.is_file():
                 raise InputError(f"{source}: there is no such file")
             return make(path, folder, wish)
+    if path.is_dir():
+        raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
+    if path.suffix.lower() in CAD_SUFFIXES:
+        raise InputError(f"{source}: CAD files are not read; export it as STL or 3MF")
     known = ", ".join(ending for suffixes in kinds for ending in suffixes)
     raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
 
@@ -192,7 +213,7 @@ def _from_bytes(
         material=material,
         **({} if wish.nodes is None else {"nodes": wish.nodes}),
     )
-    save_robot(sketch.robot, folder)
+    save_robot(_within_reach(sketch.robot), folder)
     lines = list(sketch.healing.lines())
     if not sketch.healing.clean:
         replace_file(folder / "healing.txt", ("\n".join(lines) + "\n").encode())
@@ -209,8 +230,27 @@ def _from_mesh(path: Path, folder: Path, wish: _Wish) -> list[str]:
     wish.refuse("a ready mesh has its own elements", "element_size", "nodes")
     wish.refuse("is only for drawings", "thickness", "inflate")
     material = wish.material or "flexfoam-it x"
-    save_robot(sketch_mesh(path, name=wish.robot_name, size=wish.size, material=material), folder)
+    robot = sketch_mesh(path, name=wish.robot_name, size=wish.size, material=material)
+    save_robot(_within_reach(robot), folder)
     return []
+
+
+def _within_reach(robot: "Robot") -> "Robot":
+    """The robot with a pose that its cable makes, the farthest of a few that inverse kinematics finds again."""
+    from hydrostat.cli.prepare import prepared
+    from hydrostat.ik import solve_ik
+    from hydrostat.robot import Pose
+
+    simulation = prepared(robot)
+    for share in _SHARES:
+        solved = simulation.solve({"pull": share * robot.winches[0].travel}, strict=False)
+        if not solved.result.converged:
+            continue
+        targets = {name: tuple(round(float(value), 4) for value in place) for name, place in solved.markers.items()}
+        pose = Pose(name="bend", targets=targets)
+        if solve_ik(simulation, pose).rms_error < _REACHED * robot.body.mesh.size:
+            return replace(robot, poses={pose.name: pose})
+    return robot
 
 
 def _draw(folder: Path) -> "Robot":
@@ -235,7 +275,10 @@ def _tell(made: "Robot", name: Path, lines: list[str]) -> None:
     )
     for line in [*lines, *(f"risky: {risk}" for risk in find_risks(made))]:
         print(line)
-    origin = "from the middle of the drawing" if flat else "as in the file of the body"
+    scaled = made.body.size is not None
+    origin = (
+        "from the middle of the drawing" if flat else "of the scaled body" if scaled else "as in the file of the body"
+    )
     print(f"Edit {name / 'robot.toml'}; coordinates count {origin}, see {name / 'rest.png'}")
     folder = quote(str(name))
     if flat:

@@ -71,7 +71,7 @@ def simulate(
     seconds = time.process_time() - began
     files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
     files += _picture(simulation, pose, out)
-    print_places(pose)
+    print_places(pose, loaded)
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
     if pose.result.buckled:
         print("note: the body buckled on the way; it could as well have gone to another side")

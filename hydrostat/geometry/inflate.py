@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
+from shapely import maximum_inscribed_circle
 
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.errors import InputError, OutlineError
@@ -13,6 +14,7 @@ from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.triangles.triangulate import triangulate
 
 _STEPS = 4
+_STOUT = 1.5  # times as thick as wide is no plush any more
 
 
 def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
@@ -30,11 +32,18 @@ def inflate(outline: Outline, height: float, *, spacing: float) -> Surface:
         spacing: length of the edges of the triangles [m]; shorter next to the rim, where the surface bends.
 
     Raises:
-        InputError: `height` is not positive, or `spacing` makes too few or too many triangles.
+        InputError: `height` is not positive, or far more than the outline is wide; `spacing` makes too few or too
+            many triangles.
         OutlineError: the outline is too thin somewhere for the spacing; the message says where.
     """
     if not 0.0 < height < np.inf:
         raise InputError(f"the height must be positive, not {height} m")
+    widest = 2 * float(maximum_inscribed_circle(outline.polygon).length)
+    if height > _STOUT * widest:
+        raise InputError(
+            f"the height of {1e3 * height:.4g} mm is too much for an outline {1e3 * widest:.3g} mm wide at its widest: "
+            f"take {1e3 * _STOUT * widest:.3g} mm or less"
+        )
     try:
         mesh = _without_bridges(triangulate(outline, spacing))
     except OutlineError:

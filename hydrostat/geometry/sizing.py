@@ -13,7 +13,10 @@ FEWEST, MOST = 10, 200_000
 CLOSE = 0.1
 """How far the number may be off, as a fraction of it."""
 
-_TRIES = 12
+_TRIES = 8
+
+_THIN = 4.0
+"""So many times fewer nodes than elements as large as the body is thick would have, are not looked for."""
 
 _FINE = 0.01
 """A size refused whose element has less than this share of the body is too fine, others are too coarse."""
@@ -25,8 +28,8 @@ _DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
 def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: float = 0.0, dim: int) -> float:
     """Element size [m], to three digits, with which a mesh has a number of nodes to within a tenth.
 
-    Steps on logarithms, kept between the sizes that gave too many and too few. Bodies of few elements may jump over
-    the number; then the size that comes nearest.
+    Steps on logarithms, kept between the sizes that gave too many and too few. Bodies of few elements, or with
+    thin places that need finer ones, may jump over the number; then the size that comes nearest.
 
     Args:
         nodes: wanted.
@@ -36,10 +39,11 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
         dim: 2 or 3.
 
     Raises:
-        InputError: no mesh has about so few or so many; the message says what came nearest.
+        InputError: fewer nodes than a body so thin can have, or no mesh at all.
     """
     if not FEWEST <= nodes <= MOST:
         raise InputError(f"the number of nodes must be from {FEWEST} to {MOST}, not {nodes}")
+    _check_thin(nodes, content, rim, dim)
     size, low, high = _guess(nodes, content, rim, dim), 0.0, np.inf
     refused: InputError | None = None
     tried: dict[float, int] = {}
@@ -60,16 +64,25 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
             size = np.sqrt(low * high) if low > 0 and high < np.inf else 1.3 * low if low > 0 else 0.7 * high
     if not tried:
         raise InputError(f"no element size gives about {nodes} nodes: {refused}")
-    nearest = min(tried, key=lambda size: abs(np.log(max(tried[size], 1) / nodes)))
-    if not 0.5 <= tried[nearest] / nodes <= 2:
+    return min(tried, key=lambda size: abs(np.log(max(tried[size], 1) / nodes)))
+
+
+def _check_thin(nodes: int, content: float, rim: float, dim: int) -> None:
+    """Refuse to look for a number that a body so thin cannot have, before any mesh is made."""
+    if not rim > 0:
+        return
+    inside, outside = _DENSITY[dim]
+    thick = dim * content / rim  # of a plate, half of a rod
+    least = inside * content / thick**dim + outside * rim / thick ** (dim - 1)
+    if nodes < least / _THIN:
         raise InputError(
-            f"no element size gives about {nodes} nodes; the nearest, {_mm(nearest)}, gives {tried[nearest]}"
+            f"a body so thin ({1e3 * thick:.3g} mm on average) needs about {_two_digits(least)} nodes, not {nodes}: "
+            f'ask for as many, or for an element size of "{1e3 * thick:.2g} mm"'
         )
-    return nearest
 
 
-def _mm(size: float) -> str:
-    return f"{1e3 * size:.3g} mm"
+def _two_digits(count: float) -> int:
+    return int(float(f"{count:.1e}"))
 
 
 def _guess(nodes: int, content: float, rim: float, dim: int) -> float:

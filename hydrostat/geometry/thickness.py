@@ -139,7 +139,7 @@ class ThinPart:
     """A part of the body that is thin and goes on for longer than it is thick.
 
     Attributes:
-        thickness: where it is thinnest [m], but for a tenth of it: a notch is no limb.
+        thickness: that three quarters of it do not reach [m]: a point or a notch is no limb.
         across: elements there.
         place: the middle of the body there [m].
         length: of the part [m].
@@ -176,8 +176,8 @@ def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
         spread = thickness.middles[members] - thickness.middles[members].mean(axis=0)
         axis = np.linalg.svd(spread, full_matrices=False)[2][0]
         length = float(np.ptp(spread @ axis))
-        if length > _SLENDER * np.median(thickness.chords[members]):
-            at = members[np.argsort(thickness.across[members])[len(members) // 10]]
-            chord, across = float(thickness.chords[at]), float(thickness.across[at])
+        at = members[np.argsort(thickness.across[members])[3 * len(members) // 4]]
+        chord, across = float(thickness.chords[at]), float(thickness.across[at])
+        if length > _SLENDER * chord:
             found.append(ThinPart(chord, across, thickness.middles[at], length))
     return sorted(found, key=lambda part: part.across)

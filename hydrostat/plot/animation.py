@@ -3,7 +3,7 @@
 import subprocess
 import zlib
 from collections.abc import Callable, Iterator, Sequence
-from itertools import pairwise
+from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -188,7 +188,7 @@ def _piped(command: list[str], first: Picture, rest: Iterator[Picture]) -> str |
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=log)
         try:
             assert process.stdin is not None
-            for picture in (first, *rest):
+            for picture in chain([first], rest):
                 process.stdin.write(np.ascontiguousarray(picture).tobytes())
             process.stdin.close()
             code = process.wait()

@@ -105,7 +105,8 @@ def film(
         raise InputError("a film needs a stop to go to")
     count = round(seconds / step)
     if count < 1 + FEWEST * ways:
-        raise InputError(f"{seconds:g} s are too short for {ways} ways; at least {(1 + FEWEST * ways) * step:.2g} s")
+        least = np.ceil(10 * (1 + FEWEST * ways) * step) / 10
+        raise InputError(f"{seconds:g} s are too short for {ways} ways; at least {least:g} s")
     ends = 1 + np.round((count - 1) * np.arange(ways + 1) / ways).astype(int)
     rest = simulation.solve({})
     home = Stop(name="rest", contractions=rest.contractions, words="at rest")
@@ -128,7 +129,7 @@ class _Shot:
     def go(self, begin: Stop, end: Stop, count: int) -> None:
         """Go from one stop to the next in so many frames, the last of them still."""
         still = max(1, round(STILL * count))
-        words = "back to rest" if end.name == "rest" else f"to {end.name}"
+        words = "back to rest" if not end.contractions.any() else f"to {end.name}"
         for number in range(1, count - still + 1):
             share = 0.5 - 0.5 * np.cos(np.pi * number / (count - still))
             goal = begin.contractions + share * (end.contractions - begin.contractions)

@@ -126,7 +126,7 @@ def _instants(order: Sequence[int], targets: Sequence[Pose | None]) -> list[int]
         for before, here, after in zip(known, known[1:], known[2:], strict=False)
         if not before[1:] == here[1:] == after[1:]
     ]
-    return [known[0][0], *inner, known[-1][0]]
+    return sorted({known[0][0], *inner, known[-1][0]})
 
 
 def _turn(robot: Robot) -> tuple[float, float, float, float]:

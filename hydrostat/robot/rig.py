@@ -11,6 +11,8 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.clearance import clearance
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.surface import Surface
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.marker import Marker
@@ -29,8 +31,13 @@ _STOUT = 0.35
 _STATIONS = np.linspace(0.04, 0.9, 12)
 _BAND = 0.05
 _SMOOTHINGS = 3
-_OFF = 0.3
-"""How far a cable lies from the middle of a limb towards its skin."""
+_OFFS = (0.3, 0.2, 0.1, 0.0)
+"""How far a cable may lie from the middle of a limb towards its skin, the best first."""
+
+_COVER = 0.004
+"""A cable should be as deep [m]."""
+
+_SPOOL, _LEAST_SPOOL = 0.006, 0.002
 
 
 def rigged(body: Body, name: str) -> Robot:
@@ -40,25 +47,25 @@ def rigged(body: Body, name: str) -> Robot:
     point. The limb is the longest way through the body from there; the cable lies on one side of it.
     """
     mesh = body.mesh
+    solid = Solid(Surface(mesh.nodes, mesh.boundary) if body.healing is None else body.healing.surface)
     pin = _hold(mesh)
     limb = _limb(mesh, pin.holds(mesh))
     middles = _smoothed(np.array([limb.middle(mesh, share) for share in _STATIONS]))
     side = _side(mesh, middles[-1] - middles[0])
-    route = _spaced(
-        [
-            _inside(mesh, middle + _OFF * limb.reach(mesh, share, side) * side)
-            for middle, share in zip(middles, _STATIONS, strict=True)
-        ]
-    )
-    tip = _inside(mesh, limb.middle(mesh, 0.97))
+    ways = [limb.reach(mesh, share, side) * side for share in _STATIONS]
+    route = _spaced([_covered(mesh, solid, middle, way) for middle, way in zip(middles, ways, strict=True)])
+    tip = _covered(mesh, solid, limb.middle(mesh, 0.97), 0 * side)
+    spool = min(_SPOOL, max(_LEAST_SPOOL, -0.9 * float(solid.distances(route[:1])[0])))
     cable = Cable(winch="pull", points=tuple(map(_point, route)))
+    travel = max(round(0.4 * cable.length, 3), 1e-3)
+    winch = Winch(name="pull", at=cable.points[0], spool_radius=round(spool, 4), travel=travel)
     arm = tip - middles[0]
     bent = middles[0] + 0.95 * (np.cos(0.4) * arm + np.sin(0.4) * np.linalg.norm(arm) * side)
     return Robot(
         name=name,
         body=body,
         pins=(pin,),
-        winches=(Winch(name="pull", at=cable.points[0], travel=max(round(0.4 * cable.length, 3), 1e-3)),),
+        winches=(winch,),
         cables=(cable,),
         markers=(Marker(name="tip", at=_point(tip)),),
         poses={"bend": Pose(name="bend", targets={"tip": _point(bent)})},
@@ -148,10 +155,16 @@ def _smoothed(points: Points) -> Points:
     return points
 
 
-def _inside(mesh: Mesh, place: Vector) -> Vector:
-    """The place itself, or if it is outside the middle of the nearest element."""
-    found = locate(mesh, place[None])
-    return place if found.inside[0] else mesh.nodes[found.stencils[0]].mean(axis=0)
+def _covered(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
+    """A place off the middle of a limb, towards its skin, as far as there is cover; the best there is if there is none.
+
+    It is inside the solid, so that it stays inside the body with finer elements.
+    """
+    places = middle + np.multiply.outer(_OFFS, way)
+    found = locate(mesh, np.concatenate([places, middle[None]]))
+    places = np.concatenate([places, mesh.nodes[found.stencils[-1:]].mean(axis=1)])
+    depths = np.where(np.append(found.inside[:-1], True), -solid.distances(places), -np.inf)
+    return places[int(np.argmax(depths > _COVER))] if (depths > _COVER).any() else places[int(np.argmax(depths))]
 
 
 def _spaced(points: list[Vector]) -> Points:

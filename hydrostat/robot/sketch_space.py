@@ -5,6 +5,7 @@ from pathlib import Path, PurePath
 
 import numpy as np
 
+from hydrostat.errors import InputError
 from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.sizing import size_for
@@ -16,6 +17,9 @@ from hydrostat.robot.robot import Robot
 
 NODES = 900
 """Of a sketch, if neither a number nor an element size is asked for: as many as the thesis's hand (N3)."""
+
+SHORTEST, LONGEST = 0.002, 20.0
+"""Bodies are as long [m]; what is not was probably meant in another unit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +67,7 @@ def sketch_surface(
 
     known = find_material(material)
     before = read_surface(content, name=file, size=size)
+    _check_scale(before.size, size)
     healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
     closed, meshes = healing.surface, {}
 
@@ -92,7 +97,18 @@ def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: s
     Raises:
         InputError: the file holds no mesh in space.
     """
-    return rigged(mesh_body(path, unit=1e-3, material=find_material(material), size=size), name)
+    body = mesh_body(path, unit=1e-3, material=find_material(material), size=size)
+    _check_scale(body.mesh.size, size)
+    return rigged(body, name)
+
+
+def _check_scale(length: float, size: float | None) -> None:
+    """Refuse bodies so small or large that the file probably counts in another unit."""
+    if SHORTEST <= length <= LONGEST:
+        return
+    meant = 1e3 * length if length < SHORTEST else 1e-3 * length
+    hint = f'; files without a unit are read as mm: give a size, perhaps "{1e3 * meant:.3g} mm"' if size is None else ""
+    raise InputError(f"the body would be {1e3 * length:.3g} mm long, not {1e3 * SHORTEST:g} mm to {LONGEST:g} m{hint}")
 
 
 def _guess(surface: Surface, nodes: int) -> float:

@@ -7,8 +7,9 @@ from solids import ball, boundary, brick, moved
 
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.spread import covering_points
 from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.fit import fit, spread_points
+from hydrostat.geometry.tetrahedra.fit import fit
 
 
 def _star(outer: Surface) -> Mesh:
@@ -54,7 +55,7 @@ def test_distances_are_those_of_trimesh() -> None:
     inner, outer = ball(0.03, 2), moved(brick(0.09, 0.08, 0.07), turned=0.5)
     found = fit(_star(inner), Solid(outer), 0.01)
     sides = [trimesh.Trimesh(one.vertices, one.triangles, process=False) for one in (outer, inner)]
-    count = len(spread_points(boundary(_star(inner)), 0.01))
+    count = len(covering_points(boundary(_star(inner)), 0.01))
     halves = [found.places[:count], found.places[count:]]
     expected = [_away(side, points) for side, points in zip(sides, halves, strict=True)]
     np.testing.assert_allclose(found.distances, np.concatenate(expected), atol=1e-9)
@@ -73,7 +74,7 @@ def _away(made: object, points: np.ndarray) -> np.ndarray:
 def test_points_are_spread_evenly() -> None:
     """Closed forms: as many as area by spacing squared, all on the triangle, quarters of it with a quarter of them."""
     triangle = Surface(np.array([[0.0, 0, 1], [1, 0, 1], [0, 1, 1]]), np.array([[0, 1, 2]]))
-    points = spread_points(triangle, 0.02)
+    points = covering_points(triangle, 0.02)
     np.testing.assert_array_equal(points[:3], triangle.vertices)
     inner = points[3:]
     assert len(inner) == 1250
@@ -89,7 +90,7 @@ def test_points_are_spread_evenly() -> None:
 def test_each_triangle_has_its_own_points_and_vertices_that_none_uses_do_not_count() -> None:
     """By hand: a large and a small triangle and a lone vertex."""
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 0, 0], [5.01, 0, 0], [5, 0.01, 0], [9, 9, 9]])
-    points = spread_points(Surface(corners, np.array([[0, 1, 2], [3, 4, 5]])), 0.1)
+    points = covering_points(Surface(corners, np.array([[0, 1, 2], [3, 4, 5]])), 0.1)
     assert len(points) == 6 + 50 + 1
     assert points[:, 0].max() < 6
     assert (points[:, 0] > 4.9).sum() == 3 + 1

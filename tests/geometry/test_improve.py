@@ -11,9 +11,9 @@ from solids import ball, boundary, brick
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.quality import dihedral_angles
 from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.spread import covering_points
 from hydrostat.geometry.surface import Surface
 from hydrostat.geometry.tetrahedra import improve as module
-from hydrostat.geometry.tetrahedra.fit import spread_points
 from hydrostat.geometry.tetrahedra.improve import Stage, improve
 from hydrostat.geometry.tetrahedra.orient import signed_volumes
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
@@ -169,7 +169,7 @@ def test_a_box_that_is_too_small_grows_to_its_surface_with_its_corners() -> None
 def test_the_signed_distance_is_about_zero_on_average() -> None:
     """Closed form of a ball: so the volume is met though facets are flat."""
     mesh = tetrahedralise(ball(), 0.02)
-    away = np.linalg.norm(spread_points(boundary(mesh), 0.002), axis=1) - 0.05
+    away = np.linalg.norm(covering_points(boundary(mesh), 0.002), axis=1) - 0.05
     assert abs(away.mean()) < 0.01 * 0.02
     assert away.min() < -0.01 * 0.02
     assert away.max() > 0.01 * 0.02

@@ -119,8 +119,8 @@ USES = "".join(f'<g id="u{n}"><use href="#u{n + 1}"/><use href="#u{n + 1}"/></g>
         (svg('<path d="M0,0 L10,10 V0 L0,10 Z"/>'), r"a.svg: the outline crosses itself at \(5, 5\)"),
         (svg('<path d="M0,0 h10 z"/>'), "a.svg: the outline has no area"),
         (svg(SQUARE + '<circle cx="50" cy="50" r="5"/>'), r"a.svg: a second closed shape lies outside .* \(55, 50\)"),
-        (svg(SQUARE + '<circle cx="30" cy="20" r="5"/>'), r"a.svg: a hole crosses the outline at \(30, "),
-        (svg(SQUARE + '<circle cx="25" cy="20" r="5"/>'), r"a.svg: a hole crosses the outline at \(30, 20\)"),
+        (svg(SQUARE + '<circle cx="30" cy="20" r="5"/>'), r"a.svg: two closed shapes cross at \(30, "),
+        (svg(SQUARE + '<circle cx="25" cy="20" r="5"/>'), r"a.svg: two closed shapes cross at \(30, 20\)"),
         (
             svg(SQUARE + '<circle cx="20" cy="20" r="6"/><circle cx="20" cy="20" r="3"/>'),
             r"a.svg: a closed shape at \(23, 20\) lies inside a hole",

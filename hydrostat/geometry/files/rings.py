@@ -102,7 +102,8 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
         crossing = next((other for other in (body, *holes) if other.exterior.intersects(shape.exterior)), None)
         if crossing is not None:
             point = crossing.exterior.intersection(shape.exterior).representative_point()
-            raise OutlineError(f"{name}: a hole crosses the outline at {place((point.x, point.y))}: move it inside")
+            where = place((point.x, point.y))
+            raise OutlineError(f"{name}: two closed shapes cross at {where}: unite them, or move a hole inside")
         holes.append(shape)
     return np.array(body.exterior.coords), [np.array(hole.exterior.coords) for hole in holes]
 

@@ -42,6 +42,8 @@ def _binary(content: bytes, name: str) -> np.ndarray:
     """Corners of the triangles of a binary file, (triangles, 3, 3)."""
     if len(content) < _HEADER:
         raise SurfaceError(f"{name}: {len(content)} bytes are too few for an STL file: export the surface again")
+    if content[:400].isascii() and content[:400].decode("ascii").replace("\n", " ").isprintable():
+        raise SurfaceError(f"{name}: is text, but no STL, which begins with the word solid: export the surface again")
     count = int.from_bytes(content[_HEADER - 4 : _HEADER], "little")
     room = (len(content) - _HEADER) / _RECORD.itemsize
     check_count(name, "triangles", count, room=room)

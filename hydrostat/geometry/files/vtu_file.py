@@ -119,6 +119,7 @@ class _Reader:
 
     def __init__(self, attributes: dict[str, str], appended: bytes, encoding: str, name: str) -> None:
         self.name, self.appended, self.encoding = name, appended, encoding
+        self.budget = MOST_BYTES // 8  # numbers, of all arrays together: each becomes eight bytes
         self.order = ">" if attributes.get("byte_order") == "BigEndian" else "<"
         self.head = np.dtype(self.order + ("u8" if attributes.get("header_type") == "UInt64" else "u4"))
         self.packed = "compressor" in attributes
@@ -143,9 +144,13 @@ class _Reader:
             else:
                 source, encoding = "".join(data.text).strip().encode("ascii", "replace"), "base64"
             content = self._unpacked(source, encoding) if self.packed else self._plain(source, encoding)
-            return np.frombuffer(content, np.dtype(self.order + kind))
+            found = np.frombuffer(content, np.dtype(self.order + kind))
         except (ValueError, binascii.Error, zlib.error):
             raise self.damaged("has an array that cannot be unpacked") from None
+        self.budget -= len(found)
+        if self.budget < 0:
+            raise InputError(f"{self.name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: save a coarser mesh")
+        return found
 
     def _text(self, data: _Array, kind: str) -> np.ndarray:
         """Numbers written as text."""

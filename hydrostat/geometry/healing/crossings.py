@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float, Int
 from hydrostat.geometry.surface import Surface
 
 _PAIRS = 1_000_000  # about as many are looked at at once
+_BOXES = 4096  # and no more triangles, for the next may cross many more others
 MOST_PAIRS = 100_000
 """Where so many pairs cross, no more are looked for."""
 
@@ -62,7 +63,7 @@ def _candidates(surface: Surface) -> Iterator[Int[np.ndarray, "pairs 2"]]:
         first, second = tree.query(boxes[start : start + chunk])
         first = first + start
         start += chunk
-        chunk = int(np.clip(chunk * _PAIRS / max(len(first), 1), 16, 4 * chunk))
+        chunk = int(np.clip(chunk * _PAIRS / max(len(first), 1), 16, min(4 * chunk, _BOXES)))
         meets = (first < second) & (low[first, 2] <= high[second, 2]) & (low[second, 2] <= high[first, 2])
         yield np.stack([first[meets], second[meets]], axis=1).astype(np.int64)
 

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from hydrostat.geometry.healing.sides import sides_of
+from hydrostat.geometry.spread import spread_points
 from hydrostat.geometry.surface import Surface
 
 
@@ -17,7 +18,7 @@ class Deviation:
         largest: between what the surfaces have in common, from each to the other [m]; not of what is patched or
             lost, nor where the first lies inside the second.
         patched: share of the second surface's area that is far from the first, as over its holes.
-        lost: triangles of the first that lie outside the second and far from it.
+        lost: triangles of the first of which most lies outside the second and far from it.
     """
 
     largest: float
@@ -40,13 +41,16 @@ def deviation(before: Surface, after: Surface, near: float) -> Deviation:
     areas = np.linalg.norm(after.crosses, axis=1)
     patched = float(areas[(distance > near)[after.triangles].all(axis=1)].sum() / areas.sum())
     distance[(distance > near) | _at_rim(before)[np.array(nearest)]] = 0.0
-    back = np.sqrt(np.array(igl.point_mesh_squared_distance(before.vertices, after.vertices, after.triangles)[0]))
+    points, owner = spread_points(before, near)  # all over long triangles, not at their corners only
+    back = np.sqrt(np.array(igl.point_mesh_squared_distance(points, after.vertices, after.triangles)[0]))
     some = np.flatnonzero(back > 0.05 * near)
-    winding = np.array(igl.fast_winding_number(after.vertices, after.triangles, before.vertices[some]))
+    winding = np.array(igl.fast_winding_number(after.vertices, after.triangles, points[some]))
     back[some[winding >= 0.5]] = 0.0
-    lost = np.flatnonzero((back > near)[before.triangles].all(axis=1))
-    back[before.triangles[lost]] = 0.0
-    return Deviation(float(max(distance.max(), back.max())), patched, lost.astype(np.int64))
+    far = back > near
+    count = len(before.triangles)
+    lost = 2 * np.bincount(owner[far], minlength=count) > np.bincount(owner, minlength=count)
+    back[far & lost[owner]] = 0.0
+    return Deviation(float(max(distance.max(), back.max())), patched, np.flatnonzero(lost))
 
 
 def _at_rim(surface: Surface) -> Bool[np.ndarray, " triangles"]:

@@ -137,7 +137,7 @@ def _part(surface: Surface, numbers: Int[np.ndarray, " some"]) -> Surface:
 
 def _several(body: Surface, other: Surface) -> str:
     """That there is a second body, and where."""
-    places = [", ".join(f"{1e3 * x:.4g}" for x in surface.box.mean(axis=0)) for surface in (body, other)]
+    places = [", ".join(f"{round(1e3 * x, 2) + 0.0:g}" for x in surface.box.mean(axis=0)) for surface in (body, other)]
     return (
         f"the surface is at least two bodies apart from each other, {1e3 * body.size:.3g} mm in size at "
         f"({places[0]}) mm and {1e3 * other.size:.3g} mm at ({places[1]}) mm: join them where the surface comes from, "

@@ -35,6 +35,7 @@ class Shells:
         inside_out: parts that looked inward and were turned as a whole.
         whole: parts that are closed, manifold and turned one way.
         boxes: lowest and highest coordinates of each [m].
+        volumes: of each [m^3], its holes closed by fans; negative for a cavity.
         roles: what each is to the body.
     """
 
@@ -43,6 +44,7 @@ class Shells:
     inside_out: Bool[np.ndarray, " parts"]
     whole: Bool[np.ndarray, " parts"]
     boxes: Float[np.ndarray, "parts 2 3"]
+    volumes: Vector
     roles: tuple[Role, ...]
 
     def of_role(self, *roles: Role) -> Bool[np.ndarray, " parts"]:
@@ -84,7 +86,7 @@ def shells_of(
     triangles = np.where(turned[label][:, None], triangles[:, ::-1], triangles)
     turned_surface = Surface(surface.vertices, triangles)
     _find_specks(turned_surface, label, boxes, whole, meets, roles, largest, near)
-    return Shells(turned_surface, label, turned, whole, boxes, tuple(roles))
+    return Shells(turned_surface, label, turned, whole, boxes, np.where(turned, -volume, volume), tuple(roles))
 
 
 def _boxes(vertices: np.ndarray, triangles: np.ndarray, label: np.ndarray) -> Float[np.ndarray, "parts 2 3"]:

@@ -48,7 +48,7 @@ class Piece:
     @property
     def text(self) -> str:
         """The piece in words."""
-        x, y, z = (f"{1e3 * coordinate:.4g}" for coordinate in self.place)
+        x, y, z = (f"{round(1e3 * coordinate, 2) + 0.0:g}" for coordinate in self.place)
         triangles = counted(self.triangles, "triangle")
         return f"{self.why}, {1e3 * self.size:.3g} mm in size at ({x}, {y}, {z}) mm, {triangles}"
 

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Int
+from jaxtyping import Bool, Float, Int
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.healing.sides import sides_of
@@ -63,14 +62,22 @@ def weld(surface: Surface) -> Welded:
 def _merged(surface: Surface, used: Int[np.ndarray, " used"]) -> Int[np.ndarray, " vertices"]:
     """For each vertex the first of those in its place."""
     places = surface.vertices[used] - surface.box[0]
-    pairs = KDTree(places).query_pairs(NEAR * surface.size, output_type="ndarray")
+    cell = 4 * NEAR * surface.size
+    joins = [
+        _same_cell(places / cell + shift) for shift in (0.0, 0.5)
+    ]  # not pairs: where all is in one place, too many
+    graph = coo_array((np.ones(2 * len(used)), np.concatenate(joins, axis=1)), shape=(len(used), len(used)))
+    labels = connected_components(graph, directed=False)[1]
+    _, first = np.unique(labels, return_index=True)
     result = np.arange(len(surface.vertices))
-    if len(pairs):
-        graph = coo_array((np.ones(len(pairs), dtype=np.int8), pairs.T), shape=(len(used), len(used)))
-        labels = connected_components(graph, directed=False)[1]
-        _, first = np.unique(labels, return_index=True)
-        result[used] = used[first[labels]]
+    result[used] = used[first[labels]]
     return result
+
+
+def _same_cell(places: Float[np.ndarray, "points 3"]) -> Int[np.ndarray, "2 points"]:
+    """Each point and the first of those in the same cell of a grid."""
+    _, first, which = np.unique(np.floor(places), axis=0, return_index=True, return_inverse=True)
+    return np.stack([np.arange(len(places)), first[which.ravel()]])
 
 
 def _kept(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.ndarray, " triangles"], int]:

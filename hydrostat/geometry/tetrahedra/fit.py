@@ -7,13 +7,11 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.spread import covering_points
 from hydrostat.geometry.surface import Surface
 
 CLOSE = 0.25
 """The boundary of a mesh should be as near to the surface, in element sizes."""
-
-_PLASTIC = 1.32471795724474602596
-"""Its powers spread points evenly over a square (Roberts 2018)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,22 +39,8 @@ def fit(mesh: Mesh, solid: Solid, spacing: float) -> Fit:
     outer = Solid(Surface(mesh.nodes, mesh.boundary))
     places, distances = [], []
     for one, other in ((outer, solid), (solid, outer)):
-        points = spread_points(one.surface, spacing)
+        points = covering_points(one.surface, spacing)
         places.append(points)
         distances.append(np.linalg.norm(other.nearest(points)[0] - points, axis=1))
     volume = float(mesh.volumes.sum()) / solid.surface.volume
     return Fit(np.concatenate(places), np.concatenate(distances), volume)
-
-
-def spread_points(surface: Surface, spacing: float) -> Points:
-    """The vertices of a surface, and points spread evenly over its triangles, one for each `spacing` squared [m]."""
-    areas = np.linalg.norm(surface.crosses, axis=1) / 2
-    counts = np.ceil(areas / spacing**2).astype(int)
-    owner = np.repeat(np.arange(len(counts)), counts)
-    number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
-    one, two = ((0.5 + (1 + number) / _PLASTIC**power) % 1 for power in (1, 2))
-    over = one + two > 1
-    one, two = np.where(over, 1 - one, one), np.where(over, 1 - two, two)
-    weights = np.column_stack([1 - one - two, one, two])
-    inner = np.einsum("pc,pcd->pd", weights, surface.vertices[surface.triangles[owner]])
-    return np.concatenate([surface.vertices[np.unique(surface.triangles)], inner])

@@ -33,6 +33,9 @@ _CRUMB = 0.01
 _WHOLE = 0.7
 """If a lattice takes less of the volume, then finer elements in some places do not help."""
 
+_ADVICE = 0.7
+"""What is advised is at most as much of a size that was too large: taken again and again it comes to one that does."""
+
 _FINER = 4
 """Rounds of finer elements where the boundary is not close."""
 
@@ -121,7 +124,8 @@ def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float
 
 def _thin(surface: Surface, element_size: float) -> str:
     """The end of a complaint, with a size that a body as thick as this on average can be filled with."""
-    return f"elements of {1e3 * element_size:.4g} mm; take {2e3 * surface.volume / surface.area:.2g} mm or less"
+    size = min(2 * surface.volume / surface.area, _ADVICE * element_size)
+    return f"elements of {1e3 * element_size:.4g} mm; take {1e3 * size:.2g} mm or less"
 
 
 def _check(surface: Surface, element_size: float) -> None:

@@ -65,7 +65,7 @@ def _leaving(robot: Robot) -> Iterator[Found]:
             from shapely import LineString, distance, points
 
             drawing, line = robot.body.outline.polygon, LineString(inside)
-            leaves = not drawing.contains(line)
+            leaves = not drawing.covers(line)
             if leaves:  # the middle of what is outside too: a slit may be narrower than a step
                 places = np.concatenate([places, [line.difference(drawing).centroid.coords[0]]])
             out = np.asarray(distance(drawing, points(places)))
@@ -90,6 +90,15 @@ def _near_the_surface(robot: Robot) -> Iterator[Found]:
             yield Found(f"cable[{index}]", -float(depths[nearest]), text)
 
 
+def _length_inside(robot: Robot, cable: Cable) -> float:
+    """Length of a cable outside sheaths and inside the body [m]: what is outside cannot be squeezed."""
+    length = float(cable.segments[cable.bare].sum())
+    if robot.winch(cable.winch).mount is Mount.BODY or not cable.bare[0]:
+        return length
+    way = np.linspace(cable.points[0], cable.points[1], 201)
+    return length - float(cable.segments[0]) * float((robot.body.distances(way) > 0).mean())
+
+
 def _squeezing(robot: Robot) -> Iterator[Found]:
     """An estimate from lengths alone: what a winch takes in, the body along its cable must become shorter by."""
     material = robot.body.material
@@ -97,7 +106,7 @@ def _squeezing(robot: Robot) -> Iterator[Found]:
         return
     for index, cable in enumerate(robot.cables):
         winch = robot.winch(cable.winch)
-        length = float(cable.segments[cable.bare].sum())
+        length = _length_inside(robot, cable)
         squeeze = (winch.travel - cable.slack) / length
         if winch.travel <= length and squeeze > material.largest_squeeze:
             most = material.largest_squeeze * length + cable.slack
