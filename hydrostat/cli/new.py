@@ -71,6 +71,9 @@ def new(
     with _made_whole(name) as folder, patiently("healing and meshing the body ..."):
         lines = _begin(source, folder, wish)
         made = _draw(folder)
+    count = len(made.body.mesh.nodes)
+    if nodes is not None and abs(count / nodes - 1) > 0.1:
+        lines.append(f"nodes: {nodes} were asked for, {count} come nearest, as thin places need finer elements")
     _tell(made, name, [line.replace(str(folder), str(name)) for line in lines])
 
 
