@@ -72,7 +72,7 @@ def _check_thin(nodes: int, content: float, rim: float, dim: int) -> None:
     if not rim > 0:
         return
     inside, outside = _DENSITY[dim]
-    thick = dim * content / rim  # of a plate, half of a rod
+    thick = 2 * content / rim  # of a plate, or half as thick as a rod
     least = inside * content / thick**dim + outside * rim / thick ** (dim - 1)
     if nodes < least / _THIN:
         raise InputError(

@@ -317,3 +317,30 @@ def test_what_cannot_be_mended_is_refused_with_the_reason(dirty: Surface, word: 
 def test_the_resolution_is_above_0(resolution: float) -> None:
     with pytest.raises(SurfaceError, match="above 0"):
         heal(_BALL, resolution=resolution)
+
+
+def test_what_is_lost_between_the_corners_of_long_triangles_is_told() -> None:
+    """By hand: a web of 1.2 mm, all of whose corners lie inside two blocks, is too thin for a grid of 4 mm."""
+    blocks = [cuboid((x - 0.015, -0.015, -0.015), (x + 0.015, 0.015, 0.015)) for x in (-0.04, 0.04)]
+    bar = cuboid((-0.035, -0.013, -0.005), (0.035, -0.003, 0.005))
+    web = cuboid((-0.035, 0.0084, -0.01), (0.035, 0.0096, 0.01))
+    with pytest.raises(SurfaceError, match="of the surface belong to parts that are open, or thinner than the 4 mm"):
+        heal(both(*blocks, bar, web), resolution=0.004)
+    assert heal(both(*blocks, bar), resolution=0.004).removed == ()
+
+
+def test_many_vertices_in_one_place_are_merged_in_time() -> None:
+    """Oracle: the same ball without them; pairs of 30,000 such would be 450 million."""
+    ball = sphere()
+    heap = Surface(
+        np.concatenate([ball.vertices, np.repeat(ball.vertices[:1], 30_000, axis=0)]),
+        np.concatenate([ball.triangles, len(ball.vertices) + np.arange(30_000).reshape(-1, 3)]),
+    )
+    assert heal(heap, resolution=0.002).volume_after == pytest.approx(ball.volume, rel=1e-9)
+
+
+def test_a_large_plain_box_through_a_fine_ball_is_no_tangle() -> None:
+    """By hand: twelve triangles each cross many small ones, these only one or two: two parts, one body."""
+    box = cuboid((-0.05, -0.01, -0.01), (0.05, 0.01, 0.01))
+    healing = heal(both(box, sphere(0.02)), resolution=0.002)
+    assert healing.volume_after > box.volume

@@ -270,10 +270,10 @@ def test_risks_of_many_parts_are_one_line(good: Robot) -> None:
         ("letter_e", ()),
         ("letter_s", ()),
         ("starfish", ()),
-        ("pig", ("1.6 elements across (18 mm",)),
-        ("puppy", ("1.8 elements across (25.7 mm", "cable[0], cable[1] and cable[2]: the full travel of 60 mm")),
+        ("pig", ("1.8 elements across (18.7 mm",)),
+        ("puppy", ("1.9 elements across (22.8 mm", "cable[0], cable[1] and cable[2]: the full travel of 60 mm")),
         ("robot", ("cable[0], cable[1] and 4 more: the full travel of 60 mm",)),
-        ("squid", ("1.2 elements across (19.6 mm", "longer than a cable", "cable[2]: the full travel of 60 mm")),
+        ("squid", ("1.7 elements across (21.3 mm", "longer than a cable", "cable[2]: the full travel of 60 mm")),
     ],
 )
 def test_gallery(name: str, words: tuple[str, ...]) -> None:
