@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from hydrostat.errors import SurfaceError
 
@@ -54,6 +55,11 @@ class Surface:
         """Cross product of two sides of each triangle [m^2]: its normal, outward, twice as long as its area."""
         one, two, three = (self.vertices[corner] for corner in self.triangles.T)
         return np.cross(two - one, three - one)
+
+    def part(self, chosen: Bool[np.ndarray, " triangles"] | Int[np.ndarray, " some"]) -> Self:
+        """Some of its triangles, by a mask or by number, with the vertices that they use."""
+        used, triangles = np.unique(self.triangles[chosen], return_inverse=True)
+        return type(self)(self.vertices[used], triangles.reshape(-1, 3))
 
     @property
     def area(self) -> float:

@@ -1,5 +1,7 @@
 """`Body`: the soft part of a robot, its file and its mesh."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
@@ -118,6 +120,17 @@ def _check_lengths(**lengths: float | None) -> None:
             check_positive(name, length, "m")
 
 
+@contextmanager
+def _blaming_the_element_size() -> Iterator[None]:
+    """Complaints of a mesher begin with the key that is wrong, but for those of the shape itself."""
+    try:
+        yield
+    except (OutlineError, SurfaceError):
+        raise
+    except InputError as error:
+        raise InputError(f"element_size: {error}") from None
+
+
 def outline_body(
     content: bytes,
     *,
@@ -138,12 +151,8 @@ def outline_body(
 
     _check_lengths(size=size, element_size=element_size)
     outline = read_outline(content, name=file, size=size)
-    try:
+    with _blaming_the_element_size():
         mesh = triangulate(outline, element_size)
-    except OutlineError:
-        raise
-    except InputError as error:
-        raise InputError(f"element_size: {error}") from None
     return Body(
         source=Source.OUTLINE,
         file=file,
@@ -190,12 +199,8 @@ def surface_body(
     _check_lengths(size=size, element_size=element_size, thickness=thickness)
     surface = read_surface(content, name=file, unit=unit, size=size)
     healing = heal(surface, resolution=element_size / 4)
-    try:
+    with _blaming_the_element_size():
         mesh = tetrahedralise(healing.surface, element_size)
-    except SurfaceError:
-        raise
-    except InputError as error:
-        raise InputError(f"element_size: {error}") from None
     return Body(
         source=Source.SURFACE,
         file=file,

@@ -103,7 +103,7 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     _check_tangle(crossing)
     shells = shells_of(filled, flipped, crossing, resolution)
     keep = shells.of_role(Role.BODY, Role.CAVITY)[shells.label]
-    kept = _part(shells.surface, keep)
+    kept = shells.surface.part(keep)
     removed = pieces_of(shells)
     found = told(welded, turned, holes, int(flipped.sum()), crossing, shells, sliver_count(filled))
     done = _done(welded, int(flipped.sum()), shells, int(small.sum()))
@@ -134,12 +134,6 @@ def _small(surface: Surface, holes: Holes, resolution: float) -> Bool[np.ndarray
     part = np.zeros(len(holes), dtype=np.int64)
     part[holes.label] = owner[holes.edges[:, 0]]
     return holes.simple & (holes.length <= _SMALL_HOLE * resolution) & (holes.length**2 < area[part])
-
-
-def _part(surface: Surface, keep: Bool[np.ndarray, " triangles"]) -> Surface:
-    """Some triangles of a surface, with the vertices that they use."""
-    used, triangles = np.unique(surface.triangles[keep], return_inverse=True)
-    return Surface(surface.vertices[used], triangles.reshape(-1, 3))
 
 
 def _is_closed(surface: Surface) -> bool:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import SurfaceError
@@ -117,22 +117,17 @@ def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacin
     keep, removed, filled = np.zeros(len(volumes), dtype=bool), [], []
     keep[body] = True
     for part in np.flatnonzero(~keep).tolist():
-        piece = _part(made, numbers[part])
+        piece = made.part(numbers[part])
         if volumes[part] > _SMALL * volumes[body]:
-            raise SurfaceError(_several(_part(made, numbers[body]), piece))
+            raise SurfaceError(_several(made.part(numbers[body]), piece))
         if volumes[part] > 0.0:
             removed.append(Piece.of_box(piece.box, len(piece.triangles), "loose speck"))
         elif (np.abs(cavities - piece.box).max(axis=(1, 2)) < 2.0 * spacing).any():
             keep[part] = True
         else:
             filled.append(Piece.of_box(piece.box, len(piece.triangles), "a pocket of air filled"))
-    surface = _part(made, np.flatnonzero(keep[label]))
+    surface = made.part(np.flatnonzero(keep[label]))
     return Remade(surface, spacing, tuple(removed), tuple(piece.text for piece in filled))
-
-
-def _part(surface: Surface, numbers: Int[np.ndarray, " some"]) -> Surface:
-    used, triangles = np.unique(surface.triangles[numbers], return_inverse=True)
-    return Surface(surface.vertices[used], triangles.reshape(-1, 3))
 
 
 def _several(body: Surface, other: Surface) -> str:
