@@ -1,0 +1,54 @@
+"""`CentreGoal`: the centre of mass at a point."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.robot import Point
+from hydrostat.simulation import Simulation
+from hydrostat.simulation.build import node_masses
+
+
+@dataclass(frozen=True, kw_only=True)
+class CentreGoal(Objective):
+    """The body's centre of mass where it should be, as for balance.
+
+    Attributes:
+        target: where [m].
+        weight: how much a metre away from it counts beside a metre of a marker's error.
+    """
+
+    target: Point
+    weight: float = 1.0
+
+    def on(self, simulation: Simulation) -> Term:
+        """The goal on this robot.
+
+        Raises:
+            InputError: a wrong number of coordinates, a target that is not finite, or a weight below 0.
+        """
+        dim = simulation.robot.body.mesh.dim
+        if len(self.target) != dim or not np.isfinite(self.target).all():
+            raise InputError(f"target of the centre of mass must be {dim} finite coordinates, not {tuple(self.target)}")
+        if not (np.isfinite(self.weight) and self.weight >= 0):
+            raise InputError(f"weight of the centre of mass must be 0 or more, not {self.weight:g}")
+        masses = node_masses(simulation.robot)
+        return _Centre(self.weight, masses / masses.sum(), np.array(self.target, dtype=float))
+
+
+class _Centre(Term):
+    def __init__(self, weight: float, shares: Vector, target: Vector) -> None:
+        self._weight, self._shares, self._target = weight, shares, target
+
+    def residual(self, posture: Posture) -> Rows:
+        return self._weight * (self._shares @ posture.nodes - self._target)
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        return self._weight * np.einsum("n,ndw->dw", self._shares, moves.nodes)
+
+    def errors(self, posture: Posture) -> Mapping[str, float]:
+        return {"centre of mass": float(np.linalg.norm(self._shares @ posture.nodes - self._target))}

@@ -1,0 +1,94 @@
+"""`Effort`: what the winches do for a pose."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.simulation import Simulation
+
+
+class EffortKind(StrEnum):
+    """What is kept small."""
+
+    CONTRACTION = "contraction"
+    TENSION = "tension"
+    SLACK = "slack"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effort(Objective):
+    """Squared contractions, tensions or slack lengths, against co-contraction and loose cables (E18).
+
+    Attributes:
+        of: what is kept small.
+        weight: error, as a fraction of the body's size, that `scale` is worth.
+        scale: contraction or slack [m], or tension [N]; if left out, the travel of each winch, or 10 N.
+    """
+
+    of: EffortKind | str = EffortKind.CONTRACTION
+    weight: float = 1e-3
+    scale: float | None = None
+
+    def on(self, simulation: Simulation) -> Term:
+        """The wish on this robot.
+
+        Raises:
+            InputError: a kind that there is not, a weight below 0, or a scale not above 0.
+        """
+        try:
+            kind = EffortKind(self.of)
+        except ValueError:
+            raise InputError(f'effort of "{self.of}"? it may be of: {", ".join(EffortKind)}') from None
+        if not (np.isfinite(self.weight) and self.weight >= 0):
+            raise InputError(f"weight of an effort must be 0 or more, not {self.weight:g}")
+        if self.scale is not None and not (np.isfinite(self.scale) and self.scale > 0):
+            raise InputError(f"scale of an effort must be above 0, not {self.scale:g}")
+        robot = simulation.robot
+        travel = np.array([winch.travel for winch in robot.winches])
+        weight = self.weight * robot.body.mesh.size
+        if kind is EffortKind.TENSION:
+            return _Tension(weight / (self.scale or _TENSION))
+        if kind is EffortKind.SLACK:
+            return _Slack(weight / (self.scale or travel[simulation.cables.winches]))
+        return _Contraction(weight / (self.scale or travel))
+
+
+_TENSION = 10.0
+"""A pull that winches of small robots bear with ease [N]."""
+
+
+class _Contraction(Term):
+    def __init__(self, scale: float | np.ndarray) -> None:
+        self._scale = scale
+
+    def residual(self, posture: Posture) -> Rows:
+        return self._scale * posture.contractions
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        return np.diag(np.broadcast_to(self._scale, posture.contractions.shape))
+
+
+class _Tension(Term):
+    def __init__(self, scale: float) -> None:
+        self._scale = scale
+
+    def residual(self, posture: Posture) -> Rows:
+        return self._scale * posture.tensions
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        return self._scale * moves.tensions
+
+
+class _Slack(Term):
+    def __init__(self, scale: float | np.ndarray) -> None:
+        self._scale = scale
+
+    def residual(self, posture: Posture) -> Rows:
+        return self._scale * np.minimum(posture.stretches, 0.0)
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        scale = np.broadcast_to(self._scale, posture.stretches.shape)
+        return np.where(posture.stretches < 0, scale, 0.0)[:, None] * moves.stretches

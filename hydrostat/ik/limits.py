@@ -1,0 +1,140 @@
+"""`Limits`: how far, how fast and how hard winches may pull."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What the winches may do (E18), beside their travel and release.
+
+    Attributes:
+        contraction: least and largest contraction of a winch [m], in place of -release and travel.
+        rate: fastest change of a contraction [m/s], of every winch or by name; counted from the start.
+        interval: the time that a change from the start may take [s]; needed with a rate.
+        tension: largest tension of a cable [N], of every winch's cables or by the winch's name.
+        equal: groups of winches that have one contraction.
+    """
+
+    contraction: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    rate: float | Mapping[str, float] | None = None
+    interval: float | None = None
+    tension: float | Mapping[str, float] | None = None
+    equal: Sequence[Sequence[str]] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Limits on one robot. A channel is a winch, or a group of winches of one contraction.
+
+    Attributes:
+        low: least contraction of each channel [m].
+        high: largest contraction of each channel [m].
+        tension: the most that each cable bears [N]; infinite without a limit.
+        reach: how far each channel may be from where it starts [m]; infinite without a limit.
+        channels: which channel each winch follows.
+        spread: 1 where a winch follows a channel.
+        cables: which channel each cable follows.
+    """
+
+    low: Vector
+    high: Vector
+    tension: Vector
+    reach: Vector
+    channels: np.ndarray
+    spread: Float[np.ndarray, "winches channels"]
+    cables: np.ndarray
+
+    def channel(self, contractions: Vector) -> Vector:
+        """Contractions of the channels, from those of the winches: the mean of a group, within the limits."""
+        means = self.spread.T @ contractions / self.spread.sum(axis=0)
+        return np.clip(means, self.low, self.high)
+
+
+def bounds(simulation: Simulation, limits: Limits) -> Bounds:
+    """Limits on one robot.
+
+    Raises:
+        InputError: a winch that it does not have, an empty range, a rate or tension not above 0, a rate without an
+            interval, a winch in two groups.
+    """
+    robot = simulation.robot
+    channels = _groups(robot, limits.equal)
+    count = channels.max(initial=-1) + 1
+    spread = np.zeros((len(channels), count))
+    spread[np.arange(len(channels)), channels] = 1.0
+    low, high = _ranges(robot, limits.contraction)
+    largest = _by_winch(robot, limits.tension, "tension", "N")
+    reach = _by_winch(robot, limits.rate, "rate", "m/s")
+    if limits.rate is not None:
+        if limits.interval is None or not limits.interval > 0:
+            raise InputError("a limit on the rate needs an interval above 0 s, the time since the start")
+        reach = reach * limits.interval
+    found = Bounds(
+        low=np.array([low[channels == channel].max() for channel in range(count)]),
+        high=np.array([high[channels == channel].min() for channel in range(count)]),
+        tension=largest[simulation.cables.winches],
+        reach=np.array([reach[channels == channel].min() for channel in range(count)]),
+        channels=channels,
+        spread=spread,
+        cables=channels[simulation.cables.winches],
+    )
+    for channel in np.flatnonzero(found.low > found.high):
+        names = ", ".join(winch.name for winch, own in zip(robot.winches, channels, strict=True) if own == channel)
+        raise InputError(f"no contraction of {names} is within all of its limits; widen them")
+    return found
+
+
+def _groups(robot: Robot, equal: Sequence[Sequence[str]]) -> np.ndarray:
+    """Channel of each winch, numbered in the order of the winches."""
+    group = {winch.name: number for number, winch in enumerate(robot.winches)}
+    order = dict(group)
+    seen: set[str] = set()
+    for names in equal:
+        if isinstance(names, str):
+            raise InputError(f'equal must be groups of winches, such as [["left", "right"]], not "{names}"')
+        for name in names:
+            robot.winch(name)
+            if name in seen:
+                raise InputError(f'winch "{name}" is in two groups of equal contraction; join them')
+            seen.add(name)
+        first = min((order[name] for name in names), default=0)
+        group.update(dict.fromkeys(names, first))
+    return np.unique(list(group.values()), return_inverse=True)[1] if group else np.zeros(0, dtype=np.int64)
+
+
+def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vector, Vector]:
+    ranges = {winch.name: (-winch.release, winch.travel) for winch in robot.winches}
+    for name, (low, high) in given.items():
+        robot.winch(name)
+        if not (np.isfinite([low, high]).all() and low <= high):
+            raise InputError(
+                f'contraction of winch "{name}" must lie between two numbers [m], not {low:g} and {high:g}'
+            )
+        ranges[name] = (low, high)
+    values = np.array(list(ranges.values()), dtype=float).reshape(-1, 2)
+    return values[:, 0], values[:, 1]
+
+
+def _by_winch(robot: Robot, given: float | Mapping[str, float] | None, what: str, unit: str) -> Vector:
+    """A number for each winch, infinite where none is given."""
+    if given is None:
+        return np.full(len(robot.winches), np.inf)
+    if isinstance(given, Mapping):
+        for name in given:
+            robot.winch(name)
+        values = [given.get(winch.name, np.inf) for winch in robot.winches]
+    else:
+        values = [given] * len(robot.winches)
+    for value in values:
+        if not value > 0:
+            raise InputError(f"a limit on the {what} must be above 0 {unit}, not {value:g}")
+    return np.array(values, dtype=float)
