@@ -48,10 +48,10 @@ class MarkerGoal(Objective):
         places = np.array([_place(robot, name) for name in names]).reshape(-1, dim)
         scales = np.array([_weight(name, self.weights.get(name, 1.0)) for name in names]).reshape(-1)
         held = np.array([_held(name, self.free.get(name, ""), dim) for name in names], dtype=bool).reshape(-1, dim)
-        return MarkerTerm(names, locate(robot.body.mesh, places), goals, scales, held)
+        return _Markers(names, locate(robot.body.mesh, places), goals, scales, held)
 
 
-class MarkerTerm(Term):
+class _Markers(Term):
     """Marker goals on one robot."""
 
     def __init__(

@@ -24,14 +24,15 @@ class ReachedPose:
     """The best pose that the winches can make.
 
     Attributes:
-        target: what was asked for.
+        target: what was asked for; no targets if objectives alone were.
         pose: the equilibrium found; its `contractions` are the answer.
-        errors: distance of each targeted marker from its target [m].
+        errors: what is left of each goal, such as the distance of a marker from its target [m].
         reason: why the search ended.
         iterations: Gauss-Newton steps taken.
-        solves: equilibria computed.
-        optimality: how much the length of the residual (marker errors and effort) would still fall for each metre
-            that one winch moves, as far as it may [m/m]; near 0 at an optimum, but not where a pose is reached.
+        solves: equilibria approached.
+        optimality: how much the length of the residual would still fall for each metre that one channel moves, as far
+            as it may [m/m]; near 0 at an optimum, but not where a pose is reached.
+        held: the limits that keep it from coming nearer, in words.
     """
 
     target: Pose
@@ -41,8 +42,9 @@ class ReachedPose:
     iterations: int
     solves: int
     optimality: float = 0.0
+    held: tuple[str, ...] = ()
 
     @property
     def rms_error(self) -> float:
-        """Root of the mean squared distance over the targeted markers [m]."""
-        return float(np.sqrt(np.mean(np.square(list(self.errors.values())))))
+        """Root of the mean squared error over the goals [m]."""
+        return float(np.sqrt(np.mean(np.square(list(self.errors.values()))))) if self.errors else 0.0

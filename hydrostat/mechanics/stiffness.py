@@ -61,6 +61,11 @@ class Stiffness:
         """Whether K alone is positive definite."""
         return self._factors.definite
 
+    def response(self, weights: Small) -> Columns:
+        """How x moves when each column's spring is taken in by 1 m, were D these weights: -H^-1 G D."""
+        inner = np.eye(len(weights)) + weights @ self.compliance
+        return -self.moves @ np.linalg.solve(inner, weights)
+
     def solve_body(self, right: Float[np.ndarray, " dofs"]) -> Float[np.ndarray, " dofs"]:
         """Solution of K x = right."""
         return self._factors.solve(right)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil
 
 import numpy as np
@@ -13,6 +13,7 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, Stiffness, WeightEnergy, minimise
 from hydrostat.robot import Robot
+from hydrostat.simulation.adjoint import Sensitivity, sensitivity
 from hydrostat.simulation.build import body_energies, cable_energy, friction_energy, round_off, warp
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.friction_path import FrictionPath
@@ -98,7 +99,7 @@ class Simulation:
                 f"(force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
                 result,
             )
-        return self._solved(goal, result, slips)
+        return self.posed(goal, result, slips)
 
     def _check_start(self, start: SolvedPose | None) -> None:
         shape = self.robot.body.mesh.nodes.shape
@@ -117,22 +118,56 @@ class Simulation:
         """
         if self._path is not None:
             return self._path.moves(pose).reshape(*pose.nodes.shape, -1)
+        right = -self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
+        return self.response(pose, right).reshape(*pose.nodes.shape, -1)
+
+    def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
+        """Slopes of a number L of an equilibrium by contractions, slack, routes and material, with one solve (E16).
+
+        Args:
+            pose: an equilibrium.
+            nodes: dL / d nodes at fixed tensions.
+            tensions: dL / d tensions; none if left out.
+
+        Raises:
+            InputError: a cable with friction, whose pose depends on the way there; cotangents of a wrong shape.
+            NotConvergedError: as for `jacobian`.
+        """
+        if self.friction is not None:
+            raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
+        return sensitivity(
+            self.robot,
+            self.assembly,
+            self.cables,
+            pose,
+            nodes=nodes,
+            tensions=tensions,
+            response=partial(self.response, pose),
+        )
+
+    def response(
+        self, pose: SolvedPose, forces: Float[np.ndarray, "dofs columns"]
+    ) -> Float[np.ndarray, "dofs columns"]:
+        """How the nodes move under small forces at an equilibrium, cables without friction: H u = f, full Hessian.
+
+        Raises:
+            NotConvergedError: the Hessian is singular there: the pose is about to snap.
+        """
         stiffness = self.stiffness(pose)
         if stiffness.singular:
             raise NotConvergedError(
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
-        right = -self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
-        moves = stiffness.solve(right)
+        moves = stiffness.solve(forces)
         for _ in range(_REFINEMENTS):  # the factors may be those of a state close by
-            missing = right - self.assembly.hessian_product(pose.nodes, pose.contractions, moves)
-            if np.abs(missing).max(initial=0.0) <= 1e-11 * np.abs(right).max(initial=0.0):
+            missing = forces - self.assembly.hessian_product(pose.nodes, pose.contractions, moves)
+            if np.abs(missing).max(initial=0.0) <= 1e-11 * np.abs(forces).max(initial=0.0):
                 break
             moves += stiffness.solve(missing)
         else:
             stiffness = self.assembly.stiffness(pose.nodes, pose.contractions)
-            moves = stiffness.solve(right)
-        return moves.reshape(*pose.nodes.shape, -1)
+            moves = stiffness.solve(forces)
+        return moves
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
@@ -225,6 +260,15 @@ class Simulation:
         return self._known_stiffness(pose) or self.assembly.stiffness(pose.nodes, pose.contractions)
 
     @cached_property
+    def rest(self) -> SolvedPose:
+        """The pose without contractions: where gravity leaves the body.
+
+        Raises:
+            NotConvergedError: as for `solve`.
+        """
+        return self.solve(np.zeros(len(self.robot.winches)))
+
+    @cached_property
     def _rest_stiffness(self) -> Stiffness:
         """The Hessian at rest."""
         return self.assembly.stiffness(self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches)))
@@ -238,7 +282,7 @@ class Simulation:
         rest, idle = self.robot.body.mesh.nodes, np.zeros_like(goal)
         begin = start.nodes if start else rest
         known = self._known_stiffness(start) if start else self._rest_stiffness
-        direct = result = self._minimise(begin, goal, known, iterations=_DIRECT_ITERATIONS)
+        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS)
         spent = result.iterations
         if not result.converged and start and (start.contractions != goal).any():
             result = self._in_steps(begin, start.contractions, goal, known)
@@ -247,7 +291,7 @@ class Simulation:
             result = self._in_steps(rest, idle, goal, self._rest_stiffness, from_rest=True)
             spent += result.iterations
         if not result.converged:
-            result = self._minimise(rest, goal, self._rest_stiffness)
+            result = self.relax(rest, goal, self._rest_stiffness)
             spent += result.iterations
             result = min(result, direct, key=lambda found: found.residual)
         return replace(result, iterations=spent)
@@ -267,7 +311,7 @@ class Simulation:
             iterations, tolerance = (None, None) if last else (_DIRECT_ITERATIONS, _LOOSE)
             controls = goal if last else begin + share * (goal - begin)
             assembly = self._lighter(share) if from_rest else self.assembly
-            result = self._minimise(
+            result = self.relax(
                 nodes, controls, stiffness, iterations=iterations, tolerance=tolerance, assembly=assembly
             )
             spent += result.iterations
@@ -290,7 +334,7 @@ class Simulation:
         ]
         return self.assembly.with_energies(energies)
 
-    def _minimise(
+    def relax(
         self,
         nodes: Nodes,
         contractions: Vector,
@@ -300,7 +344,17 @@ class Simulation:
         tolerance: float | None = None,
         assembly: Assembly | None = None,
     ) -> NewtonResult:
-        """Newton with the simulation's options and physics, or fewer iterations, a looser tolerance, another load."""
+        """Newton from some nodes on, for those who follow a pose step by step; `solve` is what others want.
+
+        Args:
+            nodes: where to begin [m].
+            contractions: cable taken in by each winch [m].
+            stiffness: the Hessian near there, such as that of the last result; then the first step is the prediction
+                dx/da and costs no factorisation.
+            iterations: most steps, if fewer than the simulation's options allow.
+            tolerance: if looser than theirs.
+            assembly: other physics on the same nodes.
+        """
         options = self.options
         if iterations is not None:
             options = replace(options, iterations=min(iterations, options.iterations))
@@ -317,7 +371,8 @@ class Simulation:
             stiffness=stiffness,
         )
 
-    def _solved(self, contractions: Vector, result: NewtonResult, slips: Vector) -> SolvedPose:
+    def posed(self, contractions: Vector, result: NewtonResult, slips: Vector | None = None) -> SolvedPose:
+        """What Newton found, as a pose."""
         positions = self.marker_anchors.positions(result.nodes)
         pose = SolvedPose(
             contractions=contractions,
@@ -326,7 +381,7 @@ class Simulation:
             tensions=self.tensions(result.nodes, contractions, slips),
             energy=result.energy,
             result=replace(result, stiffness=None),
-            slips=slips,
+            slips=np.zeros(0) if slips is None else slips,
         )
         self._last = None if result.stiffness is None else (pose, result.stiffness)
         return pose

@@ -1,0 +1,132 @@
+"""`LinearModel`: what contractions do near a state, where cables may be slack."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.ik.least_squares import least_squares
+from hydrostat.ik.limits import Bounds
+from hydrostat.ik.objective import Moves, Posture
+from hydrostat.mechanics import Stiffness
+from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, eq=False)
+class Channels:
+    """Where the contractions of a model begin.
+
+    Attributes:
+        gaps: what a slack channel takes in, without any effect, before its first cable is taut [m].
+        first: that cable, of each channel; the tautest one where it pulls already.
+        active: whether it has a cable that can become taut within the limits.
+    """
+
+    gaps: Vector
+    first: np.ndarray
+    active: np.ndarray
+
+
+def channels(posture: Posture, values: Vector, bounds: Bounds) -> Channels:
+    """How far each channel is from pulling, at contractions `values` of the channels [m]."""
+    count = len(values)
+    first = np.zeros(count, dtype=np.int64)
+    gaps = np.full(count, np.inf)
+    for channel in range(count):
+        own = np.flatnonzero(bounds.cables == channel)
+        if own.size:
+            first[channel] = own[np.argmax(posture.stretches[own])]
+            gaps[channel] = max(-posture.stretches[first[channel]], 0.0)
+    return Channels(gaps, first, gaps <= bounds.high - values)
+
+
+def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut: np.ndarray) -> Moves:
+    """Derivatives with respect to contractions, by the implicit function theorem: H dx/da = -d2E/dx da (R33, E16).
+
+    A slack cable has none (E15); those in `taut` are taken as if they had just become taut.
+    """
+    cables = simulation.cables
+    tangents = cables.law.tangent(posture.stretches)
+    tangents[taut] = np.maximum(tangents, cables.law.tangent(0.5 * cables.law.smoothing))[taut]
+    follows = np.zeros((len(cables.winches), len(simulation.robot.winches)))
+    follows[np.arange(len(cables.winches)), cables.winches] = 1.0
+    moves = stiffness.response(np.diag(tangents)) @ follows
+    stretches = follows + stiffness.columns.T @ moves
+    return Moves(
+        nodes=moves.reshape(*posture.nodes.shape, -1), stretches=stretches, tensions=tangents[:, None] * stretches
+    )
+
+
+class LinearModel:
+    """Residuals and tensions to first order, and the step that promises most.
+
+    The unknowns are the contractions of the channels, each beginning where its first cable is taut. A cable cannot push,
+    so the tension of that cable must not fall below 0: a channel that would have to push follows instead with tension
+    0, which is what a slack one does to the body. So one bounded problem knows who joins and who lets go (E15).
+    """
+
+    def __init__(
+        self,
+        posture: Posture,
+        residual: Float[np.ndarray, " rows"],
+        matrix: Float[np.ndarray, "rows channels"],
+        tensions: Float[np.ndarray, "cables channels"],
+        places: Channels,
+        bounds: Bounds,
+        values: Vector,
+    ) -> None:
+        """Residual and its slopes, slopes of tensions, and limits at contractions `values` of the channels."""
+        self.residual, self.matrix, self.places, self.bounds, self.values = residual, matrix, places, bounds, values
+        self._pulls = posture.tensions[places.first], tensions[places.first]
+        limited = np.isfinite(bounds.tension)
+        self._tensions = posture.tensions[limited], tensions[limited], bounds.tension[limited]
+        self.active = places.active
+        self.range = np.maximum(bounds.high - bounds.low, np.finfo(float).tiny)
+
+    def best(self, effort: Vector, radius: float) -> tuple[Vector, float]:
+        """The step of the channels [m] of least residual and effort, and by how much it lowers half their squares.
+
+        Args:
+            effort: residual [m] that one metre of contraction of each channel is worth.
+            radius: largest step, as a share of each channel's range.
+        """
+        active = self.active
+        scale = self.range[active]
+        matrix = np.vstack([self.matrix[:, active] * scale, np.diag(effort[active] * scale)])
+        right = np.concatenate([self.residual, (effort * self.values)[active]])
+        limits, room = self._limits(radius)
+        step = least_squares(matrix, -right, limits * scale, room)
+        if step is None:
+            step = least_squares(matrix, -right, limits * scale, np.maximum(room, 0.0))
+        full = np.zeros_like(self.values)
+        if step is None:
+            return full, 0.0
+        after = right + matrix @ step
+        full[active] = scale * step
+        return full, 0.5 * float(right @ right - after @ after)
+
+    def applied(self, step: Vector) -> Vector:
+        """Contractions of the channels after a step; those that it leaves slack stay as they are [m]."""
+        pulls, slopes = self._pulls
+        slack = (self.places.gaps > 0) & (pulls + slopes @ step <= 1e-9 * (np.abs(slopes) @ self.range))
+        moved = self.active & ~slack
+        ends = self.values + np.where(moved, step + np.where(moved, self.places.gaps, 0.0), 0.0)
+        return np.clip(ends, self.bounds.low, self.bounds.high)
+
+    def _limits(self, radius: float) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and room of all limits on the step of the active channels [m], [N]."""
+        active, bounds = self.active, self.bounds
+        begin = self.values[active] + self.places.gaps[active]
+        reach = radius * self.range[active]
+        eye = np.eye(int(active.sum()))
+        pulls, slopes = self._pulls
+        tensions, rises, largest = self._tensions
+        rows = [eye, -eye, -slopes[np.ix_(active, active)], rises[:, active]]
+        room = [
+            np.minimum(bounds.high[active] - begin, reach),
+            np.minimum(begin - bounds.low[active], reach),
+            pulls[active],
+            largest - tensions,
+        ]
+        return np.vstack(rows), np.concatenate(room)
