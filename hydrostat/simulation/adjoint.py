@@ -1,0 +1,181 @@
+"""`sensitivity`: how a number that depends on a pose changes with all that the robot is made of, by the adjoint."""
+
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.mechanics import Assembly, CableEnergy, Energy, NeoHookean, PinEnergy, WeightEnergy
+from hydrostat.mechanics.patch_volume import PatchVolume
+from hydrostat.robot import Material, Robot
+from hydrostat.simulation.route_points import RoutePoints, route_points
+from hydrostat.simulation.solved_pose import SolvedPose
+
+Response = Callable[[Float[np.ndarray, "dofs columns"]], Float[np.ndarray, "dofs columns"]]
+"""Solution of H u = forces at the pose."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sensitivity:
+    """Slopes of a number L of a pose, in units of L for each unit of what changes.
+
+    Attributes:
+        contractions: of each winch [1/m].
+        slack: of each cable [1/m].
+        routes: by the rest position of each point, of each cable [1/m]; both its place in the body and the rest
+            lengths beside it change. The first point of a cable of a winch in the world moves in space.
+        cable_stiffness: of each cable [m/N].
+        pin_stiffness: of each pin [m/N].
+        young: Young's modulus [1/Pa].
+        poisson: Poisson's ratio [-].
+        density: by way of the weight; 0 without gravity [m^3/kg].
+        thickness: of a flat body [1/m]; None in space.
+    """
+
+    contractions: Vector
+    slack: Vector
+    routes: tuple[Points, ...]
+    cable_stiffness: Vector
+    pin_stiffness: Vector
+    young: float
+    poisson: float
+    density: float
+    thickness: float | None
+
+
+def sensitivity(
+    robot: Robot,
+    assembly: Assembly,
+    cables: CableEnergy,
+    pose: SolvedPose,
+    *,
+    nodes: Nodes,
+    tensions: Vector | None,
+    response: Response,
+) -> Sensitivity:
+    """Slopes of L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, for all theta with one solve.
+
+    A tension is T(s) with s = l(x) - l(X) + a - slack: what is given by tensions adds dL/dT T' dl/dx to dL/dx, and
+    dL/dT dT/dtheta to the slopes.
+
+    Args:
+        robot: whose pose it is.
+        assembly: its energies.
+        cables: those of its cables.
+        pose: an equilibrium.
+        nodes: dL/dx at fixed tensions.
+        tensions: dL/dT of each cable; none if left out.
+        response: solves with the full Hessian at the pose.
+
+    Raises:
+        InputError: cotangents of a wrong shape or not finite.
+    """
+    nodes = _checked("nodes", nodes, assembly.shape)
+    tensions = _checked("tensions", np.zeros(len(robot.cables)) if tensions is None else tensions, pose.tensions.shape)
+    stretches = cables.stretches(pose.nodes, pose.contractions)
+    tangents, pulls = cables.law.tangent(stretches), cables.law.tension(stretches)
+    columns = cables.columns(pose.nodes)
+    right = nodes.ravel() + columns @ (tangents * tensions)
+    field = response(right[:, None])[:, 0]
+    by_tension = tensions - columns.T @ field
+    by_stretch = tangents * by_tension
+    field = field.reshape(assembly.shape)
+    points = route_points(robot)
+    return Sensitivity(
+        contractions=np.bincount(cables.winches, by_stretch, len(robot.winches)),
+        slack=-by_stretch,
+        routes=points.by_cable(_by_routes(points, cables, pose.nodes, field, by_stretch, pulls)),
+        cable_stiffness=by_tension * pulls / cables.law.stiffness,
+        pin_stiffness=_by_pins(robot, assembly, pose.nodes, field),
+        **_by_body(robot, assembly, pose, field),
+    )
+
+
+def _checked(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    values = np.asarray(given, dtype=float)
+    if values.shape != shape or not np.isfinite(values).all():
+        raise InputError(f"the cotangent of {name} must be finite numbers of shape {shape}, not of {values.shape}")
+    return values
+
+
+def _work(energy: Energy, pose: SolvedPose, field: Nodes) -> float:
+    """Work of the forces of an energy along a field, dE/dx . u."""
+    return float((energy.gradient(pose.nodes, pose.contractions) * field[energy.stencils]).sum())
+
+
+def _by_body(robot: Robot, assembly: Assembly, pose: SolvedPose, field: Nodes) -> dict[str, float | None]:
+    """By material and thickness: the forces are linear in mu, lambda, density and thickness."""
+    body = robot.body
+    solids = [energy for energy in assembly.energies if isinstance(energy, NeoHookean | PatchVolume)]
+    weights = [energy for energy in assembly.energies if isinstance(energy, WeightEnergy)]
+    shear = sum(_work(_with_moduli(energy, 1.0, 0.0), pose, field) for energy in solids)
+    # With volume = "patch" lambda acts in the patches alone, so the body's own forces must not be counted with it.
+    holders = [energy for energy in solids if isinstance(energy, PatchVolume)] or solids
+    squeeze = sum(_work(_with_moduli(energy, 0.0, 1.0), pose, field) for energy in holders)
+    weight = sum(_work(energy, pose, field) for energy in weights)
+    (mu_by_young, lame_by_young), (mu_by_poisson, lame_by_poisson) = _lame_slopes(body.material)
+    mu, lame = body.material.lame
+    whole = mu * shear + lame * squeeze + weight
+    return {
+        "young": -(mu_by_young * shear + lame_by_young * squeeze),
+        "poisson": -(mu_by_poisson * shear + lame_by_poisson * squeeze),
+        "density": -weight / body.material.density,
+        "thickness": None if body.thickness is None else -whole / body.thickness,
+    }
+
+
+def _with_moduli(energy: NeoHookean | PatchVolume, mu: float, lame: float) -> Energy:
+    other = copy(energy)
+    other.lame = lame
+    if isinstance(other, NeoHookean):
+        other.mu = mu
+    return other
+
+
+def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Slopes of mu and lambda by Young's modulus, and by Poisson's ratio [Pa]."""
+    young, poisson = material.young, material.poisson
+    mu, lame = material.lame
+    product = (1 + poisson) * (1 - 2 * poisson)
+    return (mu / young, lame / young), (-mu / (1 + poisson), young * (1 + 2 * poisson**2) / product**2)
+
+
+def _by_pins(robot: Robot, assembly: Assembly, nodes: Nodes, field: Nodes) -> Vector:
+    """By the stiffness of each whole pin, which all that it holds share."""
+    energy = next(energy for energy in assembly.energies if isinstance(energy, PinEnergy))
+    counts = [len(pin.anchors(robot.body.mesh).stencils) for pin in robot.pins]
+    works = (energy.gradient(nodes, np.zeros(0)) * field[energy.stencils]).sum(axis=(1, 2))
+    owners = np.repeat(np.arange(len(counts)), counts)
+    return -np.bincount(owners, works, len(counts)) / np.array([pin.stiffness for pin in robot.pins])
+
+
+def _by_routes(
+    points: RoutePoints, cables: CableEnergy, nodes: Nodes, field: Nodes, by_stretch: Vector, pulls: Vector
+) -> Points:
+    """By the rest position of every point of every cable.
+
+    A segment with span d, at rest D, has the length l = sqrt(d^2 + r^2), at rest L, with r in proportion to |D|: all
+    of these move, and so does the part of the field along it, q = e . d / l with e the difference of the field between
+    its ends. The slope is that of by_stretch (l - L) - T q.
+    """
+    spans = points.spans(points.positions(nodes))
+    rests = points.spans(points.rests)
+    moves = points.spans(points.values(field))
+    square = cables.roundings**2
+    lengths, rest_lengths = (np.sqrt((part**2).sum(axis=1) + square) for part in (spans, rests))
+    units = spans / lengths[:, None]
+    along = (moves * units).sum(axis=1)
+    lever, pull = by_stretch[points.cables], pulls[points.cables]
+    by_span = (lever + pull * along / lengths)[:, None] * units - (pull / lengths)[:, None] * moves
+    rounded = square / lengths * (lever + pull * along / lengths)
+    tiny = np.finfo(float).tiny
+    by_rest = ((rounded - lever * rest_lengths) / np.maximum((rests**2).sum(axis=1), tiny))[:, None] * rests
+    return (
+        points.pulled_back(nodes, points.gathered(by_span))
+        + points.held_back(points.gathered(by_rest))
+        - points.values_pulled_back(field, points.gathered(pull[:, None] * units))
+    )

@@ -1,0 +1,124 @@
+"""`RoutePoints`: the points of all cables of a robot, and how they move with their places in the rest shape."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Nodes, Points
+from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot import Mount, Robot
+
+
+@dataclass(frozen=True, eq=False)
+class RoutePoints:
+    """Via points, cable after cable.
+
+    In an element x(X) is linear, so a point that is moved in the rest shape moves by F in the pose. On the border of
+    elements F jumps; it is then that of the element by which the point is held. A point outside the body is held at
+    the nearest place of it, which moves only along the facet, the edge or not at all where it is a corner.
+
+    Attributes:
+        places: in the rest shape, as asked for [m].
+        rests: where they are in it: at their places, but for those outside the body [m].
+        anchors: what holds them.
+        world: which of them are fixed in space.
+        ways: how the place that holds a point moves with it: the identity inside the body.
+        shape_gradients: of the weights in the rest shape [1/m].
+        starts: first point of each bare segment, in the order of the terms of a `CableEnergy`.
+        cables: which cable each bare segment belongs to.
+        counts: how many points each cable has.
+    """
+
+    places: Points
+    rests: Points
+    anchors: Anchors
+    world: Bool[np.ndarray, " points"]
+    ways: Float[np.ndarray, "points dim dim"]
+    shape_gradients: Float[np.ndarray, "points corners dim"]
+    starts: Int[np.ndarray, " segments"]
+    cables: Int[np.ndarray, " segments"]
+    counts: tuple[int, ...]
+
+    def positions(self, nodes: Nodes) -> Points:
+        """Where the points are when the nodes are at `nodes` [m]."""
+        return np.where(self.world[:, None], self.places, self.anchors.positions(nodes))
+
+    def values(self, field: Nodes) -> Points:
+        """A field of displacements at the points; 0 where they are fixed in space."""
+        return np.where(self.world[:, None], 0.0, self.anchors.positions(field))
+
+    def pulled_back(self, nodes: Nodes, slopes: Points) -> Points:
+        """Slopes by the positions in the pose, as slopes by the places in the rest shape: F^T times them."""
+        back = self._through(nodes, slopes)
+        return np.where(self.world[:, None], slopes, back)
+
+    def values_pulled_back(self, field: Nodes, slopes: Points) -> Points:
+        """Slopes by `values` of a field, as slopes by the places in the rest shape."""
+        return np.where(self.world[:, None], 0.0, self._through(field, slopes))
+
+    def held_back(self, slopes: Points) -> Points:
+        """Slopes by the positions at rest, as slopes by the places asked for."""
+        held = np.einsum("pij,pi->pj", self.ways, slopes)
+        return np.where(self.world[:, None], slopes, held)
+
+    def spans(self, positions: Points) -> Float[np.ndarray, "segments dim"]:
+        """From end to end of each bare segment."""
+        return positions[self.starts + 1] - positions[self.starts]
+
+    def gathered(self, slopes: Float[np.ndarray, "segments dim"]) -> Points:
+        """Slopes by the spans, as slopes by the points."""
+        total = np.zeros((len(self.places), slopes.shape[1]))
+        np.add.at(total, self.starts + 1, slopes)
+        np.subtract.at(total, self.starts, slopes)
+        return total
+
+    def by_cable(self, rows: Points) -> tuple[Points, ...]:
+        """The rows of each cable."""
+        return tuple(np.split(rows, np.cumsum(self.counts)[:-1])) if self.counts else ()
+
+    def _through(self, field: Nodes, slopes: Points) -> Points:
+        gradients = np.einsum("pci,pcj->pij", field[self.anchors.stencils], self.shape_gradients)
+        return np.einsum("pij,pi,pjk->pk", gradients, slopes, self.ways)
+
+
+def route_points(robot: Robot) -> RoutePoints:
+    """The points of all cables of a robot."""
+    mesh, cables = robot.body.mesh, robot.cables
+    counts = tuple(len(cable.points) for cable in cables)
+    first = np.cumsum([0, *counts])[:-1]
+    places = np.array([point for cable in cables for point in cable.points]).reshape(-1, mesh.dim)
+    anchors = locate(mesh, places)
+    world = np.zeros(len(places), dtype=bool)
+    for start, cable in zip(first, cables, strict=True):
+        world[start] = robot.winch(cable.winch).mount is Mount.WORLD
+    bare = [np.flatnonzero(cable.bare) for cable in cables]
+    none = np.zeros(0, dtype=np.int64)
+    return RoutePoints(
+        places=places,
+        rests=np.where(world[:, None], places, anchors.positions(mesh.nodes)),
+        anchors=anchors,
+        world=world,
+        ways=_ways(mesh, anchors),
+        shape_gradients=_shape_gradients(mesh, anchors),
+        starts=np.concatenate([none, *(start + own for start, own in zip(first, bare, strict=True))]),
+        cables=np.repeat(np.arange(len(cables)), [len(own) for own in bare]),
+        counts=counts,
+    )
+
+
+def _shape_gradients(mesh: Mesh, anchors: Anchors) -> Float[np.ndarray, "points corners dim"]:
+    corners = mesh.nodes[anchors.stencils]
+    inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
+    return np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
+
+
+def _ways(mesh: Mesh, anchors: Anchors) -> Float[np.ndarray, "points dim dim"]:
+    """Outside the body: the projection onto the plane or line of the corners that carry a weight."""
+    ways = np.tile(np.eye(mesh.dim), (len(anchors.stencils), 1, 1))
+    for outside in np.flatnonzero(~anchors.inside):
+        corners = mesh.nodes[anchors.stencils[outside][anchors.weights[outside] > 0]]
+        along = np.linalg.qr((corners[1:] - corners[0]).T)[0]
+        ways[outside] = along @ along.T
+    return ways
