@@ -85,13 +85,17 @@ def sensitivity(
     by_stretch = tangents * by_tension
     field = field.reshape(assembly.shape)
     points = route_points(robot)
+    young, poisson, density, thickness = _by_body(robot, assembly, pose, field)
     return Sensitivity(
         contractions=np.bincount(cables.winches, by_stretch, len(robot.winches)),
         slack=-by_stretch,
         routes=points.by_cable(_by_routes(points, cables, pose.nodes, field, by_stretch, pulls)),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
         pin_stiffness=_by_pins(robot, assembly, pose.nodes, field),
-        **_by_body(robot, assembly, pose, field),
+        young=young,
+        poisson=poisson,
+        density=density,
+        thickness=thickness,
     )
 
 
@@ -107,8 +111,13 @@ def _work(energy: Energy, pose: SolvedPose, field: Nodes) -> float:
     return float((energy.gradient(pose.nodes, pose.contractions) * field[energy.stencils]).sum())
 
 
-def _by_body(robot: Robot, assembly: Assembly, pose: SolvedPose, field: Nodes) -> dict[str, float | None]:
-    """By material and thickness: the forces are linear in mu, lambda, density and thickness."""
+def _by_body(
+    robot: Robot, assembly: Assembly, pose: SolvedPose, field: Nodes
+) -> tuple[float, float, float, float | None]:
+    """By Young's modulus, Poisson's ratio, density and thickness.
+
+    The forces are linear in Lame's parameters, in density and in thickness.
+    """
     body = robot.body
     solids = [energy for energy in assembly.energies if isinstance(energy, NeoHookean | PatchVolume)]
     weights = [energy for energy in assembly.energies if isinstance(energy, WeightEnergy)]
@@ -120,12 +129,12 @@ def _by_body(robot: Robot, assembly: Assembly, pose: SolvedPose, field: Nodes) -
     (mu_by_young, lame_by_young), (mu_by_poisson, lame_by_poisson) = _lame_slopes(body.material)
     mu, lame = body.material.lame
     whole = mu * shear + lame * squeeze + weight
-    return {
-        "young": -(mu_by_young * shear + lame_by_young * squeeze),
-        "poisson": -(mu_by_poisson * shear + lame_by_poisson * squeeze),
-        "density": -weight / body.material.density,
-        "thickness": None if body.thickness is None else -whole / body.thickness,
-    }
+    return (
+        -(mu_by_young * shear + lame_by_young * squeeze),
+        -(mu_by_poisson * shear + lame_by_poisson * squeeze),
+        -weight / body.material.density,
+        None if body.thickness is None else -whole / body.thickness,
+    )
 
 
 def _with_moduli(energy: NeoHookean | PatchVolume, mu: float, lame: float) -> Energy:
