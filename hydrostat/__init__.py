@@ -19,11 +19,22 @@ if TYPE_CHECKING:
     from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
     from hydrostat.mechanics import NewtonOptions
     from hydrostat.robot import Cable, Marker, Material, Pin, Pose, Robot, Winch, load_robot, save_robot
-    from hydrostat.simulation import Motion, Profile, Simulation, SolvedPose, StepOptions
+    from hydrostat.simulation import (
+        Branch,
+        Motion,
+        PathDependence,
+        Profile,
+        Simulation,
+        SolvedPose,
+        StepOptions,
+        follow_branch,
+        path_dependence,
+    )
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Branch",
     "Cable",
     "DesignOptions",
     "HydrostatError",
@@ -35,6 +46,7 @@ __all__ = [
     "Network",
     "NewtonOptions",
     "NotConvergedError",
+    "PathDependence",
     "PatternOptions",
     "Pin",
     "Pose",
@@ -48,12 +60,15 @@ __all__ = [
     "__version__",
     "design_cables",
     "export_kit",
+    "follow_branch",
     "load_robot",
+    "path_dependence",
     "save_robot",
     "solve_ik",
 ]
 
 _HOMES = {
+    "Branch": "simulation",
     "Cable": "robot",
     "DesignOptions": "design",
     "HydrostatError": "errors",
@@ -65,6 +80,7 @@ _HOMES = {
     "Network": "design",
     "NewtonOptions": "mechanics",
     "NotConvergedError": "errors",
+    "PathDependence": "simulation",
     "PatternOptions": "fabrication",
     "Pin": "robot",
     "Pose": "robot",
@@ -77,7 +93,9 @@ _HOMES = {
     "Winch": "robot",
     "design_cables": "design",
     "export_kit": "fabrication",
+    "follow_branch": "simulation",
     "load_robot": "robot",
+    "path_dependence": "simulation",
     "save_robot": "robot",
     "solve_ik": "ik",
 }

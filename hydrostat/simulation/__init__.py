@@ -1,26 +1,41 @@
 """The one bridge between robots and mechanics: `Simulation`."""
 
+from hydrostat.simulation.adjoint import Sensitivity
+from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.build import body_energies, cable_energy, round_off
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
+from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
+from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
 from hydrostat.simulation.pose_file import pose_facts, write_pose
 from hydrostat.simulation.profile import Profile, read_profile
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
 __all__ = [
+    "Branch",
+    "BranchOptions",
+    "BranchPoint",
+    "BranchReason",
     "Contractions",
+    "CriticalKind",
+    "CriticalPoint",
     "Dynamics",
+    "FoundPose",
     "Motion",
     "MotionTable",
+    "PathDependence",
     "PinShifts",
     "Profile",
+    "Sensitivity",
     "Simulation",
     "SolvedPose",
     "StepOptions",
     "body_energies",
     "cable_energy",
+    "follow_branch",
+    "path_dependence",
     "pose_facts",
     "read_profile",
     "round_off",
