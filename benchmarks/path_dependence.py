@@ -1,0 +1,58 @@
+"""Whether contractions alone decide the pose: every example at full travel and at random contractions (E20).
+
+    python benchmarks/path_dependence.py [--random 3] [--count 12] [--seed 0] [EXAMPLE ...]
+
+Each is approached in `count` ways; a way on which no stable equilibrium was found is counted as lost.
+"""
+
+import argparse
+import time
+
+from machine import machine
+
+import numpy as np  # isort: skip
+
+from robustness import EXAMPLES, example_folders
+
+from hydrostat.arrays import Vector
+from hydrostat.robot import load_robot
+from hydrostat.simulation import Simulation, path_dependence
+
+
+def row(folder: str, simulation: Simulation, name: str, contractions: Vector, count: int, seed: int) -> str:
+    """One line of the table."""
+    began = time.process_time()
+    found = path_dependence(simulation, contractions, count=count, seed=seed)
+    spent = time.process_time() - began
+    apart = "" if found.unique or not found.poses else f"{1e3 * found.largest[1]:.2f} at {found.largest[0]}"
+    shares = " + ".join(str(len(pose.ways)) for pose in found.poses)
+    size = 1e3 * simulation.robot.body.mesh.size
+    return (
+        f"| {folder} | {len(simulation.robot.body.mesh.nodes)} | {size:.0f} | {name} | {len(found.poses)} | {shares} "
+        f"| {len(found.lost)} | {apart} | {spent:.1f} |"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("examples", nargs="*", help="names of example folders; all if left out")
+    parser.add_argument("--random", type=int, default=3, help="random contractions of each example")
+    parser.add_argument("--count", type=int, default=12, help="ways to each contractions")
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    print(f"{machine()}; {options.count} ways to each contractions, seed {options.seed}, CPU time\n")
+    print("| example | nodes | size mm | contractions | poses | starts that led to each | lost | mm apart | CPU s |")
+    print("|---|---|---|---|---|---|---|---|---|", flush=True)
+    for name in options.examples or [folder.name for folder in example_folders()]:
+        simulation = Simulation(load_robot(EXAMPLES / name))
+        random = np.random.default_rng(options.seed)
+        low = np.array([-winch.release for winch in simulation.robot.winches])
+        high = np.array([winch.travel for winch in simulation.robot.winches])
+        goals = {"full travel": high}
+        goals |= {f"random {index + 1}": random.uniform(low, high) for index in range(options.random)}
+        for which, goal in goals.items():
+            print(row(name, simulation, which, goal, options.count, options.seed), flush=True)
+
+
+if __name__ == "__main__":
+    main()
