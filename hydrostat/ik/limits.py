@@ -1,7 +1,7 @@
 """`Limits`: how far, how fast and how hard winches may pull."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -57,6 +57,11 @@ class Bounds:
         """Contractions of the channels, from those of the winches: the mean of a group, within the limits."""
         means = self.spread.T @ contractions / self.spread.sum(axis=0)
         return np.clip(means, self.low, self.high)
+
+    def near(self, values: Vector) -> "Bounds":
+        """What can be reached from contractions of the channels [m] in time."""
+        low, high = np.maximum(self.low, values - self.reach), np.minimum(self.high, values + self.reach)
+        return replace(self, low=low, high=high)
 
 
 def bounds(simulation: Simulation, limits: Limits) -> Bounds:

@@ -9,7 +9,7 @@ from hydrostat.arrays import Vector
 from hydrostat.ik.least_squares import least_squares
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objective import Moves, Posture
-from hydrostat.mechanics import Stiffness
+from hydrostat.mechanics import Stiffness, TensionLaw
 from hydrostat.simulation import Simulation
 
 
@@ -19,26 +19,30 @@ class Channels:
 
     Attributes:
         gaps: what a slack channel takes in, without any effect, before its first cable is taut [m].
+        beyond: what a channel whose tension falls to 0 to first order lets out further, to be slack indeed [m].
         first: that cable, of each channel; the tautest one where it pulls already.
         active: whether it has a cable that can become taut within the limits.
     """
 
     gaps: Vector
+    beyond: Vector
     first: np.ndarray
     active: np.ndarray
 
 
-def channels(posture: Posture, values: Vector, bounds: Bounds) -> Channels:
-    """How far each channel is from pulling, at contractions `values` of the channels [m]."""
+def channels(law: TensionLaw, posture: Posture, values: Vector, bounds: Bounds) -> Channels:
+    """How far each channel is from pulling, or from not pulling, at contractions `values` of the channels [m]."""
     count = len(values)
     first = np.zeros(count, dtype=np.int64)
-    gaps = np.full(count, np.inf)
+    gaps, beyond = np.full(count, np.inf), np.zeros(count)
+    fall = posture.tensions / np.maximum(law.tangent(posture.stretches), np.finfo(float).tiny)
     for channel in range(count):
         own = np.flatnonzero(bounds.cables == channel)
         if own.size:
-            first[channel] = own[np.argmax(posture.stretches[own])]
-            gaps[channel] = max(-posture.stretches[first[channel]], 0.0)
-    return Channels(gaps, first, gaps <= bounds.high - values)
+            first[channel] = cable = own[np.argmax(posture.stretches[own])]
+            gaps[channel] = max(-posture.stretches[cable], 0.0)
+            beyond[channel] = max(posture.stretches[cable] - fall[cable], 0.0) + 0.01 * law.smoothing[cable]
+    return Channels(gaps, beyond, first, gaps <= bounds.high - values)
 
 
 def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut: np.ndarray) -> Moves:
@@ -47,8 +51,9 @@ def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut:
     A slack cable has none (E15); those in `taut` are taken as if they had just become taut.
     """
     cables = simulation.cables
-    tangents = cables.law.tangent(posture.stretches)
-    tangents[taut] = np.maximum(tangents, cables.law.tangent(0.5 * cables.law.smoothing))[taut]
+    loose = np.zeros(len(cables.winches), dtype=bool)
+    loose[taut] = posture.stretches[taut] <= 0
+    tangents = cables.law.tangent(np.where(loose, 0.5 * cables.law.smoothing, posture.stretches))
     follows = np.zeros((len(cables.winches), len(simulation.robot.winches)))
     follows[np.arange(len(cables.winches)), cables.winches] = 1.0
     moves = stiffness.response(np.diag(tangents)) @ follows
@@ -107,11 +112,17 @@ class LinearModel:
         return full, 0.5 * float(right @ right - after @ after)
 
     def applied(self, step: Vector) -> Vector:
-        """Contractions of the channels after a step; those that it leaves slack stay as they are [m]."""
+        """Contractions of the channels after a step [m]; slack ones that do not join stay as they are."""
+        places = self.places
         pulls, slopes = self._pulls
-        slack = (self.places.gaps > 0) & (pulls + slopes @ step <= 1e-9 * (np.abs(slopes) @ self.range))
-        moved = self.active & ~slack
-        ends = self.values + np.where(moved, step + np.where(moved, self.places.gaps, 0.0), 0.0)
+        slack = pulls + slopes @ step <= 1e-9 * (np.abs(slopes) @ self.range)
+        joins = self.active & ~slack & (places.gaps > 0)
+        leaves = self.active & slack & (places.gaps == 0)
+        stays = self.active & ~slack & (places.gaps == 0)
+        ends = self.values.copy()
+        ends[joins] += (step + places.gaps)[joins]
+        ends[leaves] += (step - places.beyond)[leaves]
+        ends[stays] += step[stays]
         return np.clip(ends, self.bounds.low, self.bounds.high)
 
     def _limits(self, radius: float) -> tuple[np.ndarray, np.ndarray]:

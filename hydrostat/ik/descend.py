@@ -1,0 +1,115 @@
+"""`descend`: from a state to the nearest optimum."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.ik.reached_pose import InverseReason
+from hydrostat.ik.search import Search, State
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Descent:
+    """Where a descent ended.
+
+    Attributes:
+        state: an equilibrium, the best within the limits.
+        reason: why.
+        iterations: steps tried.
+        weight: of the effort at the end.
+    """
+
+    state: State
+    reason: InverseReason
+    iterations: int
+    weight: float
+
+
+def descend(search: Search, state: State) -> Descent:
+    """Steps until a goal is reached or nothing is left to gain."""
+    return _Descent(search, state).run()
+
+
+class _Descent:
+    """One run: trust radius, weight of the effort, the best state."""
+
+    def __init__(self, search: Search, state: State) -> None:
+        self.search, self.state = search, state
+        self.best = state
+        self.radius = search.options.first_step
+        self.weight = search.weight(state)
+
+    def run(self) -> Descent:
+        search, options = self.search, self.search.options
+        for iteration in range(options.iterations):
+            if self.state.error <= search.reached and self._sharpen() and self._reached():
+                return self._end(InverseReason.REACHED, iteration)
+            self.weight = min(self.weight, search.weight(self.state))
+            objective = search.objective(self.state, self.weight)
+            step, promise = search.step(self.state, self.weight, self.radius)
+            # What a model promises is concave in its radius, so a smaller radius must not end the search sooner.
+            least = options.progress * objective * min(self.radius / options.first_step, 1.0)
+            if promise <= least and self.state.excess <= _EXCESS:
+                if self.state.sharp or not self._sharpen():
+                    return self._end(InverseReason.OPTIMAL, iteration)
+                continue
+            trial = search.approach(self.state, step)
+            ratio = -np.inf
+            if trial is not None and promise > 0:
+                ratio = (objective - search.objective(trial, self.weight)) / promise
+            self.radius = _next_radius(self.radius, ratio, self._used(step))
+            if trial is not None and self._accepts(trial, ratio):
+                self.state = trial
+                if not trial.excess > _EXCESS:
+                    self.best = trial
+            elif self.radius < _SMALLEST_RADIUS:
+                reason = InverseReason.NO_EQUILIBRIUM if trial is None else InverseReason.OPTIMAL
+                return self._end(reason, iteration + 1)
+        return self._end(InverseReason.ITERATION_LIMIT, options.iterations)
+
+    def _accepts(self, trial: State, ratio: float) -> bool:
+        if self.state.excess > _EXCESS:
+            return trial.excess <= 0.5 * self.state.excess
+        return ratio > 0 and trial.excess <= _FAR
+
+    def _used(self, values: np.ndarray) -> float:
+        bounds = self.search.bounds
+        return float((np.abs(values - self.state.values) / np.maximum(bounds.high - bounds.low, 1e-300)).max(initial=0.0))
+
+    def _reached(self) -> bool:
+        return self.state.error <= self.search.reached and self.state.excess <= _EXCESS
+
+    def _sharpen(self) -> bool:
+        """Whether the state rests, now."""
+        sharp = self.search.sharpened(self.state)
+        if sharp is None:
+            return False
+        self.state = sharp
+        if not sharp.excess > _EXCESS:
+            self.best = sharp
+        return True
+
+    def _end(self, reason: InverseReason, iterations: int) -> Descent:
+        if self.state.excess > _EXCESS:
+            self.state = self.best
+        self._sharpen()
+        if self._reached():
+            reason = InverseReason.REACHED
+        return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
+
+
+_EXCESS = 1e-6
+"""A tension may exceed its limit by this share."""
+
+_FAR = 0.1
+"""A step may lead this far beyond the limit of a tension, for the next one to mend."""
+
+_SMALLEST_RADIUS = 1e-7
+"""Steps of less than this fraction of the range are not worth a solve."""
+
+
+def _next_radius(radius: float, ratio: float, used: float) -> float:
+    """Trust radius after a step that gained `ratio` times what it promised and used `used` of the range."""
+    if ratio < 0.25:
+        return 0.25 * min(radius, max(used, 1e-12))
+    return min(2 * radius, 1.0) if ratio > 0.75 and used > 0.9 * radius else radius

@@ -1,0 +1,243 @@
+"""`Search`: steps of bounded Gauss-Newton towards a pose, with equilibria only as sharp as they must be."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
+from hydrostat.ik.limits import Bounds
+from hydrostat.ik.linear_model import LinearModel, channels, slopes
+from hydrostat.ik.objective import Posture, Rows, Term
+from hydrostat.mechanics import NewtonResult
+from hydrostat.simulation import Simulation, SolvedPose
+
+
+@dataclass(frozen=True, kw_only=True)
+class InverseOptions:
+    """How inverse kinematics searches (M7).
+
+    Attributes:
+        effort: marker error, as a fraction of the body's size, that full travel of one winch is worth: a small
+            regulariser that keeps idle winches at rest (E18). It falls with the error, so that it hides no target.
+        tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
+        progress: the search ends where the linearised problem promises to lower the objective by less than this
+            fraction.
+        iterations: most Gauss-Newton steps.
+        first_step: largest change of a contraction in the first step, as a fraction of the winch's whole range.
+    """
+
+    effort: float = 1e-3
+    tolerance: float = 1e-6
+    progress: float = 1e-10
+    iterations: int = 100
+    first_step: float = 0.3
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """Where a search is.
+
+    Attributes:
+        values: contraction of each channel [m].
+        result: nodes near equilibrium, and the Hessian there.
+        posture: where these nodes come to rest, to first order where they do not rest yet.
+        residual: of all terms there [m].
+        errors: what is left of each goal [m].
+        excess: by how much the largest tension exceeds its limit, as a share of it.
+    """
+
+    values: Vector
+    result: NewtonResult
+    posture: Posture
+    residual: Rows
+    errors: Mapping[str, float]
+    excess: float
+
+    @property
+    def error(self) -> float:
+        """The largest error that is left of a goal [m]; infinite without goals."""
+        return max(self.errors.values(), default=np.inf)
+
+    @property
+    def sharp(self) -> bool:
+        """Whether the nodes rest."""
+        return self.result.converged
+
+
+class Step(NamedTuple):
+    """A step, and by how much it should lower the objective [m^2]."""
+
+    values: Vector
+    promise: float
+
+
+class Search:
+    """States and steps of one problem: a robot, terms, limits.
+
+    Attributes:
+        solves: equilibria approached so far.
+        reached: error [m] at which a goal counts as reached.
+    """
+
+    def __init__(
+        self, simulation: Simulation, terms: Sequence[Term], bounds: Bounds, options: InverseOptions
+    ) -> None:
+        """What is sought.
+
+        Raises:
+            InputError: a robot without cables, or one whose cables have friction.
+        """
+        robot = simulation.robot
+        if not robot.cables:
+            raise InputError(
+                "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
+            )
+        if simulation.friction is not None:
+            raise InputError(
+                "cables with friction end in another pose for every way there, so no contractions belong to a pose; "
+                "set friction = 0 to find some, then simulate them with friction"
+            )
+        self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
+        size = robot.body.mesh.size
+        self.reached = options.tolerance * size
+        travel = np.array([winch.travel for winch in robot.winches])
+        self._worth = np.sqrt(bounds.spread.T @ (size / travel) ** 2)
+        self._size = size
+        self.solves = 0
+
+    def begin(self, start: SolvedPose | None) -> State | None:
+        """The state of a pose, of rest if it is left out, within the limits; None if no equilibrium is found there."""
+        pose = start or self.simulation.rest
+        values = self.bounds.channel(pose.contractions)
+        if (self.bounds.spread @ values == pose.contractions).all() and _sound(pose.result):
+            return self._state(values, replace(pose.result, stiffness=self.simulation.stiffness(pose)))
+        return self._solved(values, pose)
+
+    def step(self, state: State, weight: float, radius: float) -> Step:
+        """Where to go from a state: contractions of the channels [m], and what that promises."""
+        places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
+        assert state.result.stiffness is not None
+        taut = places.first[places.active]
+        moves = slopes(self.simulation, state.posture, state.result.stiffness, taut)
+        matrix = np.vstack([term.slopes(state.posture, moves) for term in self.terms]) @ self.bounds.spread
+        tensions = moves.tensions @ self.bounds.spread
+        model = LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
+        step, promise = model.best(weight * self._worth, radius)
+        return Step(model.applied(step), promise)
+
+    def approach(self, state: State, values: Vector) -> State | None:
+        """The state at other contractions, near enough to equilibrium to go on; None if no stable one is found."""
+        self.solves += 1
+        contractions = self.bounds.spread @ values
+        result = state.result
+        for _ in range(_RELAXATIONS):
+            before = result.nodes
+            result = self.simulation.relax(before, contractions, result.stiffness, iterations=1)
+            if not result.stable:
+                break
+            found = self._state(values, result)
+            left = np.abs(found.posture.nodes - result.nodes).max()
+            if found.sharp or left <= _LEFT * np.abs(result.nodes - before).max():
+                return self._idle(found)
+        return self._solved(values, self.simulation.posed(self.bounds.spread @ state.values, state.result))
+
+    def sharpened(self, state: State) -> State | None:
+        """The same contractions at equilibrium."""
+        if state.sharp:
+            return state
+        self.solves += 1
+        contractions = self.bounds.spread @ state.values
+        result = self.simulation.relax(state.result.nodes, contractions, state.result.stiffness)
+        return self._state(state.values, result) if _sound(result) else None
+
+    def objective(self, state: State, weight: float) -> float:
+        """Half the squares of residual and effort [m^2]."""
+        effort = weight * self._worth * state.values
+        return 0.5 * float(state.residual @ state.residual + effort @ effort)
+
+    def weight(self, state: State) -> float:
+        """Of the effort: a share of the error, for then it fades as fast as the search converges."""
+        error = float(np.sqrt(state.residual @ state.residual)) / self._size
+        return min(self.options.effort, max(_SHARE * error, _LEAST_WEIGHT))
+
+    def slope(self, state: State, weight: float) -> float:
+        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
+        assert state.result.stiffness is not None
+        effort = weight * self._worth * state.values
+        length = float(np.sqrt(2.0 * self.objective(state, weight)))
+        if length == 0.0:
+            return 0.0
+        moves = slopes(self.simulation, state.posture, state.result.stiffness, np.zeros(0, dtype=np.int64))
+        matrix = np.vstack([term.slopes(state.posture, moves) for term in self.terms]) @ self.bounds.spread
+        rises = (matrix.T @ state.residual + weight * self._worth * effort) / length
+        low = (state.values <= self.bounds.low) & (rises > 0)
+        high = (state.values >= self.bounds.high) & (rises < 0)
+        return float(np.abs(rises[~(low | high)]).max(initial=0.0))
+
+    def _solved(self, values: Vector, start: SolvedPose) -> State | None:
+        """By all means that the simulation has."""
+        self.solves += 1
+        pose = self.simulation.solve(self.bounds.spread @ values, start=start, strict=False)
+        if not _sound(pose.result):
+            return None
+        return self._idle(self._state(values, replace(pose.result, stiffness=self.simulation.stiffness(pose))))
+
+    def _state(self, values: Vector, result: NewtonResult) -> State:
+        """What the terms see, where the nodes come to rest to first order."""
+        contractions = self.bounds.spread @ values
+        posture = self._posture(self._resting(result, contractions), contractions)
+        errors: dict[str, float] = {}
+        for term in self.terms:
+            errors.update(term.errors(posture))
+        limited = np.isfinite(self.bounds.tension)
+        excess = posture.tensions[limited] / self.bounds.tension[limited] - 1.0
+        return State(
+            values=values,
+            result=result,
+            posture=posture,
+            residual=np.concatenate([np.zeros(0), *(term.residual(posture) for term in self.terms)]),
+            errors=errors,
+            excess=max(float(excess.max(initial=0.0)), 0.0),
+        )
+
+    def _resting(self, result: NewtonResult, contractions: Vector) -> Nodes:
+        if result.converged or result.stiffness is None or result.stiffness.singular:
+            return result.nodes
+        gradient = self.simulation.assembly.gradient(result.nodes, contractions)
+        return result.nodes - result.stiffness.solve(gradient).reshape(result.nodes.shape)
+
+    def _posture(self, nodes: Nodes, contractions: Vector) -> Posture:
+        cables = self.simulation.cables
+        stretches = cables.stretches(nodes, contractions)
+        return Posture(
+            nodes=nodes, contractions=contractions, stretches=stretches, tensions=cables.law.tension(stretches)
+        )
+
+    def _idle(self, state: State) -> State:
+        """Slack channels go back towards rest, as far as they stay slack: nothing moves by that."""
+        gaps = channels(self.simulation.cables.law, state.posture, state.values, self.bounds).gaps
+        edge = state.values + np.where(np.isfinite(gaps), gaps, 0.0)
+        wanted = np.clip(np.minimum(edge, 0.0), self.bounds.low, self.bounds.high)
+        values = np.where(gaps > 0, np.minimum(wanted, state.values), state.values)
+        return state if (values == state.values).all() else self._state(values, state.result)
+
+
+_RELAXATIONS = 6
+"""Steps of Newton towards an equilibrium before stronger means are used."""
+
+_LEFT = 0.1
+"""An equilibrium is near enough when what is left is this share of the last step of Newton."""
+
+_SHARE = 0.1
+"""Weight of the effort, as a share of the error in sizes of the body."""
+
+_LEAST_WEIGHT = 1e-8
+"""Of the effort; enough to keep the linearised problem well posed."""
+
+
+def _sound(result: NewtonResult) -> bool:
+    """Whether it is a stable equilibrium."""
+    return result.converged and result.stable
