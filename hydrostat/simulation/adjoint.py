@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.mechanics import Assembly, CableEnergy, Energy, NeoHookean, PinEnergy, WeightEnergy
 from hydrostat.mechanics.patch_volume import PatchVolume
 from hydrostat.robot import Material, Robot
-from hydrostat.simulation.route_points import RoutePoints, route_points
+from hydrostat.simulation.route_points import RoutePoints, RouteSlopes, route_points
 from hydrostat.simulation.solved_pose import SolvedPose
 
 Response = Callable[[Float[np.ndarray, "dofs columns"]], Float[np.ndarray, "dofs columns"]]
@@ -38,7 +38,7 @@ class Sensitivity:
 
     contractions: Vector
     slack: Vector
-    routes: tuple[Points, ...]
+    routes: tuple[RouteSlopes, ...]
     cable_stiffness: Vector
     pin_stiffness: Vector
     young: float
@@ -87,7 +87,7 @@ def sensitivity(
     points = route_points(robot)
     young, poisson, density, thickness = _by_body(robot, assembly, pose, field)
     return Sensitivity(
-        contractions=np.bincount(cables.winches, by_stretch, len(robot.winches)),
+        contractions=np.bincount(cables.winches, by_stretch, len(robot.winches)).astype(float),
         slack=-by_stretch,
         routes=points.by_cable(_by_routes(points, cables, pose.nodes, field, by_stretch, pulls)),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,

@@ -10,6 +10,9 @@ from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import Mount, Robot
 
+RouteSlopes = Float[np.ndarray, "_ dim"]
+"""A row for each point of one cable; cables differ in how many they have."""
+
 
 @dataclass(frozen=True, eq=False)
 class RoutePoints:
@@ -74,7 +77,7 @@ class RoutePoints:
         np.subtract.at(total, self.starts, slopes)
         return total
 
-    def by_cable(self, rows: Points) -> tuple[Points, ...]:
+    def by_cable(self, rows: Points) -> tuple[RouteSlopes, ...]:
         """The rows of each cable."""
         return tuple(np.split(rows, np.cumsum(self.counts)[:-1])) if self.counts else ()
 
