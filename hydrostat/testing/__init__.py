@@ -1,6 +1,7 @@
 """Conformance checks that anyone can run on a part of their own; our tests use the same."""
 
 from hydrostat.testing.check_energy import check_energy
+from hydrostat.testing.check_objective import check_objective
 from hydrostat.testing.conformance_error import ConformanceError
 
-__all__ = ["ConformanceError", "check_energy"]
+__all__ = ["ConformanceError", "check_energy", "check_objective"]

@@ -1,0 +1,176 @@
+"""`Shell`: the closed boundary of a body, asked how far away points are."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.arrays import Nodes, Points
+from hydrostat.geometry.anchors import nearest_shares
+from hydrostat.geometry.outline import Outline
+
+Facets = Int[np.ndarray, "facets dim"]
+
+
+@dataclass(frozen=True, eq=False)
+class Nearest:
+    """Where a shell is nearest to points, and how far that is.
+
+    The distance of a point p is differentiable where this place is the only one: then it changes by direction . dp, and
+    by -direction . (shares @ dx) when the nodes of the stencil move, whichever way the nearest place slides.
+
+    Attributes:
+        stencils: nodes of the facet that holds each place, (points, dim).
+        shares: weights of these nodes, rows sum to one.
+        distances: of the points [m], negative inside.
+        directions: unit vectors, in which the distance grows the fastest.
+    """
+
+    stencils: Int[np.ndarray, "points dim"]
+    shares: Float[np.ndarray, "points dim"]
+    distances: Float[np.ndarray, " points"]
+    directions: Points
+
+
+class Shell:
+    """A closed boundary: segments in the plane with the body to their left, triangles in space seen from outside.
+
+    Whether a point whose nearest place is a corner or an edge lies inside is told by the mean normal there, weighted by
+    angles (Baerentzen 2005).
+    """
+
+    def __init__(self, nodes: Nodes, facets: Facets) -> None:
+        """Facets, by the numbers of their nodes [m]."""
+        self.nodes, self.facets = nodes, np.ascontiguousarray(facets)
+
+    def moved(self, nodes: Nodes) -> "Shell":
+        """The same facets between the nodes where these are now [m]."""
+        shell = Shell(nodes, self.facets)
+        shell.edges = self.edges
+        return shell
+
+    @cached_property
+    def edges(self) -> Facets:
+        """In space: the number of the edge of each triangle across from each of its corners; else nothing of use."""
+        if self.facets.shape[1] == 2:
+            return self.facets
+        ends = np.sort(np.stack([np.roll(self.facets, -1, axis=1), np.roll(self.facets, 1, axis=1)]), axis=0)
+        numbers = np.unique(ends[0] * len(self.nodes) + ends[1], return_inverse=True)[1]
+        return numbers.reshape(self.facets.shape).astype(np.int64)
+
+    @property
+    def closed(self) -> bool:
+        """Whether every side of a facet is one of exactly one other, which runs through it the other way."""
+        if self.facets.shape[1] == 2:
+            there, back = self.facets.T
+        else:
+            begins, ends = self.facets.ravel(), np.roll(self.facets, -1, axis=1).ravel()
+            there, back = begins * len(self.nodes) + ends, ends * len(self.nodes) + begins
+        return len(np.unique(there)) == len(there) and np.array_equal(np.sort(there), np.sort(back))
+
+    @cached_property
+    def measures(self) -> Float[np.ndarray, " facets"]:
+        """Length [m] or area [m^2] of each facet."""
+        return np.linalg.norm(self._crosses, axis=1) / (self.facets.shape[1] - 1)
+
+    def nearest(self, points: Points) -> Nearest:
+        """The place of the shell nearest to each point.
+
+        Raises:
+            ValueError: nodes or points that are not finite.
+        """
+        if not (np.isfinite(self.nodes).all() and np.isfinite(points).all()):
+            raise ValueError("a distance needs finite places")
+        found = self._tree.squared_distance(_in_space(self.nodes), self.facets, _in_space(points))[1]
+        facets = found.astype(np.int64)  # from long long, another type to NumPy
+        corners = self.nodes[self.facets[facets]]
+        shares = nearest_shares(corners, points)
+        offsets = points - np.einsum("pc,pcd->pd", shares, corners)
+        normals = self._normals_at(facets, shares)
+        lengths = np.linalg.norm(offsets, axis=1)
+        signs = np.where(np.einsum("pd,pd->p", offsets, normals) < 0, -1.0, 1.0)
+        beside = (shares == 0).any(axis=1) & (lengths > _TOUCHING * np.abs(corners).max(axis=(1, 2)))
+        directions = np.where(beside[:, None], signs[:, None] * offsets / _or_one(lengths)[:, None], normals)
+        return Nearest(self.facets[facets], shares, signs * lengths, directions)
+
+    def _normals_at(
+        self, facets: Int[np.ndarray, " points"], shares: Float[np.ndarray, "points dim"]
+    ) -> Float[np.ndarray, "points dim"]:
+        """Unit normals at places of facets: of the facet, or the mean at the edge or corner on which a place is."""
+        normals = self._normals[facets]
+        missing = shares == 0
+        count = missing.sum(axis=1)
+        if self.facets.shape[1] == 3 and (edge := count == 1).any():
+            normals[edge] = self._edge_normals[self.edges[facets[edge], missing[edge].argmax(axis=1)]]
+        corner = count == self.facets.shape[1] - 1
+        normals[corner] = self._node_normals[self.facets[facets[corner], shares[corner].argmax(axis=1)]]
+        return normals / _or_one(np.linalg.norm(normals, axis=1))[:, None]
+
+    @cached_property
+    def _crosses(self) -> Float[np.ndarray, "facets dim"]:
+        """Outward normals: as long as a segment, or twice the area of a triangle."""
+        first = self.nodes[self.facets[:, 0]]
+        along = self.nodes[self.facets[:, 1]] - first
+        if self.facets.shape[1] == 2:
+            return np.column_stack([along[:, 1], -along[:, 0]])
+        return np.cross(along, self.nodes[self.facets[:, 2]] - first)
+
+    @cached_property
+    def _normals(self) -> Float[np.ndarray, "facets dim"]:
+        """Outward unit normal of each facet."""
+        return self._crosses / _or_one(np.linalg.norm(self._crosses, axis=1))[:, None]
+
+    @cached_property
+    def _node_normals(self) -> Float[np.ndarray, "nodes dim"]:
+        """Sum of the normals of the facets at each node, weighted by their angles there."""
+        return self._summed(self.facets, _angles(self.nodes[self.facets]), len(self.nodes))
+
+    @cached_property
+    def _edge_normals(self) -> Float[np.ndarray, "edges 3"]:
+        """Sum of the normals of the two triangles at each edge."""
+        return self._summed(self.edges, np.ones(self.edges.shape), int(self.edges.max()) + 1)
+
+    def _summed(self, owners: Facets, weights: Float[np.ndarray, "facets dim"], count: int) -> np.ndarray:
+        spread = self._normals[:, None, :] * weights[:, :, None]
+        return np.column_stack([np.bincount(owners.ravel(), part.ravel(), count) for part in spread.transpose(2, 0, 1)])
+
+    @cached_property
+    def _tree(self) -> Any:
+        import igl
+
+        tree = igl.AABB()
+        tree.init(_in_space(self.nodes), self.facets)
+        return tree
+
+
+_TOUCHING = 1e-12
+"""A point this near, as a fraction of the coordinates, has no direction to its nearest place but the normal there."""
+
+
+def outline_shell(outline: Outline) -> Shell:
+    """The rings of an outline."""
+    counts = [len(ring) for ring in outline.rings]
+    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    ends = [np.roll(np.arange(start, start + count), -1) for start, count in zip(starts, counts, strict=True)]
+    return Shell(np.concatenate(outline.rings), np.column_stack([np.arange(sum(counts)), np.concatenate(ends)]))
+
+
+def _in_space(points: Points) -> Float[np.ndarray, "points 3"]:
+    """Places of the plane at height 0: the tree knows space only, but segments as well as triangles."""
+    return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), dtype=float)
+
+
+def _or_one(lengths: Float[np.ndarray, " some"]) -> Float[np.ndarray, " some"]:
+    return np.where(lengths > 0, lengths, 1.0)
+
+
+def _angles(corners: Float[np.ndarray, "facets dim dim"]) -> Float[np.ndarray, "facets dim"]:
+    """Angle of each triangle at its corners [rad]; 1 at the ends of a segment."""
+    if corners.shape[1] == 2:
+        return np.ones(corners.shape[:2])
+    ahead = np.roll(corners, -1, axis=1) - corners
+    behind = np.roll(corners, 1, axis=1) - corners
+    crosses = np.linalg.norm(np.cross(ahead, behind), axis=2)
+    return np.arctan2(crosses, np.einsum("fcd,fcd->fc", ahead, behind))

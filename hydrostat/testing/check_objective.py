@@ -1,0 +1,146 @@
+"""`check_objective`: whether an `Objective` keeps its contract."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.ik.objective import Objective, Posture, Term
+from hydrostat.ik.postures import moves_at, posture_at
+from hydrostat.simulation import Contractions, Simulation, SolvedPose
+from hydrostat.testing.conformance_error import ConformanceError
+from hydrostat.testing.differences import central_differences, steps
+
+
+def check_objective(
+    objective: Objective,
+    simulation: Simulation,
+    contractions: Contractions,
+    *,
+    tolerance: float = 1e-5,
+    solver: float = 1e-13,
+    postures: int = 5,
+    seed: int = 0,
+) -> None:
+    """Check all that an objective promises on one robot, at one pose; run it at several, strongly bent ones too.
+
+    The oracle is central differences of equilibria solved as sharply as rounding allows, at contractions a little to
+    either side. They are tried at several steps and judged by the best, for wrong slopes agree at none.
+    Further: shapes, as many rows in every posture, finite numbers, the same answer to the same question, errors that
+    are not negative, and none of them above 0 where the residual is zero. An objective is not asked about at a kink,
+    such as a cable that just becomes taut: choose another pose there.
+
+    Args:
+        objective: what to check.
+        simulation: of a robot without friction.
+        contractions: the pose [m].
+        tolerance: largest relative error of the slopes.
+        solver: what the sharp solves leave over, as a fraction of the largest applied force.
+        postures: how many others, solved for contractions drawn at random between 0 and twice those given.
+        seed: of the draws.
+
+    Raises:
+        ConformanceError: the first check that failed, how far it is off and where.
+        NotConvergedError: there is no equilibrium at one of these contractions.
+    """
+    sharp = Simulation(simulation.robot, options=replace(simulation.options, tolerance=solver))
+    check = _ObjectiveCheck(objective, sharp, sharp.solve(contractions), tolerance)
+    check.shapes()
+    random = np.random.default_rng(seed)
+    for _ in range(postures):
+        check.posture(random.uniform(0.0, 2.0, len(check.pose.contractions)) * check.pose.contractions)
+    check.repeats()
+    check.slopes()
+
+
+class _ObjectiveCheck:
+    """One objective at one pose, and a method for each promise."""
+
+    def __init__(self, objective: Objective, simulation: Simulation, pose: SolvedPose, tolerance: float) -> None:
+        self.objective, self.simulation, self.pose, self.tolerance = objective, simulation, pose, tolerance
+        self.term: Term = objective.on(simulation)
+        self.at = posture_at(simulation, pose)
+        self.rows = np.asarray(self.term.residual(self.at)).shape
+        self.size = simulation.robot.body.mesh.size
+
+    def shapes(self) -> None:
+        """The residual is a row of numbers, the slopes have a column for each winch."""
+        if len(self.rows) != 1:
+            raise ConformanceError("residual", f"it has the shape {self.rows}, the contract names (rows,)")
+        slopes = self._slopes(self.term)
+        shape = (*self.rows, len(self.pose.contractions))
+        if slopes.shape != shape:
+            raise ConformanceError("slopes", f"they have the shape {slopes.shape}, the contract names {shape}")
+        if not np.isfinite(slopes).all():
+            raise ConformanceError("slopes", "they are not finite", index=_place(~np.isfinite(slopes)))
+        self._values(self.at)
+
+    def posture(self, contractions: Vector) -> None:
+        """Another pose has as many rows, all finite, and errors that fit them."""
+        self._values(posture_at(self.simulation, self.simulation.solve(contractions, start=self.pose)))
+
+    def repeats(self) -> None:
+        """What is asked again is answered as before, by this term and by a new one, whatever was asked in between."""
+        rest = posture_at(self.simulation, self.simulation.solve({}))
+        again = self.objective.on(self.simulation)
+        first, slopes, errors = self.term.residual(self.at), self._slopes(self.term), dict(self.term.errors(self.at))
+        for term in (self.term, again):
+            term.residual(rest)
+            if not np.array_equal(term.residual(self.at), first):
+                raise ConformanceError("residual", "it is another when asked again at the same posture")
+            if not np.array_equal(self._slopes(term), slopes):
+                raise ConformanceError("slopes", "they are others when asked again at the same posture")
+            if dict(term.errors(self.at)) != errors:
+                raise ConformanceError("errors", "they are others when asked again at the same posture")
+
+    def slopes(self) -> None:
+        """The slopes are the derivative of the residual along equilibria."""
+        exact = self._slopes(self.term)
+        best: tuple[float, tuple[int, ...]] = (np.inf, ())
+        for step in steps(_REACH * self.size):
+            found = central_differences(self._residual, self.pose.contractions, np.arange(exact.shape[1]), step)
+            scales = np.maximum(np.abs(found), np.abs(exact)).max(axis=0, initial=0.0)
+            scale = np.where(scales > 1e-9 * scales.max(initial=0.0), scales, 1.0)
+            errors = np.nan_to_num(np.abs(found - exact) / scale, nan=np.inf)
+            worst = float(errors.max(initial=0.0))
+            if worst < best[0]:
+                best = worst, _place(errors)
+            if worst <= self.tolerance:
+                return
+        raise ConformanceError(
+            "slopes", "[row, winch] is not the derivative of the residual", index=best[1], relative_error=best[0]
+        )
+
+    def _values(self, posture: Posture) -> None:
+        residual = np.asarray(self.term.residual(posture))
+        if residual.shape != self.rows:
+            raise ConformanceError(
+                "residual", f"it has {residual.shape} rows at one posture and {self.rows} at another"
+            )
+        if not np.isfinite(residual).all():
+            raise ConformanceError("residual", "it is not finite", index=_place(~np.isfinite(residual)))
+        self._errors(self.term.errors(posture), residual)
+
+    def _errors(self, errors: Mapping[str, float], residual: Float[np.ndarray, " rows"]) -> None:
+        for name, error in errors.items():
+            if not (np.isfinite(error) and error >= 0):
+                raise ConformanceError("errors", f"{name} is {error}, which is no distance")
+            if error > 0 and not residual.any():
+                raise ConformanceError("errors", f"{name} is {error:.3g} m where the residual is zero")
+
+    def _residual(self, contractions: Vector) -> Float[np.ndarray, " rows"]:
+        pose = self.simulation.solve(contractions, start=self.pose)
+        return np.asarray(self.term.residual(posture_at(self.simulation, pose)))
+
+    def _slopes(self, term: Term) -> np.ndarray:
+        return np.asarray(term.slopes(self.at, moves_at(self.simulation, self.pose)))
+
+
+_REACH = 0.1
+"""Steps of contractions begin with a thousandth of this fraction of the body's size."""
+
+
+def _place(array: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(i) for i in np.unravel_index(int(np.argmax(array)), array.shape)) if array.size else ()

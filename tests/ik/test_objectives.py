@@ -1,0 +1,364 @@
+"""All objectives in one conformance suite. Oracles: central differences of sharp solves, closed forms."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+import trimesh
+from builders import box_robot, strip_robot
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.outline import Outline
+from hydrostat.geometry.surface import Surface
+from hydrostat.ik.centre_goal import CentreGoal
+from hydrostat.ik.closeness import Closeness
+from hydrostat.ik.effort import Effort
+from hydrostat.ik.marker_goal import MarkerGoal
+from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.postures import posture_at
+from hydrostat.ik.shape_goal import ShapeGoal
+from hydrostat.robot import Marker, Robot
+from hydrostat.simulation import Simulation
+from hydrostat.testing import ConformanceError, check_objective
+
+
+def flat() -> Robot:
+    """A strip whose upper cable is taut and whose lower one hangs loose by 5 mm; two markers."""
+    robot = strip_robot(columns=12, rows=3)
+    loose = replace(robot.cables[1], slack=0.005)
+    top = Marker(name="top", at=(0.1, 0.025))
+    return replace(robot, cables=(robot.cables[0], loose), markers=(*robot.markers, top))
+
+
+def space() -> Robot:
+    """A box with two markers."""
+    robot = box_robot()
+    return replace(robot, markers=(*robot.markers, Marker(name="top", at=(0.06, 0.02, 0.04))))
+
+
+FLAT, SPACE = Simulation(flat()), Simulation(space())
+BENT = {2: np.array([0.02, 0.001]), 3: np.array([0.012, 0.004])}
+"""In the plane the lower cable is slack, as the upper one bends the strip away from it."""
+
+BEFORE = {dim: simulation.solve(0.6 * BENT[dim]) for dim, simulation in ((2, FLAT), (3, SPACE))}
+
+
+def arc(length: float = 0.2, height: float = 0.05, turn: float = 0.9, count: int = 40) -> Outline:
+    """A strip bent upwards along an arc of a circle, its left end where that of `strip_robot` is."""
+    radius, angles = length / turn, np.linspace(0, turn, count)
+    sides = [
+        np.column_stack([(radius - offset) * np.sin(angles), radius - (radius - offset) * np.cos(angles)])
+        for offset in (-0.5 * height, 0.5 * height)
+    ]
+    return Outline(np.concatenate([sides[0], sides[1][::-1]]))
+
+
+def ring() -> Outline:
+    """The arc with a hole in it."""
+    angles = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    return Outline(
+        arc().exterior, (np.column_stack([0.1, 0.025]) + 0.01 * np.column_stack([np.cos(angles), np.sin(angles)]),)
+    )
+
+
+def surface(made: trimesh.Trimesh) -> Surface:
+    return Surface(np.asarray(made.vertices, dtype=float), np.asarray(made.faces))
+
+
+def box(
+    low: tuple[float, float, float] = (0.0, 0.0, 0.0), size: tuple[float, float, float] = (0.12, 0.04, 0.04)
+) -> Surface:
+    """A box of twelve triangles."""
+    made = trimesh.creation.box(size)
+    return surface(made.apply_translation(np.array(low) + 0.5 * np.array(size)))
+
+
+def capsule() -> Surface:
+    """A round rod along the body, all its normals different."""
+    made = trimesh.creation.capsule(height=0.1, radius=0.025, count=(14, 14))
+    made.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
+    return surface(made.apply_translation((0.011, 0.023, 0.031)))
+
+
+PLANE: Mapping[str, Objective] = {
+    "markers": MarkerGoal(targets={"tip": (0.17, 0.06), "top": (0.09, 0.05)}),
+    "weighted markers": MarkerGoal(
+        targets={"tip": (0.17, 0.06), "top": (0.09, 0.05)}, weights={"tip": 3.0, "top": 0.0}, free={"tip": "x"}
+    ),
+    "outline": ShapeGoal(outline=arc()),
+    "outline with a hole": ShapeGoal(outline=ring(), weight=2.5, samples=77),
+    "centre": CentreGoal(target=(0.09, 0.02), weight=0.7),
+    "contraction": Effort(weight=1e-2),
+    "tension": Effort(of="tension", scale=3.0),
+    "slack": Effort(of="slack"),
+    "as before": Closeness(pose=BEFORE[2]),
+    "contractions as before": Closeness(pose=BEFORE[2], of="contractions"),
+    "body as before": Closeness(pose=BEFORE[2], of="nodes", weight=0.3),
+}
+BODIES: Mapping[str, Objective] = {
+    "markers": MarkerGoal(targets={"tip": (0.1, 0.03, 0.05), "top": (0.05, 0.02, 0.05)}),
+    "weighted markers": MarkerGoal(targets={"tip": (0.1, 0.03, 0.05)}, weights={"tip": 0.2}, free={"tip": "xz"}),
+    "surface": ShapeGoal(surface=capsule()),
+    "box": ShapeGoal(surface=box(low=(0.003, -0.002, 0.005)), weight=0.5, samples=150),
+    "centre": CentreGoal(target=(0.05, 0.02, 0.03)),
+    "contraction": Effort(),
+    "tension": Effort(of="tension"),
+    "slack": Effort(of="slack", scale=0.02),
+    "contractions as before": Closeness(pose=BEFORE[3], of="contractions"),
+    "body as before": Closeness(pose=BEFORE[3], of="nodes"),
+}
+
+
+@pytest.mark.parametrize("name", PLANE)
+def test_objectives_in_the_plane_conform(name: str) -> None:
+    check_objective(PLANE[name], FLAT, BENT[2])
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_objectives_in_space_conform(name: str) -> None:
+    check_objective(BODIES[name], SPACE, BENT[3])
+
+
+def test_the_suite_sees_a_taut_and_a_slack_cable() -> None:
+    stretches = posture_at(FLAT, FLAT.solve(BENT[2])).stretches
+    assert stretches[0] > 1e-3
+    assert stretches[1] < -1e-3
+
+
+@dataclass(frozen=True)
+class Broken(Objective):
+    """A good objective, broken on purpose."""
+
+    change: Callable[[Term], Term]
+
+    def on(self, simulation: Simulation) -> Term:
+        return self.change(PLANE["outline"].on(simulation))
+
+
+class Wrapped(Term):
+    def __init__(self, term: Term) -> None:
+        self.term, self.asked = term, 0
+
+    def residual(self, posture: Posture) -> Rows:
+        return self.term.residual(posture)
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        return self.term.slopes(posture, moves)
+
+    def errors(self, posture: Posture) -> Mapping[str, float]:
+        return self.term.errors(posture)
+
+
+class SlopeOff(Wrapped):
+    """One entry of its largest row is 0.01 % too large."""
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        slopes = super().slopes(posture, moves).copy()
+        slopes[np.abs(slopes[:, 0]).argmax(), 0] *= 1.0001
+        return slopes
+
+
+class SlopesOfNodesAlone(Wrapped):
+    """As if the places of the shape were not pulled at by the body."""
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        slopes = super().slopes(posture, moves).copy()
+        slopes[-100:] = 0.0
+        return slopes
+
+
+class SlopesTurned(Wrapped):
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        return super().slopes(posture, moves).T
+
+
+class RowsThatComeAndGo(Wrapped):
+    def residual(self, posture: Posture) -> Rows:
+        residual = super().residual(posture)
+        return residual[: len(residual) - int(posture.contractions[0] > 0.025)]
+
+
+class RowsInATable(Wrapped):
+    def residual(self, posture: Posture) -> np.ndarray:
+        return super().residual(posture)[:, None]
+
+
+class ResidualNaN(Wrapped):
+    def residual(self, posture: Posture) -> Rows:
+        return np.where(np.arange(len(super().residual(posture))) == 3, np.nan, 1.0)
+
+
+class NegativeError(Wrapped):
+    def errors(self, posture: Posture) -> Mapping[str, float]:
+        return {"outline": -1e-9}
+
+
+class ErrorOfNothing(Wrapped):
+    def residual(self, posture: Posture) -> Rows:
+        return np.zeros(3)
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        return np.zeros((3, 2))
+
+
+class Forgetful(Wrapped):
+    """Counts how often it was asked."""
+
+    def residual(self, posture: Posture) -> Rows:
+        self.asked += 1
+        return super().residual(posture) + 1e-9 * self.asked
+
+
+SLIPS = {
+    SlopeOff: "slopes at",
+    SlopesOfNodesAlone: "slopes at",
+    SlopesTurned: "slopes: they have the shape",
+    RowsThatComeAndGo: "residual: it has .* rows at one posture",
+    RowsInATable: "residual: it has the shape",
+    ResidualNaN: r"residual at \[3\]: it is not finite",
+    NegativeError: "errors: outline is -1e-09",
+    ErrorOfNothing: "errors: outline is .* where the residual is zero",
+    Forgetful: "residual: it is another",
+}
+
+
+@pytest.mark.usefixtures("unchecked")
+@pytest.mark.parametrize("slip", SLIPS)
+def test_the_suite_can_fail(slip: type[Wrapped]) -> None:
+    with pytest.raises(ConformanceError, match=SLIPS[slip]):
+        check_objective(Broken(slip), FLAT, BENT[2])
+
+
+def at_rest(simulation: Simulation) -> Posture:
+    return posture_at(simulation, simulation.solve({}))
+
+
+PAD = 0.006
+
+
+def padded(simulation: Simulation) -> tuple[ShapeGoal, float, float]:
+    """The body's box, larger by a pad on every side; mean squares of the distances of nodes to it, of it to the body.
+
+    All nodes are as far away as the pad, as are places beside a face. Beyond an edge, t away from it, p^2 + t^2 counts.
+    """
+    p, nodes = PAD, simulation.robot.body.mesh.nodes
+    low, sides = nodes.min(axis=0), np.ptp(nodes, axis=0)
+    if len(sides) == 2:
+        corners = low - p + (sides + 2 * p) * np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+        rim = 2 * sides.sum()
+        return ShapeGoal(outline=Outline(corners), samples=4000), p**2, (rim * p**2 + 32 / 3 * p**3) / (rim + 8 * p)
+    x, y, z = sides
+    area, edges = 2 * (x * y + y * z + z * x), 8 * (x + y + z)
+    total = area * p**2 + edges * 4 / 3 * p**3 + 40 * p**4
+    goal = ShapeGoal(surface=box(tuple(low - p), tuple(sides + 2 * p)), samples=20000)
+    return goal, p**2, total / (area + edges * p + 24 * p**2)
+
+
+@pytest.mark.parametrize("simulation", [FLAT, SPACE], ids=["plane", "space"])
+def test_a_larger_box_is_as_far_away_as_its_pad(simulation: Simulation) -> None:
+    goal, nodes, places = padded(simulation)
+    rest, count = at_rest(simulation), len(simulation.robot.body.mesh.boundary_nodes)
+    residual = goal.on(simulation).residual(rest)
+    assert (residual[:count] < 0).all()
+    assert (residual[count:] > 0).all()
+    assert (residual[:count] ** 2).sum() == pytest.approx(nodes / 2, rel=1e-12)
+    assert (residual[count:] ** 2).sum() == pytest.approx(places / 2, rel=2e-4)
+    error = np.sqrt((nodes + places) / 2)
+    assert list(goal.on(simulation).errors(rest).values()) == [pytest.approx(error, rel=2e-4)]
+    heavy = replace(goal, weight=3.0).on(simulation)
+    np.testing.assert_allclose(heavy.residual(rest), 3.0 * residual, rtol=1e-14)
+    assert heavy.errors(rest) == goal.on(simulation).errors(rest)
+
+
+@pytest.mark.parametrize("simulation", [FLAT, SPACE], ids=["plane", "space"])
+def test_a_shape_moves_the_residual_by_the_way_along_its_normal(simulation: Simulation) -> None:
+    """A body shifted by v inside a larger box: a node near a face comes nearer by what of v is normal to it."""
+    goal, _, _ = padded(simulation)
+    mesh, rest = simulation.robot.body.mesh, at_rest(simulation)
+    shift = np.array([0.001, -0.002, 0.0015])[: mesh.dim]
+    moved = replace(rest, nodes=rest.nodes + shift)
+    term, rim = goal.on(simulation), mesh.nodes[mesh.boundary_nodes]
+    low, high = mesh.nodes.min(axis=0) - PAD, mesh.nodes.max(axis=0) + PAD
+    gaps = np.minimum(rim + shift - low, high - rim - shift).min(axis=1)
+    share = term.residual(rest)[: len(rim)] / -PAD
+    np.testing.assert_allclose(term.residual(moved)[: len(rim)], -share * gaps, rtol=1e-9, atol=1e-12)
+
+
+def test_a_body_lies_on_its_own_boundary() -> None:
+    mesh = SPACE.robot.body.mesh
+    used, triangles = np.unique(mesh.boundary, return_inverse=True)
+    own = ShapeGoal(surface=Surface(mesh.nodes[used], triangles.reshape(-1, 3)))
+    strip = ShapeGoal(outline=Outline(np.array([[0.0, -0.025], [0.2, -0.025], [0.2, 0.025], [0.0, 0.025]])))
+    for goal, simulation in ((own, SPACE), (strip, FLAT)):
+        assert max(goal.on(simulation).errors(at_rest(simulation)).values()) < 1e-15
+
+
+def test_values_of_the_others() -> None:
+    """By hand: weighted offsets, the middle of a box, loose cable, contractions by the travel of their winches."""
+    rest, robot = at_rest(FLAT), FLAT.robot
+    term = PLANE["weighted markers"].on(FLAT)
+    np.testing.assert_allclose(term.residual(rest), [0.0, 3 * -0.06, 0.0, 0.0], atol=1e-12)
+    assert term.errors(rest)["tip"] == pytest.approx(0.06)
+    assert term.errors(rest)["top"] == pytest.approx(np.hypot(0.01, 0.025))
+    centre = BODIES["centre"].on(SPACE)
+    np.testing.assert_allclose(centre.residual(at_rest(SPACE)), [0.01, 0.0, -0.01], atol=1e-12)
+    slack = Effort(of="slack", weight=1.0, scale=0.2).on(FLAT)
+    np.testing.assert_allclose(slack.residual(rest), [0.0, -0.005], atol=1e-12)
+    posture = posture_at(FLAT, FLAT.solve(BENT[2]))
+    contraction = Effort(weight=1.0).on(FLAT).residual(posture)
+    np.testing.assert_allclose(contraction, 0.2 * BENT[2] / [winch.travel for winch in robot.winches])
+    tension = Effort(of="tension", weight=1.0, scale=2.0).on(FLAT).residual(posture)
+    np.testing.assert_allclose(tension, 0.2 * posture.tensions / 2.0)
+    assert posture.tensions[0] > 0.1
+    same = Closeness(pose=BEFORE[2], of="nodes").on(FLAT).residual(posture_at(FLAT, BEFORE[2]))
+    assert not same.any()
+    shifted = replace(posture_at(FLAT, BEFORE[2]), nodes=BEFORE[2].nodes + np.array([0.003, 0.004]))
+    assert np.linalg.norm(
+        Closeness(pose=BEFORE[2], of="nodes", weight=2.0).on(FLAT).residual(shifted)
+    ) == pytest.approx(2 * 0.005)
+
+
+WRONG: Mapping[str, tuple[Simulation, Objective, str]] = {
+    "no such marker": (FLAT, MarkerGoal(targets={"toe": (0.0, 0.0)}), 'no marker "toe"; its markers are: tip, top'),
+    "marker in space": (FLAT, MarkerGoal(targets={"tip": (0.0, 0.0, 0.0)}), "target tip has 3 coordinates"),
+    "marker nowhere": (FLAT, MarkerGoal(targets={"tip": (0.0, np.nan)}), "target tip is not finite"),
+    "marker's weight": (FLAT, MarkerGoal(targets={"tip": (0, 0)}, weights={"tip": -1.0}), "weight of marker tip"),
+    "weight of no target": (
+        FLAT,
+        MarkerGoal(targets={"tip": (0, 0)}, weights={"top": 1.0}),
+        'marker "top" has a weight',
+    ),
+    "marker's axes": (FLAT, MarkerGoal(targets={"tip": (0, 0)}, free={"tip": "z"}), 'must be of "xy", not "z"'),
+    "centre in space": (FLAT, CentreGoal(target=(0, 0, 0)), "must be 2 finite coordinates"),
+    "centre nowhere": (SPACE, CentreGoal(target=(0, 0, np.inf)), "must be 3 finite coordinates"),
+    "centre's weight": (FLAT, CentreGoal(target=(0, 0), weight=np.nan), "weight of the centre of mass"),
+    "kind of effort": (FLAT, Effort(of="power"), "contraction, tension, slack"),
+    "effort's weight": (FLAT, Effort(weight=-1e-3), "weight of an effort must be 0 or more, not -0.001"),
+    "effort's scale": (FLAT, Effort(scale=0.0), "scale of an effort must be above 0, not 0"),
+    "kind of closeness": (FLAT, Closeness(pose=BEFORE[2], of="time"), "nodes, contractions"),
+    "closeness's weight": (FLAT, Closeness(pose=BEFORE[2], weight=np.inf), "weight of a closeness"),
+    "another robot's pose": (SPACE, Closeness(pose=BEFORE[2]), "is one of another robot"),
+    "no shape": (FLAT, ShapeGoal(), "either an outline"),
+    "two shapes": (FLAT, ShapeGoal(outline=arc(), surface=box()), "either an outline"),
+    "outline in space": (SPACE, ShapeGoal(outline=arc()), "give a surface"),
+    "surface in the plane": (FLAT, ShapeGoal(surface=box()), "give an outline"),
+    "shape's weight": (FLAT, ShapeGoal(outline=arc(), weight=-1.0), "weight of a shape must be 0 or more, not -1"),
+    "few samples": (FLAT, ShapeGoal(outline=arc(), samples=2), "samples of a shape must be 3 or more, not 2"),
+    "millimetres": (FLAT, ShapeGoal(outline=Outline(1e3 * arc().exterior)), "the body 200 mm; give it in metres"),
+    "open surface": (SPACE, ShapeGoal(surface=box().part(np.arange(11))), "surface is not closed; heal it"),
+    "flat triangle": (
+        SPACE,
+        ShapeGoal(surface=Surface(box().vertices, np.concatenate([box().triangles, [[0, 1, 1]]]))),
+        "1 triangles without area",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_input_is_one_clear_line(name: str) -> None:
+    simulation, objective, message = WRONG[name]
+    with pytest.raises(InputError) as caught:
+        objective.on(simulation)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
