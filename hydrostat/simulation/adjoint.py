@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.mechanics import Assembly, CableEnergy, Energy, NeoHookean, PinEnergy, WeightEnergy
 from hydrostat.mechanics.patch_volume import PatchVolume
 from hydrostat.robot import Material, Robot
-from hydrostat.simulation.route_points import RoutePoints, RouteSlopes, route_points
+from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
 from hydrostat.simulation.solved_pose import SolvedPose
 
 Response = Callable[[Float[np.ndarray, "dofs columns"]], Float[np.ndarray, "dofs columns"]]
@@ -55,6 +55,7 @@ def sensitivity(
     *,
     nodes: Nodes,
     tensions: Vector | None,
+    points: RoutePoints,
     response: Response,
 ) -> Sensitivity:
     """Slopes of L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, for all theta with one solve.
@@ -69,11 +70,14 @@ def sensitivity(
         pose: an equilibrium.
         nodes: dL/dx at fixed tensions.
         tensions: dL/dT of each cable; none if left out.
+        points: those of its cables.
         response: solves with the full Hessian at the pose.
 
     Raises:
-        InputError: cotangents of a wrong shape or not finite.
+        InputError: a pose of another robot, or cotangents of a wrong shape or not finite.
     """
+    if pose.nodes.shape != assembly.shape or pose.tensions.shape != (len(robot.cables),):
+        raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {assembly.shape}")
     nodes = _checked("nodes", nodes, assembly.shape)
     tensions = _checked("tensions", np.zeros(len(robot.cables)) if tensions is None else tensions, pose.tensions.shape)
     stretches = cables.stretches(pose.nodes, pose.contractions)
@@ -84,7 +88,6 @@ def sensitivity(
     by_tension = tensions - columns.T @ field
     by_stretch = tangents * by_tension
     field = field.reshape(assembly.shape)
-    points = route_points(robot)
     young, poisson, density, thickness = _by_body(robot, assembly, pose, field)
     return Sensitivity(
         contractions=np.bincount(cables.winches, by_stretch, len(robot.winches)).astype(float),

@@ -19,6 +19,7 @@ from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.friction_path import FrictionPath
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.profile import Profile
+from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.solved_pose import SolvedPose
 
 Contractions = Mapping[str, float] | Vector
@@ -142,6 +143,7 @@ class Simulation:
             pose,
             nodes=nodes,
             tensions=tensions,
+            points=self._route_points,
             response=partial(self.response, pose),
         )
 
@@ -158,16 +160,18 @@ class Simulation:
             raise NotConvergedError(
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
+        body = self.assembly.hessian(pose.nodes, pose.contractions)
+        columns, weights = self.assembly.low_rank(pose.nodes, pose.contractions)
+        allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
+        rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
         moves = stiffness.solve(forces)
         for _ in range(_REFINEMENTS):  # the factors may be those of a state close by
-            missing = forces - self.assembly.hessian_product(pose.nodes, pose.contractions, moves)
-            if np.abs(missing).max(initial=0.0) <= 1e-11 * np.abs(forces).max(initial=0.0):
-                break
+            missing = forces - body @ moves - columns @ (weights @ (columns.T @ moves))
+            hidden = rounding * np.abs(moves).max(axis=0, initial=0.0)
+            if (np.abs(missing).max(axis=0, initial=0.0) <= allowed + hidden).all():
+                return moves
             moves += stiffness.solve(missing)
-        else:
-            stiffness = self.assembly.stiffness(pose.nodes, pose.contractions)
-            moves = stiffness.solve(forces)
-        return moves
+        return self.assembly.stiffness(pose.nodes, pose.contractions).solve(forces)
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
@@ -272,6 +276,11 @@ class Simulation:
     def _rest_stiffness(self) -> Stiffness:
         """The Hessian at rest."""
         return self.assembly.stiffness(self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches)))
+
+    @cached_property
+    def _route_points(self) -> RoutePoints:
+        """What holds the points of the cables."""
+        return route_points(self.robot)
 
     def _known_stiffness(self, pose: SolvedPose) -> Stiffness | None:
         """The Hessian at a pose if it is at hand: that of the last one solved."""
@@ -387,7 +396,7 @@ class Simulation:
         return pose
 
 
-_REFINEMENTS = 3
+_REFINEMENTS = 4
 
 _DIRECT_ITERATIONS = 20
 """So many steps of Newton before a command is approached in load steps."""

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Cable, Marker, Mount, Pin, Robot, Volume, Winch
 from hydrostat.simulation import Sensitivity, Simulation
 from hydrostat.simulation.adjoint import sensitivity
+from hydrostat.simulation.route_points import route_points
 
 TIGHT = NewtonOptions(tolerance=1e-13)
 RUBBER = replace(FOAM, poisson=0.47)
@@ -207,6 +210,7 @@ def test_the_projected_hessian_or_a_wrong_sign_would_fail() -> None:
         pose,
         nodes=loss.nodes,
         tensions=loss.tensions,
+        points=route_points(loss.robot),
         response=lifted.solve,
     )
     right, found = loss.slopes(), loss.by_contractions()
@@ -231,6 +235,8 @@ def test_all_stiffnesses_together_change_no_weightless_pose() -> None:
     springs = slopes.cable_stiffness @ [cable.stiffness for cable in loss.robot.cables]
     springs += slopes.pin_stiffness @ [pin.stiffness for pin in loss.robot.pins]
     assert loss.robot.body.material.young * slopes.young == pytest.approx(-springs, rel=1e-8)
+    assert loss.robot.body.thickness is not None
+    assert slopes.thickness is not None
     assert loss.robot.body.thickness * slopes.thickness == pytest.approx(-springs, rel=1e-8)
 
 
@@ -290,6 +296,9 @@ def test_what_does_not_fit_is_refused() -> None:
         loss.simulation.adjoint(loss.pose, np.nan * loss.nodes)
     with pytest.raises(InputError, match="cotangent of tensions"):
         loss.simulation.adjoint(loss.pose, loss.nodes, tensions=np.zeros(3))
+    other = Simulation(box())
+    with pytest.raises(InputError, match="the pose is of another robot"):
+        other.adjoint(loss.pose, np.zeros(other.assembly.shape))
 
 
 def test_friction_is_refused() -> None:
@@ -306,3 +315,20 @@ def test_a_robot_without_cables_has_slopes_of_its_weight() -> None:
     slopes = loss.slopes()
     assert slopes.routes == ()
     assert slopes.density == pytest.approx(loss.by_material("density", 1.0), rel=1e-6)
+
+
+def test_the_page_on_derivatives_is_true(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the Jacobian, whose columns are solved one by one."""
+    root = Path(__file__).parents[2]
+    monkeypatch.chdir(root)
+    page = (root / "docs" / "theory" / "derivatives.md").read_text()
+    plain, bridged = (part.split("```")[0] for part in page.split("```python")[1:])
+    names: dict[str, Any] = {}
+    exec(plain, names)
+    jacobian = names["simulation"].jacobian(names["pose"])
+    expected = np.einsum("ndw,nd->w", jacobian, names["nodes"])
+    assert names["slopes"].contractions == pytest.approx(expected, rel=1e-8)
+    pytest.importorskip("torch", exc_type=ImportError)
+    exec(bridged, names)
+    assert names["contractions"].grad.numpy() == pytest.approx(expected, rel=1e-6)
+    assert names["routes"][1].grad.numpy() == pytest.approx(names["slopes"].routes[1], rel=1e-5, abs=1e-9)
