@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from hydrostat.geometry.files.page import Page
 from hydrostat.geometry.outline import Outline
 
 
@@ -11,8 +12,10 @@ class Drawing:
 
     Attributes:
         outline: the body [m].
+        page: what the drawing's own coordinates mean.
         notes: one line for each thing that was ignored, filled or mended; empty if there was nothing.
     """
 
     outline: Outline
+    page: Page
     notes: tuple[str, ...] = ()

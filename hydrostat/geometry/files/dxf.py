@@ -16,6 +16,7 @@ from scipy.interpolate import BSpline
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.chains import join
 from hydrostat.geometry.files.drawing import Drawing
+from hydrostat.geometry.files.page import Page, page_about
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
@@ -69,19 +70,23 @@ def read_dxf(content: bytes, *, name: str, size: float | None = None) -> Outline
     return dxf_drawing(content, name=name, size=size).outline
 
 
-def dxf_drawing(content: bytes, *, name: str, size: float | None = None) -> Drawing:
-    """Read the outline of a body, and in words what was left out; all else is as in `read_dxf`."""
+def dxf_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
+    """Read the outline of a body, and in words what was left out; on the page of another, or as in `read_dxf`."""
     check_size(size, name)
     document, mended = _open(content, name)
     unit = _unit(document)
-    if size is None and unit is None:
+    kind = f"a DXF drawing in units of {1e3 * unit:.4g} mm" if unit else "a DXF drawing without a unit"
+    if page is not None:
+        page.check(kind, name)
+    elif size is None and unit is None:
         raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): give its size")
     layout = _Layout(document, name)
     lines = list(checked(layout.lines(), name))
     chains = join([line for line, closed in lines if not closed], name)
     rings, left_out = closed_rings([pair for pair in lines if pair[1]] + chains, name)
     body, holes = body_and_holes(rings, name)
-    return Drawing(placed(body, holes, (unit or 1.0, unit or 1.0), size, name), (*mended, *layout.notes(), *left_out))
+    page = page or page_about(body, kind, (unit or 1.0, unit or 1.0), size)
+    return Drawing(placed(body, holes, page, name), page, (*mended, *layout.notes(), *left_out))
 
 
 def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:

@@ -11,6 +11,7 @@ from jaxtyping import Float
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.contrast import Contrast, contrast
 from hydrostat.geometry.files.drawing import Drawing
+from hydrostat.geometry.files.page import Page, page_about
 from hydrostat.geometry.files.rings import check_size, counted, placed
 from hydrostat.geometry.files.silhouette import Patch, Silhouette, covered, silhouette
 from hydrostat.geometry.outline import Outline
@@ -55,19 +56,21 @@ def read_image(content: bytes, *, name: str, size: float | None = None) -> Outli
     return image_drawing(content, name=name, size=size).outline
 
 
-def image_drawing(content: bytes, *, name: str, size: float | None = None) -> Drawing:
-    """Read the outline of a body, and in words what was left out; all else is as in `read_image`."""
+def image_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
+    """Read the outline of a body, on the page of another if given, and in words what was left out; see `read_image`."""
     check_size(size, name)
-    if size is None:
+    if size is None and page is None:
         raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')
     pixels, step = _pixels(content, name)
+    kind = f"a picture of {step * pixels.shape[1]} x {step * pixels.shape[0]} pixels"
+    if page is not None:
+        page.check(kind, name)
     found, notes = _body(pixels, name)
-    outline = placed(found.body, list(found.holes), (1.0, -1.0), size, name)
-    scale = size / float(np.ptp(found.body, axis=0).max())
-    middle = 0.5 * (found.body.min(axis=0) + found.body.max(axis=0))
-    words = _Words(scale, (float(middle[0]), float(middle[1])))
+    page = page or page_about(found.body, kind, (1.0, -1.0), size)
+    outline, scale = placed(found.body, list(found.holes), page, name), page.scale[0]
+    words = _Words(scale, page.origin)
     coarse = (f"read at one pixel in {step * step}: the outline is known to {1e3 * scale:.2g} mm",) if step > 1 else ()
-    return Drawing(outline, (*notes, *words.of(found), *coarse))
+    return Drawing(outline, page, (*notes, *words.of(found), *coarse))
 
 
 def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 4"], int]:

@@ -7,6 +7,7 @@ from jaxtyping import Float
 from shapely import Polygon
 
 from hydrostat.errors import InputError, OutlineError
+from hydrostat.geometry.files.page import Page
 from hydrostat.geometry.outline import Outline, Ring, fault
 
 MOST_POINTS = 200_000
@@ -125,26 +126,20 @@ def _shapes(rings: list[Ring], name: str) -> list[Polygon]:
     return sorted(shapes, key=lambda shape: shape.area, reverse=True)
 
 
-def placed(body: Ring, holes: list[Ring], unit: tuple[float, float], size: float | None, name: str) -> Outline:
-    """The outline in metres, its box centred at the origin.
+def placed(body: Ring, holes: list[Ring], page: Page, name: str) -> Outline:
+    """The outline in metres.
 
     Args:
         body: the outer ring in the drawing's units.
         holes: the same of each hole.
-        unit: length of one unit along x and y [m], y negative where the drawing counts it downwards.
-        size: longest side of the box [m]; None: as the unit says.
+        page: what these mean.
         name: what errors call the file.
 
     Raises:
         OutlineError: the rings are no outline.
     """
-    low, high = body.min(axis=0), body.max(axis=0)
-    scale = np.array(unit)
-    if size is not None:
-        scale = scale * size / float(((high - low) * np.abs(scale)).max())
-    middle = 0.5 * (low + high)
     try:
-        return Outline((body - middle) * scale, tuple((hole - middle) * scale for hole in holes))
+        return Outline(page.places(body), tuple(page.places(hole) for hole in holes))
     except OutlineError as error:
         raise OutlineError(f"{name}: {error}") from error
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawing import Drawing
+from hydrostat.geometry.files.page import Page, page_about
 from hydrostat.geometry.files.rings import CHORD_ERROR, MOST_POINTS, body_and_holes, check_size, closed_rings, placed
 from hydrostat.geometry.files.svg_document import SvgDocument, open_svg
 from hydrostat.geometry.outline import Outline, Ring
@@ -16,6 +17,7 @@ from hydrostat.geometry.outline import Outline, Ring
 if TYPE_CHECKING:
     from svgelements import Path
 
+_UNITLESS = "an SVG drawing without a physical size"
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError)
 
 
@@ -40,16 +42,20 @@ def read_svg(content: bytes, *, name: str, size: float | None = None) -> Outline
     return svg_drawing(content, name=name, size=size).outline
 
 
-def svg_drawing(content: bytes, *, name: str, size: float | None = None) -> Drawing:
-    """Read the outline of a body, and in words what was left out; all else is as in `read_svg`."""
+def svg_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
+    """Read the outline of a body, and in words what was left out; on the page of another, or as in `read_svg`."""
     check_size(size, name)
     document = open_svg(content, name=name)
-    if size is None and document.unit is None:
+    across, down = document.unit or (1.0, 1.0)
+    kind = f"an SVG drawing in units of {1e3 * across:.4g} x {1e3 * down:.4g} mm" if document.unit else _UNITLESS
+    if page is not None:
+        page.check(kind, name)
+    elif size is None and document.unit is None:
         raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): give its size")
     rings, notes = closed_rings(_lines(document, name), name)
     body, holes = body_and_holes(rings, name)
-    across, down = document.unit or (1.0, 1.0)
-    return Drawing(placed(body, holes, (across, -down), size, name), notes)
+    page = page or page_about(body, kind, (across, -down), size)
+    return Drawing(placed(body, holes, page, name), page, notes)
 
 
 def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:

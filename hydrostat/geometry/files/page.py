@@ -1,0 +1,56 @@
+"""`Page`: what a drawing's own coordinates mean, so that a second drawing can be laid over it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.errors import OutlineError
+from hydrostat.geometry.outline import Ring
+
+
+@dataclass(frozen=True)
+class Page:
+    """A place drawn at d lies at (d - origin) x scale [m] (docs/decisions/0001-coordinates.md).
+
+    Attributes:
+        kind: what two drawings must have in common to be on one page, in words.
+        origin: what lies at the origin of the body, in the drawing's units.
+        scale: length of one unit along x and y [m], y negative where the drawing counts it downwards.
+    """
+
+    kind: str
+    origin: tuple[float, float]
+    scale: tuple[float, float]
+
+    def places(self, ring: Ring) -> Ring:
+        """Where the points of a drawing lie [m]."""
+        return (ring - np.array(self.origin)) * np.array(self.scale)
+
+    def check(self, kind: str, name: str) -> None:
+        """Refuse a drawing that cannot lie on this page.
+
+        Raises:
+            OutlineError: it is of another kind, so the same numbers mean other places.
+        """
+        if kind != self.kind:
+            raise OutlineError(
+                f"{name}: is {kind}, the drawing that it should lie on {self.kind}: begin with a copy of that one, and "
+                "save it with the same page"
+            )
+
+
+def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | None) -> Page:
+    """The page whose origin is the middle of a body's box.
+
+    Args:
+        body: the outer ring in the drawing's units.
+        kind: of the drawing.
+        unit: length of one unit along x and y [m], y negative where the drawing counts it downwards.
+        size: longest side of the box [m]; None: as the unit says.
+    """
+    low, high = body.min(axis=0), body.max(axis=0)
+    scale = np.array(unit)
+    if size is not None:
+        scale = scale * size / float(((high - low) * np.abs(scale)).max())
+    x, y = 0.5 * (low + high)
+    return Page(kind, (float(x), float(y)), (float(scale[0]), float(scale[1])))
