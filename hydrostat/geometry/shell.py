@@ -8,7 +8,6 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points
-from hydrostat.geometry.anchors import nearest_shares
 from hydrostat.geometry.outline import Outline
 
 Facets = Int[np.ndarray, "facets dim"]
@@ -83,11 +82,12 @@ class Shell:
         """
         if not (np.isfinite(self.nodes).all() and np.isfinite(points).all()):
             raise ValueError("a distance needs finite places")
-        found = self._tree.squared_distance(_in_space(self.nodes), self.facets, _in_space(points))[1]
+        _, found, places = self._tree.squared_distance(_in_space(self.nodes), self.facets, _in_space(points))
         facets = found.astype(np.int64)  # from long long, another type to NumPy
+        places = places[:, : points.shape[1]]
         corners = self.nodes[self.facets[facets]]
-        shares = nearest_shares(corners, points)
-        offsets = points - np.einsum("pc,pcd->pd", shares, corners)
+        shares = _shares(corners, places)
+        offsets = points - places
         normals = self._normals_at(facets, shares)
         lengths = np.linalg.norm(offsets, axis=1)
         signs = np.where(np.einsum("pd,pd->p", offsets, normals) < 0, -1.0, 1.0)
@@ -164,6 +164,28 @@ def _in_space(points: Points) -> Float[np.ndarray, "points 3"]:
 
 def _or_one(lengths: Float[np.ndarray, " some"]) -> Float[np.ndarray, " some"]:
     return np.where(lengths > 0, lengths, 1.0)
+
+
+def _shares(
+    corners: Float[np.ndarray, "points dim dim"], places: Float[np.ndarray, "points dim"]
+) -> Float[np.ndarray, "points dim"]:
+    """Weights of the corners of facets at places on them; next to nothing is none."""
+    first, offsets = corners[:, 1] - corners[:, 0], places - corners[:, 0]
+    if corners.shape[1] == 2:
+        square = np.einsum("pd,pd->p", first, first)
+        weights = [np.einsum("pd,pd->p", offsets, first) / square]
+    else:
+        second = corners[:, 2] - corners[:, 0]
+        normals = np.cross(first, second)
+        square = np.einsum("pd,pd->p", normals, normals)
+        pairs = ((offsets, second), (first, offsets))
+        weights = [np.einsum("pd,pd->p", np.cross(one, two), normals) / square for one, two in pairs]
+    shares = np.column_stack([1.0 - sum(weights), *weights])
+    shares[shares < _NONE] = 0.0
+    return shares / shares.sum(axis=1, keepdims=True)
+
+
+_NONE = 1e-9
 
 
 def _angles(corners: Float[np.ndarray, "facets dim dim"]) -> Float[np.ndarray, "facets dim"]:
