@@ -6,6 +6,7 @@ import sys
 import typer
 
 from hydrostat.cli.animate import animate
+from hydrostat.cli.branches import branches
 from hydrostat.cli.check import check
 from hydrostat.cli.design import design
 from hydrostat.cli.fabricate import fabricate
@@ -25,7 +26,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (new, check, simulate, pose, animate, design, fabricate, materials):
+for command in (new, check, simulate, branches, pose, animate, design, fabricate, materials):
     app.command()(command)
 
 

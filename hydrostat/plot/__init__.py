@@ -2,6 +2,7 @@
 
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
+from hydrostat.plot.branch_figure import draw_branches
 from hydrostat.plot.film import Film, Stop, film, pose_stops, winch_stops
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.healing_figure import draw_healing
@@ -18,6 +19,7 @@ __all__ = [
     "Frame",
     "Stop",
     "draw_activation",
+    "draw_branches",
     "draw_candidates",
     "draw_healing",
     "draw_motion",

@@ -198,11 +198,13 @@ class _Follower:
         return there
 
     def _mark(self, kind: CriticalKind, place: Place) -> None:
-        self.critical.append(CriticalPoint(kind=kind, share=place.share, index=len(self.points)))
+        self.critical.append(CriticalPoint(kind=kind, share=float(place.share), index=len(self.points)))
         self._keep(place)
 
     def _keep(self, place: Place) -> None:
-        self.points.append(BranchPoint(share=place.share, pose=_solved(self.simulation, self.system.controls, place)))
+        self.points.append(
+            BranchPoint(share=float(place.share), pose=_solved(self.simulation, self.system.controls, place))
+        )
 
     def _branch(self, reason: BranchReason) -> Branch:
         return Branch(

@@ -38,6 +38,7 @@ class PathDependence:
         lost: ways on which no equilibrium was found, or none that is stable, in words.
         spread: largest distance of each marker between two of the poses [m].
         node_spread: largest distance of any node between two of the poses [m].
+        near: poses whose nodes are all within this distance are one [m].
         friction: whether cables rub, so that the way matters by nature.
     """
 
@@ -46,6 +47,7 @@ class PathDependence:
     lost: tuple[str, ...]
     spread: dict[str, float]
     node_spread: float
+    near: float
     friction: bool
 
     @property
@@ -134,6 +136,7 @@ def path_dependence(
         lost=tuple(lost),
         spread=_marker_spread(simulation, poses),
         node_spread=max((_apart(a.pose, b.pose) for a, b in combinations(poses, 2)), default=0.0),
+        near=near,
         friction=simulation.friction is not None,
     )
 

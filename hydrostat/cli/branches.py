@@ -1,0 +1,123 @@
+"""`hydrostat branches`."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.contractions import check_contraction, contraction
+from hydrostat.cli.prepare import prepared, read_robot
+from hydrostat.cli.progress import progress_bar
+from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.simulation import Branch, PathDependence, Simulation
+
+
+def branches(
+    robot: RobotFolder,
+    out: OutFolder,
+    contract: Annotated[
+        list[str] | None, typer.Option(metavar="WINCH=LENGTH", help="Cable a winch takes in; may be repeated.")
+    ] = None,
+    starts: Annotated[int, typer.Option(metavar="N", help="In how many ways the robot is brought there.")] = 16,
+    seed: Annotated[int, typer.Option(help="Of the ways that are drawn at random.")] = 0,
+) -> None:
+    """Find out whether the same contractions can end in different poses.
+
+    Brings the robot to its contractions in many ways, tells the poses found apart, and follows the branches of
+    equilibria that lead to them, around folds, where the robot snaps. Writes branches.json and branches.png.
+
+    Example: hydrostat branches examples/robot --contract left=60mm --contract right=60mm --out build/branches
+    """
+    from hydrostat.simulation import path_dependence
+
+    require_folder(out)
+    loaded = read_robot(robot)
+    given = dict(contraction(text) for text in contract or [])
+    for name, value in given.items():
+        check_contraction(loaded, name, value)
+    if not any(given.values()):
+        raise InputError('--contract: nothing is taken in; name a winch and a length, for example "left=40mm"')
+    if starts < 1:
+        raise InputError(f"--starts {starts}: must be at least 1; 16 are enough for most robots")
+    simulation = prepared(loaded)
+    with progress_bar() as tell:
+        found = path_dependence(simulation, given, count=starts, seed=seed, progress=tell)
+    followed = _follow(simulation, found)
+    files = _write(simulation, found, followed, out)
+    print(*found.lines(), sep="\n")
+    for name, branch in followed:
+        print(f"{name}: " + "\n  ".join(branch.lines()))
+    print("Wrote " + ", ".join(str(file) for file in files))
+    if not found.poses:
+        raise typer.Exit(1)
+
+
+def _follow(simulation: "Simulation", found: "PathDependence") -> "list[tuple[str, Branch]]":
+    """The branch from rest, and of each pose that is not on it the branch back; none with friction."""
+    from hydrostat.simulation import follow_branch
+
+    if found.friction:
+        return []
+    first = follow_branch(simulation, simulation.solve({}), found.contractions, around_folds=True)
+    followed = [("from rest", first)]
+    for number, one in enumerate(found.poses, 1):
+        if not first.arrived or _apart(first.end.nodes, one.pose.nodes) > found.near:
+            back = follow_branch(simulation, one.pose, {}, around_folds=True)
+            followed.append((f"back from pose {number}", back))
+    return followed
+
+
+def _apart(one: Any, other: Any) -> float:
+    """Largest distance of a node [m]."""
+    return float(abs(one - other).max())
+
+
+def _write(
+    simulation: "Simulation", found: "PathDependence", followed: "list[tuple[str, Branch]]", out: Path
+) -> list[Path]:
+    from hydrostat import __version__
+    from hydrostat.plot import draw_branches, save_png
+    from hydrostat.robot import replace_file, robot_hash
+
+    out.mkdir(parents=True, exist_ok=True)
+    winches = [winch.name for winch in simulation.robot.winches]
+    facts = {
+        "version": __version__,
+        "robot": robot_hash(simulation.robot),
+        "contractions": dict(zip(winches, map(float, found.contractions), strict=True)),
+        "report": found.lines(),
+        "poses": [_pose_facts(one.pose) | {"ways": list(one.ways)} for one in found.poses],
+        "lost": list(found.lost),
+        "spread": found.spread,
+        "branches": [_branch_facts(name, branch) for name, branch in followed],
+    }
+    written = [replace_file(out / "branches.json", (json.dumps(facts, indent=1) + "\n").encode())]
+    figure = draw_branches(simulation.robot, found, [branch for _, branch in followed])
+    return [*written, save_png(figure, out / "branches.png")]
+
+
+def _pose_facts(pose: Any) -> dict[str, Any]:
+    return {
+        "energy": pose.energy,
+        "tensions": [float(tension) for tension in pose.tensions],
+        "markers": {name: [float(value) for value in place] for name, place in pose.markers.items()},
+    }
+
+
+def _branch_facts(name: str, branch: "Branch") -> dict[str, Any]:
+    return {
+        "name": name,
+        "reason": str(branch.reason),
+        "begin": [float(value) for value in branch.begin],
+        "goal": [float(value) for value in branch.goal],
+        "critical": [
+            {"kind": str(point.kind), "share": point.share, "index": point.index} for point in branch.critical
+        ],
+        "points": [
+            {"share": point.share, "stable": point.stable, **_pose_facts(point.pose)} for point in branch.points
+        ],
+    }

@@ -1,0 +1,250 @@
+"""`draw_branches`: the poses that one robot takes at the same contractions, and how they hang together."""
+
+from collections.abc import Sequence
+from math import ceil
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
+from hydrostat.plot.labels import Labels, shorten
+from hydrostat.plot.open_sheet import open_sheet
+from hydrostat.plot.palette import ERROR, GRID, INK, MUTED, WINCHES, mix
+from hydrostat.plot.pane import FlatPane, Pane, fit_pixel
+from hydrostat.plot.places import Places, Spread
+from hydrostat.plot.render import render
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
+from hydrostat.robot import Robot
+from hydrostat.simulation import Branch, PathDependence, SolvedPose
+from hydrostat.units import counted
+
+MOST_MARKERS = 4
+"""So many markers have a chart: those that differ most between the poses, or move most."""
+
+TOLD = 0.25
+"""Markers that differ less, or move less, than this share of the first have no chart."""
+
+ROW = 2.3
+"""Height of a row of charts [inch]."""
+
+EDGES = 0.75
+"""Of that for words and numbers [inch]."""
+
+
+def draw_branches(
+    robot: Robot,
+    found: PathDependence,
+    branches: Sequence[Branch],
+    *,
+    title: str | None = None,
+    width: float = WIDTH,
+) -> Figure:
+    """The poses found, one over the other; below how far markers move along the branches.
+
+    Stable parts are solid lines, unstable ones dashed; dots mark folds, diamonds bifurcations, and numbered dots at the
+    end the poses above. The share of the contractions is that of `found`, also for branches followed back from there.
+
+    Args:
+        robot: to draw.
+        found: its poses at the same contractions.
+        branches: on straight ways between rest and these contractions, in either direction.
+        title: above the picture; the robot's name if left out, nothing if empty.
+        width: of the picture [inch].
+
+    Raises:
+        InputError: contractions that are all 0: there is no way to them.
+    """
+    if not found.contractions.any():
+        raise InputError("branches lead from rest to other contractions, but these are all 0; contract a winch")
+    rest, poses = robot.body.mesh.nodes, [one.pose for one in found.poses]
+    head = shorten(robot.name) if title is None else title
+    sheet, panes = open_sheet(
+        robot, [rest, *(pose.nodes for pose in poses)], title=head, subtitle=_told(found), width=width
+    )
+    tracked = _tracked(robot, found, branches)
+    for pane in panes:
+        _draw_poses(sheet, pane, poses)
+    if len(poses) > 1:
+        _name_poses(sheet, panes[0], poses, tracked[0])
+    columns = 1 if len(tracked) == 1 else 2
+    rows = ceil(len(tracked) / columns)
+    _grow(sheet.figure, rows * ROW + 0.15)
+    for index, name in enumerate(tracked):
+        axes = _chart(sheet.figure, index, rows, columns, last=index >= len(tracked) - columns)
+        _draw_chart(axes, robot, name, found, branches)
+        if index == 0:
+            _draw_key(axes, branches)
+    return sheet.figure
+
+
+def _told(found: PathDependence) -> str:
+    if not found.poses:
+        return "no stable pose found"
+    if found.unique:
+        return f"one pose from {counted(found.starts, 'start')}"
+    where, far = found.largest
+    return f"{len(found.poses)} poses at the same contractions, up to {MILLIMETRES * far:.3g} mm apart at {where}"
+
+
+def _tracked(robot: Robot, found: PathDependence, branches: Sequence[Branch]) -> list[str]:
+    """Names of the markers that have a chart; one empty name for the node that moves most where there are none."""
+    names = [marker.name for marker in robot.markers]
+    if not names:
+        return [""]
+    ways = {name: max((_reach(robot, branch, name) for branch in branches), default=0.0) for name in names}
+    counts = found.spread if len(found.poses) > 1 else ways
+    told = [name for name in names if counts[name] >= TOLD * max(counts.values())]
+    return sorted(told, key=lambda name: -counts[name])[:MOST_MARKERS]
+
+
+def _reach(robot: Robot, branch: Branch, name: str) -> float:
+    return max(_moved(robot, point.pose, name) for point in branch.points)
+
+
+def _moved(robot: Robot, pose: SolvedPose, name: str) -> float:
+    """How far a marker is from its place at rest, or the node that moves most [m]."""
+    if not name:
+        return float(np.linalg.norm(pose.nodes - robot.body.mesh.nodes, axis=1).max())
+    at = next(marker.at for marker in robot.markers if marker.name == name)
+    return float(np.linalg.norm(pose.markers[name] - np.array(at)))
+
+
+def _colour(index: int) -> str:
+    return WINCHES[index % len(WINCHES)]
+
+
+def _draw_poses(sheet: Sheet, pane: Pane, poses: Sequence[SolvedPose]) -> None:
+    """The rest shape, the pose of least energy as a body, the others as outlines."""
+    pane.draw_ghost(sheet)
+    for index, pose in reversed(list(enumerate(poses))):
+        if index == 0:
+            pane.draw_body(sheet, pose.nodes, pale=0.35)
+        if len(poses) > 1:
+            rings = _outline(sheet, pane, pose.nodes)
+            colour = _colour(index)
+            fill = "none" if index == 0 else mix(colour, "#ffffff", 0.75)
+            sheet.area(
+                rings, facecolor=fill, alpha=0.55, edgecolor="none", joinstyle="round", zorder=2.5
+            )  # fmt: skip
+            sheet.area(
+                rings, facecolor="none", edgecolor=colour, linewidth=1.3, joinstyle="round", zorder=8 - 0.1 * index
+            )
+
+
+def _outline(sheet: Sheet, pane: Pane, nodes: Nodes) -> list[Places]:
+    """Rings around a body [mm]."""
+    if isinstance(pane, FlatPane):
+        return [MILLIMETRES * ring for ring in pane.skin.shape(nodes)]
+    spots = pane.camera.see(nodes)
+    pixel = fit_pixel(sheet, np.ptp(spots[:, :2], axis=0))
+    image = render(spots, pane.robot.body.mesh.boundary, pixel=pixel, shaded=False)
+    return [ring + pane.shift for ring in image.rings()]
+
+
+def _name_poses(sheet: Sheet, pane: Pane, poses: Sequence[SolvedPose], name: str) -> None:
+    """A numbered flag on each pose, at the marker that differs most."""
+    points: Spread = np.array([pose.markers[name] if name else _farthest(poses, pose) for pose in poses])
+    places = pane.places(points)
+    labels = Labels(sheet, rings=_outline(sheet, pane, poses[0].nodes), avoid=places)
+    for index, (place, pose) in enumerate(zip(places, poses, strict=True)):
+        sheet.dots(place[None], 5, color=_colour(index), markeredgecolor="white", markeredgewidth=0.8, zorder=12)
+        labels.flag(place, f"{index + 1}: {pose.energy:.4g} J", _colour(index))
+
+
+def _farthest(poses: Sequence[SolvedPose], pose: SolvedPose) -> Vector:
+    """The node that differs most between the poses [m]."""
+    apart = sum(np.linalg.norm(other.nodes - poses[0].nodes, axis=1) for other in poses)
+    return pose.nodes[int(np.argmax(apart))]
+
+
+def _grow(figure: Figure, more: float) -> None:
+    """Room below all that a figure holds [inch]."""
+    width, height = figure.get_size_inches()
+    figure.set_size_inches(width, height + more)
+    share = height / (height + more)
+    for axes in figure.axes:
+        box = axes.get_position()
+        axes.set_position((box.x0, 1 - share * (1 - box.y0), box.width, share * box.height))
+    for text in figure.texts:
+        x, y = text.get_position()
+        text.set_position((x, 1 - share * (1 - y)))
+
+
+def _chart(figure: Figure, index: int, rows: int, columns: int, *, last: bool) -> Axes:
+    """An empty chart below the poses; `last` in its column."""
+    width, height = figure.get_size_inches()
+    row, column = divmod(index, columns)
+    wide = (width - 0.2) / columns
+    left, low = 0.55 + column * wide, 0.42 + (rows - 1 - row) * ROW
+    axes = figure.add_axes((left / width, low / height, (wide - 0.6) / width, (ROW - EDGES) / height))
+    axes.grid(color=GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.set_facecolor("none")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(MUTED)
+    axes.tick_params(colors=MUTED, labelsize=7)
+    if last:
+        axes.set_xlabel("share of the contractions [%]", color=INK, fontsize=8)
+    return axes
+
+
+def _draw_chart(axes: Axes, robot: Robot, name: str, found: PathDependence, branches: Sequence[Branch]) -> None:
+    """How far one marker moves along the branches."""
+    title = f"{shorten(name)} moved [mm]" if name else "largest displacement [mm]"
+    axes.set_title(title, loc="left", color=INK, fontsize=8, fontweight="bold", parse_math=False)
+    for branch in branches:
+        shares = 100 * np.array([_share(point.pose, found.contractions) for point in branch.points])
+        moved = MILLIMETRES * np.array([_moved(robot, point.pose, name) for point in branch.points])
+        for part, stable in branch.runs():
+            dashes, colour, order = ("-", INK, 3.0) if stable else ((0, (2.5, 1.8)), ERROR, 2.5)
+            axes.plot(shares[part], moved[part], linewidth=1.4, linestyle=dashes, color=colour, zorder=order)
+        for point in branch.critical:
+            marker = "o" if point.kind == "fold" else "D"
+            axes.plot(
+                shares[point.index], moved[point.index], marker=marker, markersize=4.5, color=ERROR,
+                markeredgecolor="white", markeredgewidth=0.8, zorder=4, linestyle="none",
+            )  # fmt: skip
+    if len(found.poses) > 1:
+        _number_poses(axes, [MILLIMETRES * _moved(robot, one.pose, name) for one in found.poses])
+    axes.set_xlim(min(0.0, axes.get_xlim()[0] + 5), 102)
+
+
+def _draw_key(axes: Axes, branches: Sequence[Branch]) -> None:
+    """What lines and marks mean, where there is more than one kind of them."""
+    dot = {"linestyle": "none", "color": ERROR, "markersize": 4.5}
+    keys = {
+        "stable": Line2D([], [], color=INK, linewidth=1.4),
+        "unstable": Line2D([], [], color=ERROR, linewidth=1.4, linestyle=(0, (2.5, 1.8))),
+        "fold": Line2D([], [], marker="o", **dot),
+        "bifurcation": Line2D([], [], marker="D", **dot),
+    }
+    shown = {str(point.kind) for branch in branches for point in branch.critical}
+    shown |= {"stable" if stable else "unstable" for branch in branches for _, stable in branch.runs()}
+    if len(shown) > 1:
+        names = [name for name in keys if name in shown]
+        axes.legend(
+            [keys[name] for name in names], names, loc="best", fontsize=7, frameon=False, labelcolor=INK
+        )  # fmt: skip
+
+
+def _number_poses(axes: Axes, heights: Sequence[float]) -> None:
+    """A dot with its number for each pose, where all contractions are taken in; numbers keep apart."""
+    low, high = axes.get_ylim()
+    point = (high - low) / (72 * (ROW - EDGES))
+    last = -np.inf
+    for index in np.argsort(heights):
+        at, colour = heights[index], _colour(int(index))
+        last = max(at, last + 9 * point)
+        axes.plot(100, at, marker="o", markersize=6, color=colour, zorder=5, clip_on=False)
+        axes.annotate(
+            f"{index + 1}", (100, at), xytext=(7, (last - at) / point), textcoords="offset points", color=colour,
+            fontsize=8, fontweight="bold", va="center",
+        )  # fmt: skip
+
+
+def _share(pose: SolvedPose, goal: Vector) -> float:
+    """Share of the way from rest to the goal."""
+    return float(pose.contractions @ goal / (goal @ goal))
