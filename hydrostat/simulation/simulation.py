@@ -134,8 +134,6 @@ class Simulation:
             InputError: a cable with friction, whose pose depends on the way there; cotangents of a wrong shape.
             NotConvergedError: as for `jacobian`.
         """
-        if self.friction is not None:
-            raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
         return sensitivity(
             self.robot,
             self.assembly,
@@ -150,11 +148,18 @@ class Simulation:
     def response(
         self, pose: SolvedPose, forces: Float[np.ndarray, "dofs columns"]
     ) -> Float[np.ndarray, "dofs columns"]:
-        """How the nodes move under small forces at an equilibrium, cables without friction: H u = f, full Hessian.
+        """How the nodes move under small forces at an equilibrium [m]: H u = f, by the full Hessian.
+
+        Args:
+            pose: an equilibrium.
+            forces: on every degree of freedom [N], a column for each case.
 
         Raises:
+            InputError: a cable with friction, whose pose depends on the way there.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
+        if self.friction is not None:
+            raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
         stiffness = self.stiffness(pose)
         if stiffness.singular:
             raise NotConvergedError(
