@@ -29,8 +29,8 @@ class ShapeGoal(Objective):
 
     Attributes:
         outline: for a flat body [m], in the coordinates of the robot: `drawn_pose` reads one from a drawing.
-        surface: for a body in space, closed [m], in the coordinates of the robot: those of its file if that is read with
-            the same unit.
+        surface: for a body in space, closed [m], in the coordinates of the robot: drawn in those of its file, and read
+            with the same unit.
         weight: how much a metre of the root of the mean square counts beside a metre of a marker's error.
         samples: how many places of the shape are looked at; if left out, as many as there are nodes on the boundary,
             and 200 at least.

@@ -1,12 +1,11 @@
 """All objectives in one conformance suite. Oracles: central differences of sharp solves, closed forms."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
-import trimesh
-from builders import box_robot, strip_robot
+from wishes import BEFORE, BENT, BODIES, FLAT, PLANE, SPACE, arc, box
 
 from hydrostat.errors import InputError
 from hydrostat.geometry.outline import Outline
@@ -15,99 +14,11 @@ from hydrostat.ik.centre_goal import CentreGoal
 from hydrostat.ik.closeness import Closeness
 from hydrostat.ik.effort import Effort
 from hydrostat.ik.marker_goal import MarkerGoal
-from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objective import Objective, Posture
 from hydrostat.ik.postures import posture_at
 from hydrostat.ik.shape_goal import ShapeGoal
-from hydrostat.robot import Marker, Robot
 from hydrostat.simulation import Simulation
-from hydrostat.testing import ConformanceError, check_objective
-
-
-def flat() -> Robot:
-    """A strip whose upper cable is taut and whose lower one hangs loose by 5 mm; two markers."""
-    robot = strip_robot(columns=12, rows=3)
-    loose = replace(robot.cables[1], slack=0.005)
-    top = Marker(name="top", at=(0.1, 0.025))
-    return replace(robot, cables=(robot.cables[0], loose), markers=(*robot.markers, top))
-
-
-def space() -> Robot:
-    """A box with two markers."""
-    robot = box_robot()
-    return replace(robot, markers=(*robot.markers, Marker(name="top", at=(0.06, 0.02, 0.04))))
-
-
-FLAT, SPACE = Simulation(flat()), Simulation(space())
-BENT = {2: np.array([0.02, 0.001]), 3: np.array([0.012, 0.004])}
-"""In the plane the lower cable is slack, as the upper one bends the strip away from it."""
-
-BEFORE = {dim: simulation.solve(0.6 * BENT[dim]) for dim, simulation in ((2, FLAT), (3, SPACE))}
-
-
-def arc(length: float = 0.2, height: float = 0.05, turn: float = 0.9, count: int = 40) -> Outline:
-    """A strip bent upwards along an arc of a circle, its left end where that of `strip_robot` is."""
-    radius, angles = length / turn, np.linspace(0, turn, count)
-    sides = [
-        np.column_stack([(radius - offset) * np.sin(angles), radius - (radius - offset) * np.cos(angles)])
-        for offset in (-0.5 * height, 0.5 * height)
-    ]
-    return Outline(np.concatenate([sides[0], sides[1][::-1]]))
-
-
-def ring() -> Outline:
-    """The arc with a hole in it."""
-    angles = np.linspace(0, 2 * np.pi, 24, endpoint=False)
-    return Outline(
-        arc().exterior, (np.column_stack([0.1, 0.025]) + 0.01 * np.column_stack([np.cos(angles), np.sin(angles)]),)
-    )
-
-
-def surface(made: trimesh.Trimesh) -> Surface:
-    return Surface(np.asarray(made.vertices, dtype=float), np.asarray(made.faces))
-
-
-def box(
-    low: tuple[float, float, float] = (0.0, 0.0, 0.0), size: tuple[float, float, float] = (0.12, 0.04, 0.04)
-) -> Surface:
-    """A box of twelve triangles."""
-    made = trimesh.creation.box(size)
-    return surface(made.apply_translation(np.array(low) + 0.5 * np.array(size)))
-
-
-def capsule() -> Surface:
-    """A round rod along the body, all its normals different."""
-    made = trimesh.creation.capsule(height=0.1, radius=0.025, count=(14, 14))
-    made.apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
-    return surface(made.apply_translation((0.011, 0.023, 0.031)))
-
-
-PLANE: Mapping[str, Objective] = {
-    "markers": MarkerGoal(targets={"tip": (0.17, 0.06), "top": (0.09, 0.05)}),
-    "weighted markers": MarkerGoal(
-        targets={"tip": (0.17, 0.06), "top": (0.09, 0.05)}, weights={"tip": 3.0, "top": 0.0}, free={"tip": "x"}
-    ),
-    "outline": ShapeGoal(outline=arc()),
-    "outline with a hole": ShapeGoal(outline=ring(), weight=2.5, samples=77),
-    "centre": CentreGoal(target=(0.09, 0.02), weight=0.7),
-    "contraction": Effort(weight=1e-2),
-    "tension": Effort(of="tension", scale=3.0),
-    "slack": Effort(of="slack"),
-    "as before": Closeness(pose=BEFORE[2]),
-    "contractions as before": Closeness(pose=BEFORE[2], of="contractions"),
-    "body as before": Closeness(pose=BEFORE[2], of="nodes", weight=0.3),
-}
-BODIES: Mapping[str, Objective] = {
-    "markers": MarkerGoal(targets={"tip": (0.1, 0.03, 0.05), "top": (0.05, 0.02, 0.05)}),
-    "weighted markers": MarkerGoal(targets={"tip": (0.1, 0.03, 0.05)}, weights={"tip": 0.2}, free={"tip": "xz"}),
-    "surface": ShapeGoal(surface=capsule()),
-    "box": ShapeGoal(surface=box(low=(0.003, -0.002, 0.005)), weight=0.5, samples=150),
-    "centre": CentreGoal(target=(0.05, 0.02, 0.03)),
-    "contraction": Effort(),
-    "tension": Effort(of="tension"),
-    "slack": Effort(of="slack", scale=0.02),
-    "contractions as before": Closeness(pose=BEFORE[3], of="contractions"),
-    "body as before": Closeness(pose=BEFORE[3], of="nodes"),
-}
+from hydrostat.testing import check_objective
 
 
 @pytest.mark.parametrize("name", PLANE)
@@ -124,110 +35,6 @@ def test_the_suite_sees_a_taut_and_a_slack_cable() -> None:
     stretches = posture_at(FLAT, FLAT.solve(BENT[2])).stretches
     assert stretches[0] > 1e-3
     assert stretches[1] < -1e-3
-
-
-@dataclass(frozen=True)
-class Broken(Objective):
-    """A good objective, broken on purpose."""
-
-    change: Callable[[Term], Term]
-
-    def on(self, simulation: Simulation) -> Term:
-        return self.change(PLANE["outline"].on(simulation))
-
-
-class Wrapped(Term):
-    def __init__(self, term: Term) -> None:
-        self.term, self.asked = term, 0
-
-    def residual(self, posture: Posture) -> Rows:
-        return self.term.residual(posture)
-
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        return self.term.slopes(posture, moves)
-
-    def errors(self, posture: Posture) -> Mapping[str, float]:
-        return self.term.errors(posture)
-
-
-class SlopeOff(Wrapped):
-    """One entry of its largest row is 0.01 % too large."""
-
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        slopes = super().slopes(posture, moves).copy()
-        slopes[np.abs(slopes[:, 0]).argmax(), 0] *= 1.0001
-        return slopes
-
-
-class SlopesOfNodesAlone(Wrapped):
-    """As if the places of the shape were not pulled at by the body."""
-
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        slopes = super().slopes(posture, moves).copy()
-        slopes[-100:] = 0.0
-        return slopes
-
-
-class SlopesTurned(Wrapped):
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        return super().slopes(posture, moves).T
-
-
-class RowsThatComeAndGo(Wrapped):
-    def residual(self, posture: Posture) -> Rows:
-        residual = super().residual(posture)
-        return residual[: len(residual) - int(posture.contractions[0] > 0.025)]
-
-
-class RowsInATable(Wrapped):
-    def residual(self, posture: Posture) -> np.ndarray:
-        return super().residual(posture)[:, None]
-
-
-class ResidualNaN(Wrapped):
-    def residual(self, posture: Posture) -> Rows:
-        return np.where(np.arange(len(super().residual(posture))) == 3, np.nan, 1.0)
-
-
-class NegativeError(Wrapped):
-    def errors(self, posture: Posture) -> Mapping[str, float]:
-        return {"outline": -1e-9}
-
-
-class ErrorOfNothing(Wrapped):
-    def residual(self, posture: Posture) -> Rows:
-        return np.zeros(3)
-
-    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        return np.zeros((3, 2))
-
-
-class Forgetful(Wrapped):
-    """Counts how often it was asked."""
-
-    def residual(self, posture: Posture) -> Rows:
-        self.asked += 1
-        return super().residual(posture) + 1e-9 * self.asked
-
-
-SLIPS = {
-    SlopeOff: "slopes at",
-    SlopesOfNodesAlone: "slopes at",
-    SlopesTurned: "slopes: they have the shape",
-    RowsThatComeAndGo: "residual: it has .* rows at one posture",
-    RowsInATable: "residual: it has the shape",
-    ResidualNaN: r"residual at \[3\]: it is not finite",
-    NegativeError: "errors: outline is -1e-09",
-    ErrorOfNothing: "errors: outline is .* where the residual is zero",
-    Forgetful: "residual: it is another",
-}
-
-
-@pytest.mark.usefixtures("unchecked")
-@pytest.mark.parametrize("slip", SLIPS)
-def test_the_suite_can_fail(slip: type[Wrapped]) -> None:
-    with pytest.raises(ConformanceError, match=SLIPS[slip]):
-        check_objective(Broken(slip), FLAT, BENT[2])
 
 
 def at_rest(simulation: Simulation) -> Posture:
