@@ -34,7 +34,7 @@ class Place:
         tangent: direction of the branch.
         residual: largest component of a nodal force [N].
         allowed: residual [N] at which it counts as converged.
-        distance: from where it was sought.
+        distance: largest way of a node from where it was sought, as a share of the body's size, or of the share.
         iterations: of Newton.
     """
 
@@ -69,6 +69,7 @@ class Bordered:
         """The physics of a robot whose contractions go from `begin` to `goal` [m]."""
         mesh = simulation.robot.body.mesh
         self._simulation, self._begin, self._way = simulation, begin, goal - begin
+        self._size = mesh.size
         self._weight = 1.0 / (len(mesh.nodes) * mesh.size**2)
         self._noise = round_off(simulation.robot)
         body, pins = simulation.assembly.energies[:2]
@@ -92,8 +93,19 @@ class Bordered:
         """Length of a step."""
         return float(np.sqrt(self._weight * np.square(move).sum() + rate**2))
 
+    def farthest(self, move: Nodes, rate: float) -> float:
+        """Largest way of a node as a share of the body's size, or the change of the share if that is more."""
+        return max(float(np.linalg.norm(move, axis=1).max()) / self._size, abs(rate))
+
     def correct(
-        self, nodes: Nodes, share: float, across: Tangent, *, reach: float, before: Tangent | None = None
+        self,
+        nodes: Nodes,
+        share: float,
+        across: Tangent,
+        *,
+        reach: float = np.inf,
+        iterations: int = 20,
+        before: Tangent | None = None,
     ) -> Place | None:
         """The equilibrium in the plane through a place, across a direction; None if it is not within reach.
 
@@ -101,12 +113,13 @@ class Bordered:
             nodes: positions to begin at [m].
             share: of the way, to begin at.
             across: the direction; with one that moves no node the share is kept.
-            reach: how far it may be, and any step on the way there.
+            reach: how far it may be (see `farthest`).
+            iterations: most steps of Newton.
             before: direction that the new one shall continue; `across` if left out.
         """
         assembly = self._simulation.assembly
         first_nodes, first_share = nodes, share
-        for iteration in range(_ITERATIONS):
+        for iteration in range(iterations + 1):
             controls = self.controls(share)
             if not np.isfinite(assembly.value(nodes, controls)):
                 return None
@@ -116,21 +129,32 @@ class Bordered:
                 return None
             pulled = assembly.control_derivative(nodes, controls) @ self._way
             back, ahead = stiffness.solve(np.column_stack([gradient, pulled])).T
-            distance = self.length(nodes - first_nodes, share - first_share)
-            residual, allowed = float(np.abs(gradient).max()), self._allowed(nodes, controls)
-            if residual <= allowed:
-                tangent = self._tangent(ahead, before or across)
-                return Place(nodes, share, stiffness, tangent, residual, allowed, distance, iteration)
+            arrived = float(np.abs(gradient).max()) <= self._allowed(nodes, controls)
             missing = self._weight * (across.move @ (nodes - first_nodes).ravel()) + across.rate * (share - first_share)
             slope = across.rate - self._weight * (across.move @ ahead)
             change = -(missing - self._weight * (across.move @ back)) / slope
             step = -back - change * ahead
-            if not self.length(step, change) <= 2 * reach:
+            if not self.farthest(step.reshape(nodes.shape), change) <= 2 * reach:
                 return None
             nodes, share = self.bend(nodes, step), share + change
-            if not self.length(nodes - first_nodes, share - first_share) <= reach:
+            distance = self.farthest(nodes - first_nodes, share - first_share)
+            if not distance <= reach:
                 return None
+            if arrived:  # the last step is free: near a fold it still moves the nodes
+                tangent = self._tangent(ahead, before or across)
+                return self._place(nodes, share, stiffness, tangent, distance, iteration)
         return None
+
+    def _place(
+        self, nodes: Nodes, share: float, stiffness: Stiffness, tangent: Tangent, distance: float, iterations: int
+    ) -> Place | None:
+        """An equilibrium with its forces; None if there is none."""
+        controls = self.controls(share)
+        allowed = self._allowed(nodes, controls)
+        residual = float(np.abs(self._simulation.assembly.gradient(nodes, controls)).max())
+        if not residual <= allowed:
+            return None
+        return Place(nodes, share, stiffness, tangent, residual, allowed, distance, iterations)
 
     def _allowed(self, nodes: Nodes, controls: Vector) -> float:
         scale = float(self._simulation.tensions(nodes, controls).max(initial=0.0))
@@ -143,6 +167,3 @@ class Bordered:
         if self.dot(tangent, before) >= 0:
             return tangent
         return Tangent(-tangent.move, -tangent.rate)
-
-
-_ITERATIONS = 12

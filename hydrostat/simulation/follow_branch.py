@@ -27,15 +27,18 @@ class BranchOptions:
         largest_step: no step is longer.
         smallest_step: a shorter one is not tried.
         steps: most steps.
-        distance: largest way from the predicted place to the equilibrium, as a share of the step.
+        distance: largest way of a node from the predicted place to the equilibrium, as a share of the body's size and
+            of the step: 0.1 in a step of 0.02 lets no jump of more than 0.2 % of the body pass.
+        iterations: of Newton in a step; where the branch is near and no other is, a few are enough.
         turn: least cosine of the angle between the directions of the branch before and after a step.
     """
 
     first_step: float = 0.01
-    largest_step: float = 0.05
+    largest_step: float = 0.02
     smallest_step: float = 1e-7
-    steps: int = 1000
-    distance: float = 0.2
+    steps: int = 2000
+    distance: float = 0.1
+    iterations: int = 5
     turn: float = 0.8
 
 
@@ -112,7 +115,7 @@ class _Follower:
     def _begin(self, nodes: Nodes) -> Place:
         """The start as a place on the branch, in the direction of growing share."""
         still = Tangent(np.zeros(nodes.size), 1.0)
-        place = self.system.correct(nodes, 0.0, still, reach=np.inf)
+        place = self.system.correct(nodes, 0.0, still)
         if place is None or not place.distance < _SAME:
             raise InputError("start must be an equilibrium at its own contractions; solve for it first")
         return place if place.tangent.rate > 0 else place.turned()
@@ -127,7 +130,8 @@ class _Follower:
     def _raw_step(self, place: Place, step: float) -> Place | None:
         nodes = self.system.bend(place.nodes, step * place.tangent.move)
         share = place.share + step * place.tangent.rate
-        return self.system.correct(nodes, share, place.tangent, reach=self.options.distance * step)
+        reach, iterations = self.options.distance * step, self.options.iterations
+        return self.system.correct(nodes, share, place.tangent, reach=reach, iterations=iterations)
 
     def _next_step(self, trial: Place, step: float) -> float:
         """Longer where the branch is straight, shorter where it bends."""
@@ -154,7 +158,8 @@ class _Follower:
         part = (share - place.share) / (beyond.share - place.share)
         guess = place.nodes + part * (beyond.nodes - place.nodes)
         still = Tangent(np.zeros(guess.size), 1.0)
-        landed = self.system.correct(guess, share, still, reach=self.options.largest_step, before=place.tangent)
+        reach = self.system.farthest(beyond.nodes - place.nodes, beyond.share - place.share)
+        landed = self.system.correct(guess, share, still, reach=reach, before=place.tangent)
         if landed is None:
             return BranchReason.STUCK
         way = self.system.length(landed.nodes - place.nodes, landed.share - place.share)

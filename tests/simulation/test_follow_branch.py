@@ -113,18 +113,16 @@ def test_definiteness_is_lost_at_the_fold(simulation: Simulation, branch: Branch
         assert fine.points[point.index].pose.markers["top"][1] == pytest.approx(root, abs=1e-7)
 
 
-def test_the_winch_does_the_work_that_the_energy_gains(simulation: Simulation) -> None:
-    """DE/da is the tension, on unstable parts too: the trapezoid rule misses it by the square of the step."""
-    found = through(simulation, largest_step=0.01)
-    energies = np.array([point.pose.energy for point in found.points])
-    taken = np.array([point.pose.contractions[0] for point in found.points])
-    tensions = np.array([point.pose.tensions.sum() for point in found.points])
-    errors = []
-    for every in (4, 2):
-        gained, pulled, moved = energies[::every], tensions[::every], np.diff(taken[::every])
-        errors.append(np.abs(np.diff(gained) - moved * 0.5 * (pulled[1:] + pulled[:-1])).sum() / np.ptp(energies))
-    assert errors[1] < 3e-3
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.5)
+def test_the_winch_does_the_work_that_the_energy_gains(simulation: Simulation, branch: Branch) -> None:
+    """DE/da is the tension, on unstable parts too: by the trapezoid rule; it would see 1 % more tension."""
+    for part, _ in branch.runs():
+        points = branch.points[part]
+        energies = np.array([point.pose.energy for point in points])
+        taken = np.array([point.pose.contractions[0] for point in points])
+        tensions = np.array([point.pose.tensions.sum() for point in points])
+        steps = np.diff(taken) * 0.5 * (tensions[1:] + tensions[:-1])
+        assert np.abs(np.diff(energies) - steps).sum() < 3e-3 * np.abs(steps).sum()
+        assert np.abs(np.diff(energies) - 1.01 * steps).sum() > 3e-3 * np.abs(steps).sum()
 
 
 def test_the_tension_is_the_derivative_of_the_energy(simulation: Simulation, branch: Branch) -> None:
