@@ -36,7 +36,7 @@ class _Descent:
     def __init__(self, search: Search, state: State) -> None:
         self.search, self.state = search, state
         self.best = state
-        self.radius = search.options.first_step
+        self.radius = search.options.largest_step
         self.weight = search.weight(state)
 
     def run(self) -> Descent:
@@ -48,7 +48,7 @@ class _Descent:
             objective = search.objective(self.state, self.weight)
             step, promise = search.step(self.state, self.weight, self.radius)
             # What a model promises is concave in its radius, so a smaller radius must not end the search sooner.
-            least = options.progress * objective * min(self.radius / options.first_step, 1.0)
+            least = options.progress * objective * min(self.radius / options.largest_step, 1.0)
             if promise <= least and self.state.excess <= _EXCESS:
                 if self.state.sharp or not self._sharpen():
                     return self._end(InverseReason.OPTIMAL, iteration)
@@ -57,8 +57,11 @@ class _Descent:
             ratio = -np.inf
             if trial is not None and promise > 0:
                 ratio = (objective - search.objective(trial, self.weight)) / promise
-            self.radius = _next_radius(self.radius, ratio, self._used(step))
-            if trial is not None and self._accepts(trial, ratio):
+            accepted = trial is not None and self._accepts(trial, ratio)
+            if not (accepted or self.state.sharp) and self._sharpen():
+                continue  # what a state that does not rest yet promised may have been too good
+            self.radius = min(_next_radius(self.radius, ratio, self._used(step)), options.largest_step)
+            if trial is not None and accepted:
                 self.state = trial
                 if not trial.excess > _EXCESS:
                     self.best = trial
@@ -112,4 +115,4 @@ def _next_radius(radius: float, ratio: float, used: float) -> float:
     """Trust radius after a step that gained `ratio` times what it promised and used `used` of the range."""
     if ratio < 0.25:
         return 0.25 * min(radius, max(used, 1e-12))
-    return min(2 * radius, 1.0) if ratio > 0.75 and used > 0.9 * radius else radius
+    return 2 * radius if ratio > 0.75 and used > 0.9 * radius else radius

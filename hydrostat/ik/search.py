@@ -10,7 +10,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.linear_model import LinearModel, channels, slopes
-from hydrostat.ik.objective import Posture, Rows, Term
+from hydrostat.ik.objective import Moves, Posture, Rows, Slopes, Term
 from hydrostat.mechanics import NewtonResult
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -26,14 +26,16 @@ class InverseOptions:
         progress: the search ends where the linearised problem promises to lower the objective by less than this
             fraction.
         iterations: most Gauss-Newton steps.
-        first_step: largest change of a contraction in the first step, as a fraction of the winch's whole range.
+        largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
+        restarts: how often to begin elsewhere while a goal is not reached; none where time matters more.
     """
 
     effort: float = 1e-3
     tolerance: float = 1e-6
     progress: float = 1e-10
     iterations: int = 100
-    first_step: float = 0.3
+    largest_step: float = 0.3
+    restarts: int = 3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,6 +49,7 @@ class State:
         residual: of all terms there [m].
         errors: what is left of each goal [m].
         excess: by how much the largest tension exceeds its limit, as a share of it.
+        sharp: whether the nodes rest.
     """
 
     values: Vector
@@ -55,16 +58,12 @@ class State:
     residual: Rows
     errors: Mapping[str, float]
     excess: float
+    sharp: bool
 
     @property
     def error(self) -> float:
         """The largest error that is left of a goal [m]; infinite without goals."""
         return max(self.errors.values(), default=np.inf)
-
-    @property
-    def sharp(self) -> bool:
-        """Whether the nodes rest."""
-        return self.result.converged
 
 
 class Step(NamedTuple):
@@ -113,36 +112,50 @@ class Search:
         pose = start or self.simulation.rest
         values = self.bounds.channel(pose.contractions)
         if (self.bounds.spread @ values == pose.contractions).all() and _sound(pose.result):
-            return self._state(values, replace(pose.result, stiffness=self.simulation.stiffness(pose)))
-        return self._solved(values, pose)
+            return self._state(values, self._result(pose))
+        return self._relaxed(values, self._result(pose))
 
     def step(self, state: State, weight: float, radius: float) -> Step:
         """Where to go from a state: contractions of the channels [m], and what that promises."""
         places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
-        assert state.result.stiffness is not None
-        taut = places.first[places.active]
-        moves = slopes(self.simulation, state.posture, state.result.stiffness, taut)
-        matrix = np.vstack([term.slopes(state.posture, moves) for term in self.terms]) @ self.bounds.spread
+        moves = self._moves(state, places.first[places.active])
+        matrix = self._rows(state, moves)
         tensions = moves.tensions @ self.bounds.spread
         model = LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
         step, promise = model.best(weight * self._worth, radius)
         return Step(model.applied(step), promise)
+
+    def slopes(self, state: State) -> Slopes:
+        """D residual / d contractions of the channels; slack ones as if they had just become taut."""
+        places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
+        moves = self._moves(state, places.first[places.active])
+        return self._rows(state, moves)
+
+    def jump(self, values: Vector) -> State | None:
+        """The state to which contractions of the channels [m] lead at once from rest; None if that is none."""
+        self.solves += 1
+        return self._relaxed(values, self._result(self.simulation.rest))
 
     def approach(self, state: State, values: Vector) -> State | None:
         """The state at other contractions, near enough to equilibrium to go on; None if no stable one is found."""
         self.solves += 1
         contractions = self.bounds.spread @ values
         result = state.result
+        far = (np.abs(values - state.values) > _FAR * (self.bounds.high - self.bounds.low)).any()
         for _ in range(_RELAXATIONS):
             before = result.nodes
-            result = self.simulation.relax(before, contractions, result.stiffness, iterations=1)
+            iterations, tolerance = (_ITERATIONS, _LOOSE) if far else (1, None)
+            result = self.simulation.relax(
+                before, contractions, result.stiffness, iterations=iterations, tolerance=tolerance
+            )
             if not result.stable:
                 break
             found = self._state(values, result)
             left = np.abs(found.posture.nodes - result.nodes).max()
             if found.sharp or left <= _LEFT * np.abs(result.nodes - before).max():
                 return self._idle(found)
-        return self._solved(values, self.simulation.posed(self.bounds.spread @ state.values, state.result))
+            far = False
+        return self._relaxed(values, state.result)
 
     def sharpened(self, state: State) -> State | None:
         """The same contractions at equilibrium."""
@@ -165,30 +178,39 @@ class Search:
 
     def slope(self, state: State, weight: float) -> float:
         """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
-        assert state.result.stiffness is not None
         effort = weight * self._worth * state.values
         length = float(np.sqrt(2.0 * self.objective(state, weight)))
         if length == 0.0:
             return 0.0
-        moves = slopes(self.simulation, state.posture, state.result.stiffness, np.zeros(0, dtype=np.int64))
-        matrix = np.vstack([term.slopes(state.posture, moves) for term in self.terms]) @ self.bounds.spread
+        matrix = self._rows(state, self._moves(state, np.zeros(0, dtype=np.int64)))
         rises = (matrix.T @ state.residual + weight * self._worth * effort) / length
         low = (state.values <= self.bounds.low) & (rises > 0)
         high = (state.values >= self.bounds.high) & (rises < 0)
         return float(np.abs(rises[~(low | high)]).max(initial=0.0))
 
-    def _solved(self, values: Vector, start: SolvedPose) -> State | None:
-        """By all means that the simulation has."""
-        self.solves += 1
-        pose = self.simulation.solve(self.bounds.spread @ values, start=start, strict=False)
-        if not _sound(pose.result):
-            return None
-        return self._idle(self._state(values, replace(pose.result, stiffness=self.simulation.stiffness(pose))))
+    def _result(self, pose: SolvedPose) -> NewtonResult:
+        return replace(pose.result, stiffness=self.simulation.stiffness(pose))
+
+    def _moves(self, state: State, taut: np.ndarray) -> Moves:
+        assert state.result.stiffness is not None
+        return slopes(self.simulation, state.posture, state.result.stiffness, taut)
+
+    def _rows(self, state: State, moves: Moves) -> Slopes:
+        rows = [np.zeros((0, len(self.bounds.channels))), *(term.slopes(state.posture, moves) for term in self.terms)]
+        return np.vstack(rows) @ self.bounds.spread
+
+    def _relaxed(self, values: Vector, start: NewtonResult) -> State | None:
+        """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
+        result = self.simulation.relax(
+            start.nodes, self.bounds.spread @ values, start.stiffness, iterations=_ITERATIONS
+        )
+        return self._idle(self._state(values, result)) if _sound(result) else None
 
     def _state(self, values: Vector, result: NewtonResult) -> State:
         """What the terms see, where the nodes come to rest to first order."""
         contractions = self.bounds.spread @ values
-        posture = self._posture(self._resting(result, contractions), contractions)
+        sharp = result.residual <= self.simulation.allowed(result.nodes, contractions)
+        posture = self._posture(result.nodes if sharp else self._resting(result, contractions), contractions)
         errors: dict[str, float] = {}
         for term in self.terms:
             errors.update(term.errors(posture))
@@ -201,10 +223,12 @@ class Search:
             residual=np.concatenate([np.zeros(0), *(term.residual(posture) for term in self.terms)]),
             errors=errors,
             excess=max(float(excess.max(initial=0.0)), 0.0),
+            sharp=sharp,
         )
 
     def _resting(self, result: NewtonResult, contractions: Vector) -> Nodes:
-        if result.converged or result.stiffness is None or result.stiffness.singular:
+        """Where the nodes would come to rest, were the forces linear."""
+        if result.stiffness is None or result.stiffness.singular:
             return result.nodes
         gradient = self.simulation.assembly.gradient(result.nodes, contractions)
         return result.nodes - result.stiffness.solve(gradient).reshape(result.nodes.shape)
@@ -227,6 +251,15 @@ class Search:
 
 _RELAXATIONS = 6
 """Steps of Newton towards an equilibrium before stronger means are used."""
+
+_ITERATIONS = 30
+"""Steps of Newton before an equilibrium is given up."""
+
+_FAR = 0.02
+"""A step of more than this share of a channel's range is far: it takes more than one step of Newton."""
+
+_LOOSE = 1e-2
+"""Force left over after these, as a share of the largest tension."""
 
 _LEFT = 0.1
 """An equilibrium is near enough when what is left is this share of the last step of Newton."""

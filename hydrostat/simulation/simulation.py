@@ -385,6 +385,11 @@ class Simulation:
             stiffness=stiffness,
         )
 
+    def allowed(self, nodes: Nodes, contractions: Vector) -> float:
+        """Nodal force left over [N] at which nodes count as at rest."""
+        largest = float(self.tensions(nodes, contractions).max(initial=0.0))
+        return max(self.options.tolerance * largest, self._round_off.force)
+
     def posed(self, contractions: Vector, result: NewtonResult, slips: Vector | None = None) -> SolvedPose:
         """What Newton found, as a pose."""
         positions = self.marker_anchors.positions(result.nodes)
