@@ -1,6 +1,6 @@
 """`descend`: from a state to the nearest optimum."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,10 @@ class Descent:
     reason: InverseReason
     iterations: int
     weight: float
+
+    def after(self, iterations: int) -> "Descent":
+        """The same, counted with what was tried before."""
+        return replace(self, iterations=iterations)
 
 
 def descend(search: Search, state: State) -> Descent:
@@ -77,7 +81,9 @@ class _Descent:
 
     def _used(self, values: np.ndarray) -> float:
         bounds = self.search.bounds
-        return float((np.abs(values - self.state.values) / np.maximum(bounds.high - bounds.low, 1e-300)).max(initial=0.0))
+        return float(
+            (np.abs(values - self.state.values) / np.maximum(bounds.high - bounds.low, 1e-300)).max(initial=0.0)
+        )
 
     def _reached(self) -> bool:
         return self.state.error <= self.search.reached and self.state.excess <= _EXCESS

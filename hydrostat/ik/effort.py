@@ -56,6 +56,11 @@ class Effort(Objective):
         return _Contraction(weight / (self.scale or travel))
 
 
+def keeps_taut(objective: Objective) -> bool:
+    """Whether a wish is that cables be not slack."""
+    return isinstance(objective, Effort) and objective.of == EffortKind.SLACK
+
+
 _TENSION = 10.0
 """A pull that winches of small robots bear with ease [N]."""
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
+from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
 from hydrostat.ik.least_squares import least_squares
@@ -111,6 +112,25 @@ class LinearModel:
         full[active] = scale * step
         return full, 0.5 * float(right @ right - after @ after)
 
+    def slope(self, effort: Vector) -> float:
+        """The steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
+
+        Multipliers of the limits that hold are those that leave least of the gradient; 0 at an optimum (Karush, Kuhn
+        and Tucker).
+        """
+        right = np.concatenate([self.residual, effort * self.values])
+        length = float(np.linalg.norm(right))
+        if length == 0.0 or not self.active.any():
+            return 0.0
+        matrix = np.vstack([self.matrix, np.diag(effort)])[:, self.active]
+        gradient = matrix.T @ right / length
+        limits, room = self._limits(1.0)
+        rows = limits[room <= _HOLDS * np.abs(limits) @ self.range[self.active]]
+        if len(rows):
+            rows = rows / np.linalg.norm(rows, axis=1)[:, None]
+            gradient = gradient + rows.T @ nnls(rows.T, -gradient)[0]
+        return float(np.abs(gradient).max())
+
     def applied(self, step: Vector) -> Vector:
         """Contractions of the channels after a step [m]; slack ones that do not join stay as they are."""
         places = self.places
@@ -141,3 +161,7 @@ class LinearModel:
             largest - tensions,
         ]
         return np.vstack(rows), np.concatenate(room)
+
+
+_HOLDS = 1e-9
+"""A limit holds when less than this share of what the channels' ranges could use of it is left."""

@@ -13,8 +13,8 @@ from hydrostat.simulation import SolvedPose
 class InverseReason(StrEnum):
     """Why inverse kinematics ended."""
 
-    REACHED = "every marker is at its target"
-    OPTIMAL = "as near as these winches can bring the markers"
+    REACHED = "every goal is reached"
+    OPTIMAL = "as near as these winches can come"
     ITERATION_LIMIT = "iteration limit reached"
     NO_EQUILIBRIUM = "no equilibrium could be found on the way"
 
@@ -24,7 +24,7 @@ class ReachedPose:
     """The best pose that the winches can make.
 
     Attributes:
-        target: what was asked for; no targets if objectives alone were.
+        target: what was asked for; None if only objectives were.
         pose: the equilibrium found; its `contractions` are the answer.
         errors: what is left of each goal, such as the distance of a marker from its target [m].
         reason: why the search ended.
@@ -35,7 +35,7 @@ class ReachedPose:
         held: the limits that keep it from coming nearer, in words.
     """
 
-    target: Pose
+    target: Pose | None
     pose: SolvedPose
     errors: Mapping[str, float]
     reason: InverseReason

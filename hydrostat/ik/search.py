@@ -10,7 +10,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.linear_model import LinearModel, channels, slopes
-from hydrostat.ik.objective import Moves, Posture, Rows, Slopes, Term
+from hydrostat.ik.objective import Posture, Rows, Slopes, Term
 from hydrostat.mechanics import NewtonResult
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -82,9 +82,22 @@ class Search:
     """
 
     def __init__(
-        self, simulation: Simulation, terms: Sequence[Term], bounds: Bounds, options: InverseOptions
+        self,
+        simulation: Simulation,
+        terms: Sequence[Term],
+        bounds: Bounds,
+        options: InverseOptions,
+        *,
+        ready: bool = False,
     ) -> None:
         """What is sought.
+
+        Args:
+            simulation: the robot's physics.
+            terms: what should become small.
+            bounds: what the channels may do.
+            options: tolerances and limits of the search.
+            ready: keep slack cables just short of taut, so that they can join at once.
 
         Raises:
             InputError: a robot without cables, or one whose cables have friction.
@@ -105,6 +118,7 @@ class Search:
         travel = np.array([winch.travel for winch in robot.winches])
         self._worth = np.sqrt(bounds.spread.T @ (size / travel) ** 2)
         self._size = size
+        self._ready = ready
         self.solves = 0
 
     def begin(self, start: SolvedPose | None) -> State | None:
@@ -117,19 +131,17 @@ class Search:
 
     def step(self, state: State, weight: float, radius: float) -> Step:
         """Where to go from a state: contractions of the channels [m], and what that promises."""
-        places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
-        moves = self._moves(state, places.first[places.active])
-        matrix = self._rows(state, moves)
-        tensions = moves.tensions @ self.bounds.spread
-        model = LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
+        model = self._model(state)
         step, promise = model.best(weight * self._worth, radius)
         return Step(model.applied(step), promise)
 
+    def slope(self, state: State, weight: float) -> float:
+        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
+        return self._model(state).slope(weight * self._worth)
+
     def slopes(self, state: State) -> Slopes:
         """D residual / d contractions of the channels; slack ones as if they had just become taut."""
-        places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
-        moves = self._moves(state, places.first[places.active])
-        return self._rows(state, moves)
+        return self._model(state).matrix
 
     def jump(self, values: Vector) -> State | None:
         """The state to which contractions of the channels [m] lead at once from rest; None if that is none."""
@@ -157,6 +169,15 @@ class Search:
             far = False
         return self._relaxed(values, state.result)
 
+    def follow(self, state: State, values: Vector) -> State | None:
+        """The state at other contractions, at equilibrium; None if Newton alone does not find it."""
+        self.solves += 1
+        return self._relaxed(values, state.result)
+
+    def renewed(self, state: State) -> State:
+        """A state of another search of the same robot, in the eyes of this one."""
+        return self._state(state.values, state.result)
+
     def sharpened(self, state: State) -> State | None:
         """The same contractions at equilibrium."""
         if state.sharp:
@@ -176,28 +197,18 @@ class Search:
         error = float(np.sqrt(state.residual @ state.residual)) / self._size
         return min(self.options.effort, max(_SHARE * error, _LEAST_WEIGHT))
 
-    def slope(self, state: State, weight: float) -> float:
-        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
-        effort = weight * self._worth * state.values
-        length = float(np.sqrt(2.0 * self.objective(state, weight)))
-        if length == 0.0:
-            return 0.0
-        matrix = self._rows(state, self._moves(state, np.zeros(0, dtype=np.int64)))
-        rises = (matrix.T @ state.residual + weight * self._worth * effort) / length
-        low = (state.values <= self.bounds.low) & (rises > 0)
-        high = (state.values >= self.bounds.high) & (rises < 0)
-        return float(np.abs(rises[~(low | high)]).max(initial=0.0))
-
     def _result(self, pose: SolvedPose) -> NewtonResult:
         return replace(pose.result, stiffness=self.simulation.stiffness(pose))
 
-    def _moves(self, state: State, taut: np.ndarray) -> Moves:
+    def _model(self, state: State) -> LinearModel:
         assert state.result.stiffness is not None
-        return slopes(self.simulation, state.posture, state.result.stiffness, taut)
-
-    def _rows(self, state: State, moves: Moves) -> Slopes:
+        places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
+        taut = places.first[places.active]
+        moves = slopes(self.simulation, state.posture, state.result.stiffness, taut)
         rows = [np.zeros((0, len(self.bounds.channels))), *(term.slopes(state.posture, moves) for term in self.terms)]
-        return np.vstack(rows) @ self.bounds.spread
+        matrix = np.vstack(rows) @ self.bounds.spread
+        tensions = moves.tensions @ self.bounds.spread
+        return LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> State | None:
         """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
@@ -241,11 +252,12 @@ class Search:
         )
 
     def _idle(self, state: State) -> State:
-        """Slack channels go back towards rest, as far as they stay slack: nothing moves by that."""
+        """Slack channels go towards rest, or to the edge of taut, as far as they stay slack: nothing moves by that."""
         gaps = channels(self.simulation.cables.law, state.posture, state.values, self.bounds).gaps
-        edge = state.values + np.where(np.isfinite(gaps), gaps, 0.0)
-        wanted = np.clip(np.minimum(edge, 0.0), self.bounds.low, self.bounds.high)
-        values = np.where(gaps > 0, np.minimum(wanted, state.values), state.values)
+        slack = (gaps > 0) & np.isfinite(gaps)
+        edge = state.values + np.where(slack, gaps, 0.0)
+        wanted = np.clip(edge if self._ready else np.minimum(edge, 0.0), self.bounds.low, self.bounds.high)
+        values = np.where(slack, np.minimum(wanted, edge), state.values)
         return state if (values == state.values).all() else self._state(values, state.result)
 
 

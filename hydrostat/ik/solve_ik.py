@@ -1,22 +1,28 @@
 """`solve_ik`: the contractions that bring a robot nearest to a pose."""
 
 from collections.abc import Mapping, Sequence
-
-import numpy as np
+from itertools import islice
 
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik.limits import Bounds, Limits, bounds
+from hydrostat.ik.answer import answer
+from hydrostat.ik.descend import Descent, descend
+from hydrostat.ik.effort import keeps_taut
+from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.marker_goal import MarkerGoal
 from hydrostat.ik.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search import InverseOptions, Search, State
-from hydrostat.robot import Point, Pose, Robot
+from hydrostat.ik.restarts import restarts
+from hydrostat.ik.search import InverseOptions, Search
+from hydrostat.robot import Point, Pose
 from hydrostat.simulation import Simulation, SolvedPose
+
+Targets = Pose | Mapping[str, Point]
+"""Where markers should go [m]: a pose, or points by name."""
 
 
 def solve_ik(
     simulation: Simulation,
-    targets: Pose | Mapping[str, Point] | None = None,
+    targets: Targets | None = None,
     *,
     limits: Limits | None = None,
     objectives: Sequence[Objective] = (),
@@ -27,14 +33,14 @@ def solve_ik(
 
     Minimises half the squares of what targets and objectives miss while the winches stay within their limits. Each step
     is linearised by dx/da; equilibria on the way are only as sharp as they must be, the last one is exact. The answer
-    is a local optimum. The method: docs/theory/inverse.md.
+    is a local optimum; where it misses its goal, the search begins elsewhere a few times. docs/theory/inverse.md.
 
     Args:
         simulation: the robot's physics.
         targets: where markers should go [m].
         limits: what the winches may do, beside their travel and release.
         objectives: more that is wished for, or instead.
-        start: a pose to begin from, and to measure rates from; the rest pose if left out.
+        start: a pose to begin from, and to count rates from; the rest pose if left out.
         options: tolerances and limits of the search.
 
     Raises:
@@ -42,18 +48,50 @@ def solve_ik(
             cables or with friction.
         NotConvergedError: no equilibrium where the search begins.
     """
-    target = targets if isinstance(targets, Pose) else Pose(name="target", targets=dict(targets or {}))
-    wishes = [*([MarkerGoal(targets=target.targets)] if target.targets else []), *objectives]
-    if not wishes:
-        raise InputError("there is nothing to reach: give targets for markers, or objectives")
-    search = Search(
-        simulation,
-        [wish.on(simulation) for wish in wishes],
-        bounds(simulation, limits or Limits()),
-        options or InverseOptions(),
-    )
+    target = as_pose(targets)
+    given = limits or Limits()
+    allowed = bounds(simulation, given)
+    if given.rate is not None:
+        allowed = allowed.near(allowed.channel((start or simulation.rest).contractions))
+    terms = [wish.on(simulation) for wish in wishes(target, objectives)]
+    ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
+    search = Search(simulation, terms, allowed, options or InverseOptions(), ready=ready)
     begun = search.begin(start)
     if begun is None:
-        raise NotConvergedError("inverse kinematics has no equilibrium to begin from; give another start")
-    found = descend(search, begun)
-    return found.answer(search, target)
+        raise NotConvergedError("inverse kinematics finds no equilibrium to begin from; give another start")
+    found = _best(search, descend(search, begun))
+    return answer(search, found, target)
+
+
+def as_pose(targets: Targets | None) -> Pose | None:
+    """Targets as a pose; None if there are none."""
+    if targets is None or isinstance(targets, Pose):
+        return targets
+    return Pose(name="target", targets=dict(targets)) if targets else None
+
+
+def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objective]:
+    """All that is wished for.
+
+    Raises:
+        InputError: nothing.
+    """
+    found = [*([MarkerGoal(targets=target.targets)] if target else []), *objectives]
+    if not found:
+        raise InputError("there is nothing to reach: give targets for markers, or objectives")
+    return found
+
+
+def _best(search: Search, found: Descent) -> Descent:
+    """The best of several beginnings; the first that reaches its goal."""
+    if found.reason is InverseReason.REACHED or not found.state.errors:
+        return found
+    spent = found.iterations
+    for begun in islice(restarts(search, lambda: found.state), search.options.restarts):
+        other = descend(search, begun)
+        spent += other.iterations
+        if search.objective(other.state, found.weight) < search.objective(found.state, found.weight):
+            found = other
+        if found.reason is InverseReason.REACHED:
+            break
+    return found.after(spent)

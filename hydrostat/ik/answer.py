@@ -1,0 +1,50 @@
+"""`answer`: what a search found, in the words of its user."""
+
+import numpy as np
+
+from hydrostat.ik.descend import Descent
+from hydrostat.ik.reached_pose import InverseReason, ReachedPose
+from hydrostat.ik.search import Search
+from hydrostat.robot import Pose
+
+
+def answer(search: Search, found: Descent, target: Pose | None) -> ReachedPose:
+    """What was found, with how near it is to an optimum and the limits that hold."""
+    state = found.state
+    pose = search.simulation.posed(search.bounds.spread @ state.values, state.result)
+    return ReachedPose(
+        target=target,
+        pose=pose,
+        errors=state.errors,
+        reason=found.reason,
+        iterations=found.iterations,
+        solves=search.solves,
+        optimality=search.slope(state, found.weight),
+        held=() if found.reason is InverseReason.REACHED else held(search, found),
+    )
+
+
+def held(search: Search, found: Descent) -> tuple[str, ...]:
+    """The limits that hold, in words: winches at their ends, cables at their largest tension."""
+    state, bounds, robot = found.state, search.bounds, search.simulation.robot
+    words = []
+    hair = _HAIR * (bounds.high - bounds.low)
+    for channel, value in enumerate(state.values):
+        winches = [winch.name for winch, own in zip(robot.winches, bounds.channels, strict=True) if own == channel]
+        name = " and ".join(winches)
+        if value >= bounds.high[channel] - hair[channel]:
+            words.append(f"{name}: taken in as far as it may, {1e3 * value:.4g} mm")
+        elif value <= bounds.low[channel] + hair[channel] and state.posture.tensions[bounds.cables == channel].any():
+            words.append(f"{name}: let out as far as it may, {-1e3 * value:.4g} mm")
+    full = state.posture.tensions >= (1.0 - _HAIR) * bounds.tension
+    for name in dict.fromkeys(robot.cables[cable].winch for cable in np.flatnonzero(full)):
+        words.append(f"{name}: pulls as hard as it may, {bounds.tension[_first(search, name)]:.4g} N")
+    return tuple(words)
+
+
+def _first(search: Search, winch: str) -> int:
+    return next(index for index, cable in enumerate(search.simulation.robot.cables) if cable.winch == winch)
+
+
+_HAIR = 1e-6
+"""A limit holds within this share of it."""

@@ -1,0 +1,104 @@
+"""`Tracker`: contractions for targets that move, fit to be streamed."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.ik.answer import answer
+from hydrostat.ik.descend import Descent
+from hydrostat.ik.limits import Limits, bounds
+from hydrostat.ik.objective import Objective
+from hydrostat.ik.reached_pose import InverseReason, ReachedPose
+from hydrostat.ik.search import InverseOptions, Search
+from hydrostat.ik.solve_ik import Targets, as_pose, wishes
+from hydrostat.simulation import Simulation, SolvedPose
+
+
+class Tracker:
+    """Any-time inverse kinematics: each update is one step nearer, and a pose of its own (R34).
+
+    Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once. Slack cables
+    are kept just short of taut, so that they can join without a delay.
+
+        tracker = hs.Tracker(simulation, limits=hs.Limits(rate=0.1))
+        while True:
+            reached = tracker.update({"tip": (0.1, 0.02)}, seconds=1 / 30)
+
+    Attributes:
+        pose: where the robot is.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        *,
+        limits: Limits | None = None,
+        objectives: Sequence[Objective] = (),
+        start: SolvedPose | None = None,
+        options: InverseOptions | None = None,
+    ) -> None:
+        """Begin at `start`, the rest pose if left out; the other arguments are as for `solve_ik`."""
+        self._simulation, self._objectives = simulation, tuple(objectives)
+        self._limits, self._options = limits or Limits(), options or InverseOptions()
+        self._radius = self._options.largest_step
+        self._state = None
+        self.pose = start or simulation.rest
+
+    def update(self, targets: Targets | None = None, *, seconds: float) -> ReachedPose:
+        """One step towards where the targets are now.
+
+        Args:
+            targets: where markers should go [m].
+            seconds: since the last update; what a limit on the rate allows follows from it.
+
+        Raises:
+            InputError: as for `solve_ik`, or seconds not above 0.
+            NotConvergedError: no equilibrium where it begins.
+        """
+        if not seconds > 0:
+            raise InputError(f"seconds since the last update must be above 0, not {seconds:g}")
+        target = as_pose(targets)
+        search = self._search(target, seconds)
+        state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
+        if state is None:
+            raise NotConvergedError("inverse kinematics finds no equilibrium to begin from; give another start")
+        weight = search.weight(state)
+        reason = InverseReason.ITERATION_LIMIT
+        if state.error <= search.reached:
+            reason = InverseReason.REACHED
+        else:
+            before = search.objective(state, weight)
+            for _ in range(_TRIES):
+                step = search.step(state, weight, self._radius)
+                if step.promise <= self._options.progress * before:
+                    reason = InverseReason.OPTIMAL
+                    break
+                trial = search.follow(state, step.values)
+                if trial is not None and search.objective(trial, weight) < before and trial.excess <= _EXCESS:
+                    self._radius = min(2.0 * self._radius, self._options.largest_step)
+                    state = trial
+                    break
+                self._radius *= 0.25
+            else:
+                reason = InverseReason.NO_EQUILIBRIUM
+        self._state = state
+        if state.error <= search.reached:
+            reason = InverseReason.REACHED
+        found = Descent(state=state, reason=reason, iterations=1, weight=weight)
+        reached = answer(search, found, target)
+        self.pose = reached.pose
+        return reached
+
+    def _search(self, target, seconds: float) -> Search:
+        limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
+        allowed = bounds(self._simulation, limits)
+        allowed = allowed.near(allowed.channel(self.pose.contractions))
+        terms = [wish.on(self._simulation) for wish in wishes(target, self._objectives)]
+        return Search(self._simulation, terms, allowed, self._options, ready=True)
+
+
+_TRIES = 3
+"""Steps tried in one update before the robot stays where it is."""
+
+_EXCESS = 1e-3
+"""A tension may exceed its limit by this share on the way."""
