@@ -36,6 +36,7 @@ class Assembly:
         ]
         self._rest = rest
         self._pattern()
+        self._quadratic = self._sum_of_quadratic()
         self._analysis = Analysis(self._indptr, self._indices, dim=rest.shape[1], points=rest)
 
     def with_energies(self, energies: Sequence[Energy]) -> "Assembly":
@@ -44,6 +45,9 @@ class Assembly:
             raise ValueError("the energies must have the stencils of those they replace")
         other = copy(self)
         other.energies = tuple(energies)
+        pairs = zip(self.energies, other.energies, strict=True)
+        if any(old is not new and (old.quadratic or new.quadratic) for old, new in pairs):
+            other._quadratic = other._sum_of_quadratic()
         return other
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
@@ -67,14 +71,29 @@ class Assembly:
 
         `lift` is the share, 0 to 1, of what is negative in the blocks that is taken out (E6).
         """
-        data = np.zeros(len(self._indices))
+        data = self._hessian_values(nodes, controls, lift)
+        return csc_array((data, self._indices, self._indptr), shape=(self.size, self.size))
+
+    def _hessian_values(self, nodes: Nodes, controls: Vector, lift: float) -> Vector:
+        data = self._quadratic.copy()
         for energy, slots in zip(self.energies, self._slots, strict=True):
+            if energy.quadratic:
+                continue
             if lift and not energy.convex:
                 blocks = energy.lifted_hessian(nodes, controls, lift)
             else:
                 blocks = energy.hessian(nodes, controls)
             _add_blocks(energy.stencils, slots, self._strides, blocks, data)
-        return csc_array((data, self._indices, self._indptr), shape=(self.size, self.size))
+        return data
+
+    def _sum_of_quadratic(self) -> Vector:
+        """Values of the Hessian of the energies in which it is constant."""
+        data = np.zeros(len(self._indices))
+        rest, idle = np.zeros(self.shape), np.zeros(self.control_count)
+        for energy, slots in zip(self.energies, self._slots, strict=True):
+            if energy.quadratic:
+                _add_blocks(energy.stencils, slots, self._strides, energy.hessian(rest, idle), data)
+        return data
 
     def low_rank(
         self, nodes: Nodes, controls: Vector
@@ -96,11 +115,10 @@ class Assembly:
 
         `lift` is as in `hessian`; `shift`, a share of the largest diagonal entry, is added to the diagonal.
         """
-        matrix = self.hessian(nodes, controls, lift=lift)
+        values = self._hessian_values(nodes, controls, lift)
         if shift:
-            diagonal = matrix.diagonal()
-            matrix.setdiag(diagonal + shift * diagonal.max())
-        return Stiffness(self._analysis.factorise(matrix.data), *self.low_rank(nodes, controls))
+            values[self._diagonal] += shift * values[self._diagonal].max()
+        return Stiffness(self._analysis.factorise(values), *self.low_rank(nodes, controls))
 
     def hessian_product(
         self, nodes: Nodes, controls: Vector, columns: Float[np.ndarray, "dofs columns"]
@@ -140,6 +158,8 @@ class Assembly:
             [np.tile(below[starts[node] : starts[node + 1]].ravel(), dim) for node in range(count)]
         )
         self._indptr = np.concatenate([[0], np.cumsum(np.repeat(self._strides, dim))]).astype(np.int32)
+        own = np.repeat(np.arange(self.size), np.diff(self._indptr))
+        self._diagonal = np.flatnonzero(self._indices == own)
         first = starts[columns] * dim * dim + (np.arange(len(entries)) - starts[columns]) * dim
         slots = np.split(first[places], np.cumsum([len(key) for key in keys]))
         self._slots = [

@@ -60,7 +60,9 @@ class CableEnergy(Energy):
 
     def lengths(self, nodes: Nodes) -> Vector:
         """Length of each cable without its sheathed segments [m]."""
-        return np.bincount(self.cables, self._spans(nodes)[1], len(self.winches)).astype(float)
+        lengths = np.zeros(len(self.winches))
+        _lengths(nodes, self.stencils, self.weights, self.offsets, self.roundings, self.cables, lengths)
+        return lengths
 
     def stretches(self, nodes: Nodes, controls: Vector) -> Vector:
         """S [m]: how much longer each cable is than it should be; negative when slack."""
@@ -138,6 +140,20 @@ def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
             spans[term, axis] = span
             square += span * span
         lengths[term] = math.sqrt(square)
+
+
+@njit(**KERNEL)
+@no_type_check
+def _lengths(nodes, stencils, weights, offsets, roundings, cables, lengths):
+    """Add up the lengths of the segments of each cable."""
+    for term in range(stencils.shape[0]):
+        square = roundings[term] * roundings[term]
+        for axis in range(nodes.shape[1]):
+            span = offsets[term, axis]
+            for corner in range(stencils.shape[1]):
+                span += weights[term, corner] * nodes[stencils[term, corner], axis]
+            square += span * span
+        lengths[cables[term]] += math.sqrt(square)
 
 
 @njit(**KERNEL)

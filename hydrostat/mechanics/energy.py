@@ -24,11 +24,13 @@ class Energy(ABC):
         stencils: nodes of each term, (terms, corners).
         controls: index of the control of each term, (terms,); None for an energy without controls.
         convex: whether every Hessian block is positive semidefinite wherever the energy is defined.
+        quadratic: whether the Hessian is the same for all nodes and controls; then it is added up once.
     """
 
     stencils: Stencils
     controls: Int[np.ndarray, " terms"] | None = None
     convex: ClassVar[bool] = True
+    quadratic: ClassVar[bool] = False
 
     @abstractmethod
     def value(self, nodes: Nodes, controls: Vector) -> float:

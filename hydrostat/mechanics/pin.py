@@ -10,6 +10,8 @@ from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 class PinEnergy(Energy):
     """Sum of k/2 |y - y_pin|^2 over anchors y = sum of weights x nodes (R29, E10)."""
 
+    quadratic = True
+
     def __init__(
         self,
         *,

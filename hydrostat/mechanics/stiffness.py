@@ -49,9 +49,13 @@ class Stiffness:
             return
         self._root = _square_root(weights)
         inner = np.eye(self._root.shape[1]) + self._root.T @ self.compliance @ self._root
-        signs, self._axes = np.linalg.eigh(0.5 * (inner + inner.T))
-        with np.errstate(divide="ignore"):
-            self._inverse = 1.0 / signs
+        inner = 0.5 * (inner + inner.T)
+        if self.definite:  # then inner is so too, and there are no signs to count
+            self._inverse = np.linalg.inv(inner)
+            return
+        signs, axes = np.linalg.eigh(inner)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self._inverse = axes * (1.0 / signs) @ axes.T
         size = np.abs(signs)
         self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
         self.definite = not self.singular and self._factors.negative == int((signs < 0).sum())
@@ -75,9 +79,8 @@ class Stiffness:
         first = self._factors.solve(right)
         if self._root is None:
             return first
-        turned = (self._root @ self._axes).T @ (self.columns.T @ first)
-        turned = (turned.T * self._inverse).T
-        return first - self.moves @ (self._root @ (self._axes @ turned))
+        pulls = self._root.T @ (self.columns.T @ first)
+        return first - self.moves @ (self._root @ (self._inverse @ pulls))
 
 
 def _square_root(weights: Small) -> Small:

@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from typing import no_type_check
 
 import numpy as np
+from jaxtyping import Float
 from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.kernel import INNER
+from hydrostat.kernel import INNER, KERNEL
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -27,20 +28,23 @@ class TensionLaw:
 
     def energy(self, stretch: Vector) -> Vector:
         """Integral of the tension [J]."""
-        k, eps = self.stiffness, self.smoothing
-        within = np.clip(stretch, 0.0, 2 * eps)
-        straight = 0.5 * (stretch - eps) ** 2 + eps**2 / 6
-        return k * np.where(stretch > 2 * eps, straight, within**3 / (12 * eps))
+        return self._evaluate(stretch)[0]
 
     def tension(self, stretch: Vector) -> Vector:
         """T [N] (R26)."""
-        k, eps = self.stiffness, self.smoothing
-        within = np.clip(stretch, 0.0, 2 * eps)
-        return k * np.where(stretch > 2 * eps, stretch - eps, within**2 / (4 * eps))
+        return self._evaluate(stretch)[1]
 
     def tangent(self, stretch: Vector) -> Vector:
         """dT/ds [N/m]."""
-        return self.stiffness * np.clip(stretch / (2 * self.smoothing), 0.0, 1.0)
+        return self._evaluate(stretch)[2]
+
+    def _evaluate(self, stretch: Vector) -> Float[np.ndarray, "three cables"]:
+        stiffness, smoothing = self.stiffness, self.smoothing
+        if stretch.shape != stiffness.shape:
+            stiffness, smoothing, stretch = np.broadcast_arrays(stiffness, smoothing, stretch)
+        found = np.empty((3, len(stretch)))
+        _evaluate(stiffness, smoothing, np.ascontiguousarray(stretch), found)
+        return found
 
     def stretch(self, tension: Vector) -> Vector:
         """The stretch [m] at which a taut cable has this tension > 0 [N]."""
@@ -58,3 +62,11 @@ def spring(k, eps, stretch):
     if stretch <= 2.0 * eps:
         return k * stretch**3 / (12.0 * eps), k * stretch * stretch / (4.0 * eps), k * stretch / (2.0 * eps)
     return 0.5 * k * (stretch - eps) ** 2 + k * eps * eps / 6.0, k * (stretch - eps), k
+
+
+@njit(**KERNEL)
+@no_type_check
+def _evaluate(stiffness, smoothing, stretch, found):
+    """Energy, tension and slope of every cable."""
+    for cable in range(stiffness.shape[0]):
+        found[0, cable], found[1, cable], found[2, cable] = spring(stiffness[cable], smoothing[cable], stretch[cable])

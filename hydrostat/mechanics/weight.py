@@ -9,6 +9,8 @@ from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 class WeightEnergy(Energy):
     """-sum of f . (x - X), with a force f at each node that does not change (E5)."""
 
+    quadratic = True
+
     def __init__(self, nodes: Nodes, forces: Points) -> None:
         """Forces [N] at each of the `nodes`; the energy is 0 where these are [m]."""
         self.stencils = np.arange(len(nodes))[:, None]

@@ -48,6 +48,7 @@ class Simulation:
                 robot, self.assembly, self.friction, options=self.options, round_off=self._round_off, warp=self._warp
             )
         self._last: tuple[SolvedPose, Stiffness] | None = None
+        self._resting: tuple[SolvedPose, Stiffness] | None = None
 
     def contractions(self, given: Contractions) -> Vector:
         """Contractions as an array in winch order [m].
@@ -275,7 +276,9 @@ class Simulation:
         Raises:
             NotConvergedError: as for `solve`.
         """
-        return self.solve(np.zeros(len(self.robot.winches)))
+        pose = self.solve(np.zeros(len(self.robot.winches)))
+        self._resting = self._last
+        return pose
 
     @cached_property
     def _rest_stiffness(self) -> Stiffness:
@@ -288,8 +291,8 @@ class Simulation:
         return route_points(self.robot)
 
     def _known_stiffness(self, pose: SolvedPose) -> Stiffness | None:
-        """The Hessian at a pose if it is at hand: that of the last one solved."""
-        return self._last[1] if self._last is not None and self._last[0] is pose else None
+        """The Hessian at a pose if it is at hand: that of the last one solved, or of the pose at rest."""
+        return next((found[1] for found in (self._last, self._resting) if found and found[0] is pose), None)
 
     def _approach(self, goal: Vector, start: SolvedPose | None) -> NewtonResult:
         """At once; failing that in load steps from `start`, then from rest, and last by patience alone."""
