@@ -184,7 +184,7 @@ class Search:
             return state
         self.solves += 1
         contractions = self.bounds.spread @ state.values
-        result = self.simulation.relax(state.result.nodes, contractions, state.result.stiffness)
+        result = self.simulation.relax(state.result.nodes, contractions, state.result.stiffness, exact=True)
         return self._state(state.values, result) if _sound(result) else None
 
     def objective(self, state: State, weight: float) -> float:
@@ -270,10 +270,10 @@ _ITERATIONS = 30
 _FAR = 0.02
 """A step of more than this share of a channel's range is far: it takes more than one step of Newton."""
 
-_LOOSE = 1e-2
+_LOOSE = 0.1
 """Force left over after these, as a share of the largest tension."""
 
-_LEFT = 0.1
+_LEFT = 0.2
 """An equilibrium is near enough when what is left is this share of the last step of Newton."""
 
 _SHARE = 0.1

@@ -98,6 +98,7 @@ def minimise(
     options: NewtonOptions,
     warp: Warp | None = None,
     stiffness: Stiffness | None = None,
+    exact: bool = False,
 ) -> NewtonResult:
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
@@ -115,8 +116,9 @@ def minimise(
         warp: bends steps along arcs; only straight ones without it.
         stiffness: the Hessian at `start` at other controls, such as those at which it is in equilibrium. The first step
             then costs no factorisation: it is the prediction dx/da, bent along arcs.
+        exact: whether `stiffness` is that of `start` to rounding; then it may stand for the Hessian at an end nearby.
     """
-    return _Descent(assembly, controls, force_scale, round_off, options, warp).run(start, stiffness)
+    return _Descent(assembly, controls, force_scale, round_off, options, warp, exact).run(start, stiffness)
 
 
 class _Place(NamedTuple):
@@ -145,7 +147,9 @@ class _Descent:
         round_off: RoundOff,
         options: NewtonOptions,
         warp: Warp | None,
+        exact: bool,
     ) -> None:
+        self.exact = exact
         self.assembly, self.controls = assembly, controls
         self.force_scale, self.noise, self.options, self.warp = force_scale, round_off, options, warp
         self.cables = next((energy for energy in assembly.energies if isinstance(energy, CableEnergy)), None)
@@ -187,7 +191,9 @@ class _Descent:
                 return found
         reused = self._reuse(place.nodes, known)
         stiffness = reused or self._definite(place.nodes)
-        self.last, self.sharp = (stiffness, near and reused is None) if self.share == 0.0 else (None, False)
+        self.last, self.sharp = (
+            (stiffness, near and (reused is None or self.exact)) if self.share == 0.0 else (None, False)
+        )
         return None if stiffness is None else self._search(place, stiffness)
 
     def _reuse(self, nodes: Nodes, known: Stiffness | None) -> Stiffness | None:

@@ -360,6 +360,7 @@ class Simulation:
         iterations: int | None = None,
         tolerance: float | None = None,
         assembly: Assembly | None = None,
+        exact: bool = False,
     ) -> NewtonResult:
         """Newton from some nodes on, for those who follow a pose step by step; `solve` is what others want.
 
@@ -371,6 +372,7 @@ class Simulation:
             iterations: most steps, if fewer than the simulation's options allow.
             tolerance: if looser than theirs.
             assembly: other physics on the same nodes.
+            exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
         """
         options = self.options
         if iterations is not None:
@@ -386,6 +388,7 @@ class Simulation:
             options=options,
             warp=self._warp,
             stiffness=stiffness,
+            exact=exact,
         )
 
     def allowed(self, nodes: Nodes, contractions: Vector) -> float:
