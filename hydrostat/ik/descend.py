@@ -29,30 +29,39 @@ class Descent:
         return replace(self, iterations=iterations)
 
 
-def descend(search: Search, state: State) -> Descent:
-    """Steps until a goal is reached or nothing is left to gain."""
-    return _Descent(search, state).run()
+def descend(search: Search, state: State, *, weight: float | None = None) -> Descent:
+    """Steps until a goal is reached or nothing is left to gain.
+
+    Args:
+        search: the problem.
+        state: where to begin.
+        weight: of the effort; then it stays, and the end is an optimum of both. Else it falls with the error.
+    """
+    return _Descent(search, state, weight).run()
 
 
 class _Descent:
     """One run: trust radius, weight of the effort, the best state."""
 
-    def __init__(self, search: Search, state: State) -> None:
+    def __init__(self, search: Search, state: State, weight: float | None) -> None:
         self.search, self.state = search, state
         self.best = state
         self.radius = search.options.largest_step
-        self.weight = search.weight(state)
+        self.fixed = weight is not None
+        self.weight = search.weight(state) if weight is None else weight
 
     def run(self) -> Descent:
         search, options = self.search, self.search.options
         for iteration in range(options.iterations):
-            if self.state.error <= search.reached and self._sharpen() and self._reached():
-                return self._end(InverseReason.REACHED, iteration)
-            self.weight = min(self.weight, search.weight(self.state))
+            if not self.fixed:
+                if self.state.error <= search.reached and self._sharpen() and self._reached():
+                    return self._end(InverseReason.REACHED, iteration)
+                self.weight = min(self.weight, search.weight(self.state))
             objective = search.objective(self.state, self.weight)
             step, promise = search.step(self.state, self.weight, self.radius)
             # What a model promises is concave in its radius, so a smaller radius must not end the search sooner.
-            least = options.progress * objective * min(self.radius / options.largest_step, 1.0)
+            progress = _ROUGH if self.fixed else options.progress
+            least = progress * objective * min(self.radius / options.largest_step, 1.0)
             if promise <= least and self.state.excess <= _EXCESS:
                 if self.state.sharp or not self._sharpen():
                     return self._end(InverseReason.OPTIMAL, iteration)
@@ -106,6 +115,9 @@ class _Descent:
             reason = InverseReason.REACHED
         return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
 
+
+_ROUGH = 1e-4
+"""Progress at which a descent with a fixed weight of the effort ends: it is a stage on the way."""
 
 _EXCESS = 1e-6
 """A tension may exceed its limit by this share."""

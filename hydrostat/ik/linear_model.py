@@ -87,6 +87,7 @@ class LinearModel:
         self._pulls = posture.tensions[places.first], tensions[places.first]
         limited = np.isfinite(bounds.tension)
         self._tensions = posture.tensions[limited], tensions[limited], bounds.tension[limited]
+        self._efforts = posture.tensions, tensions
         self.active = places.active
         self.range = np.maximum(bounds.high - bounds.low, np.finfo(float).tiny)
 
@@ -94,13 +95,13 @@ class LinearModel:
         """The step of the channels [m] of least residual and effort, and by how much it lowers half their squares.
 
         Args:
-            effort: residual [m] that one metre of contraction of each channel is worth.
+            effort: residual that a tension of each cable is worth [m/N].
             radius: largest step, as a share of each channel's range.
         """
         active = self.active
         scale = self.range[active]
-        matrix = np.vstack([self.matrix[:, active] * scale, np.diag(effort[active] * scale)])
-        right = np.concatenate([self.residual, (effort * self.values)[active]])
+        matrix, right = self._squares(effort)
+        matrix = matrix * scale
         limits, room = self._limits(radius)
         step = least_squares(matrix, -right, limits * scale, room)
         if step is None:
@@ -118,11 +119,10 @@ class LinearModel:
         Multipliers of the limits that hold are those that leave least of the gradient; 0 at an optimum (Karush, Kuhn
         and Tucker).
         """
-        right = np.concatenate([self.residual, effort * self.values])
+        matrix, right = self._squares(effort)
         length = float(np.linalg.norm(right))
         if length == 0.0 or not self.active.any():
             return 0.0
-        matrix = np.vstack([self.matrix, np.diag(effort)])[:, self.active]
         gradient = matrix.T @ right / length
         limits, room = self._limits(1.0)
         rows = limits[room <= _HOLDS * np.abs(limits) @ self.range[self.active]]
@@ -144,6 +144,12 @@ class LinearModel:
         ends[leaves] += (step - places.beyond)[leaves]
         ends[stays] += step[stays]
         return np.clip(ends, self.bounds.low, self.bounds.high)
+
+    def _squares(self, effort: Vector) -> tuple[np.ndarray, Vector]:
+        """Slopes with respect to active channels, and values, of residual and effort."""
+        tensions, rises = self._efforts
+        matrix = np.vstack([self.matrix, effort[:, None] * rises])[:, self.active]
+        return matrix, np.concatenate([self.residual, effort * tensions])
 
     def _limits(self, radius: float) -> tuple[np.ndarray, np.ndarray]:
         """Rows and room of all limits on the step of the active channels [m], [N]."""

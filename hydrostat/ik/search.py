@@ -20,13 +20,14 @@ class InverseOptions:
     """How inverse kinematics searches (M7).
 
     Attributes:
-        effort: marker error, as a fraction of the body's size, that full travel of one winch is worth: a small
-            regulariser that keeps idle winches at rest (E18). It falls with the error, so that it hides no target.
+        effort: marker error, as a fraction of the body's size, that the tension at full travel of a winch is worth: a
+            small regulariser against cables that pull in vain (E18). It falls with the error, so it hides no target.
         tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
         progress: the search ends where the linearised problem promises to lower the objective by less than this
             fraction.
         iterations: most Gauss-Newton steps.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
+        unique: where the goals leave a choice, take the contractions that pull least, whatever the start.
         restarts: how often to begin elsewhere while a goal is not reached; none where time matters more.
     """
 
@@ -35,6 +36,7 @@ class InverseOptions:
     progress: float = 1e-10
     iterations: int = 100
     largest_step: float = 0.3
+    unique: bool = True
     restarts: int = 3
 
 
@@ -115,8 +117,7 @@ class Search:
         self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
         size = robot.body.mesh.size
         self.reached = options.tolerance * size
-        travel = np.array([winch.travel for winch in robot.winches])
-        self._worth = np.sqrt(bounds.spread.T @ (size / travel) ** 2)
+        self._worth = size / _full_tensions(simulation)
         self._size = size
         self._ready = ready
         self.solves = 0
@@ -138,6 +139,18 @@ class Search:
     def slope(self, state: State, weight: float) -> float:
         """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
         return self._model(state).slope(weight * self._worth)
+
+    def wasteful(self, state: State) -> bool:
+        """Whether the goals leave a choice, and other contractions nearby would reach them with less effort."""
+        model = self._model(state)
+        moves = (model.matrix * model.range)[:, model.active]
+        if not moves.size:
+            return False
+        values = np.linalg.svd(moves, compute_uv=False)
+        if moves.shape[0] >= moves.shape[1] and values[-1] >= _IDLE * values[0]:
+            return False
+        step, _ = model.best(_IDLE * self._worth, 1.0)
+        return bool((np.abs(step) > _WASTE * model.range).any())
 
     def slopes(self, state: State) -> Slopes:
         """D residual / d contractions of the channels; slack ones as if they had just become taut."""
@@ -189,7 +202,7 @@ class Search:
 
     def objective(self, state: State, weight: float) -> float:
         """Half the squares of residual and effort [m^2]."""
-        effort = weight * self._worth * state.values
+        effort = weight * self._worth * state.posture.tensions
         return 0.5 * float(state.residual @ state.residual + effort @ effort)
 
     def weight(self, state: State) -> float:
@@ -276,11 +289,25 @@ _LOOSE = 0.1
 _LEFT = 0.2
 """An equilibrium is near enough when what is left is this share of the last step of Newton."""
 
+_IDLE = 1e-3
+"""A change that moves less than this share of what the best one moves counts as none."""
+
+_WASTE = 2e-3
+"""Contractions of least effort are not told from others nearer than this share of their range."""
+
 _SHARE = 0.1
 """Weight of the effort, as a share of the error in sizes of the body."""
 
 _LEAST_WEIGHT = 1e-8
 """Of the effort; enough to keep the linearised problem well posed."""
+
+
+def _full_tensions(simulation: Simulation) -> Vector:
+    """What each cable would pull at the full travel of its winch, were the body linear [N]."""
+    robot, cables = simulation.robot, simulation.cables
+    travel = np.array([winch.travel for winch in robot.winches])[cables.winches]
+    compliance = simulation.stiffness(simulation.rest).compliance.diagonal()
+    return travel / (1.0 / cables.law.stiffness + compliance)
 
 
 def _sound(result: NewtonResult) -> bool:

@@ -7,6 +7,7 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.answer import answer
 from hydrostat.ik.descend import Descent, descend
 from hydrostat.ik.effort import keeps_taut
+from hydrostat.ik.least_effort import least_effort
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.marker_goal import MarkerGoal
 from hydrostat.ik.objective import Objective
@@ -59,7 +60,7 @@ def solve_ik(
     begun = search.begin(start)
     if begun is None:
         raise NotConvergedError("inverse kinematics finds no equilibrium to begin from; give another start")
-    found = _best(search, descend(search, begun))
+    found = least_effort(search, _best(search, descend(search, begun)))
     return answer(search, found, target)
 
 
@@ -87,11 +88,13 @@ def _best(search: Search, found: Descent) -> Descent:
     if found.reason is InverseReason.REACHED or not found.state.errors:
         return found
     spent = found.iterations
-    for begun in islice(restarts(search, lambda: found.state), search.options.restarts):
+    best = [found.state]
+    for begun in islice(restarts(search, lambda: best[-1]), search.options.restarts):
         other = descend(search, begun)
         spent += other.iterations
         if search.objective(other.state, found.weight) < search.objective(found.state, found.weight):
             found = other
+            best.append(other.state)
         if found.reason is InverseReason.REACHED:
             break
     return found.after(spent)

@@ -1,0 +1,255 @@
+"""`solve_ik_trajectory`: one pose after another, within limits on the speed of the winches."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.ik.limits import Limits, bounds
+from hydrostat.ik.objective import Objective
+from hydrostat.ik.search import InverseOptions
+from hydrostat.ik.trajectory import KeyPose, PathKind, Trajectory, legs_of, stray
+from hydrostat.ik.trajectory_course import Course
+from hydrostat.ik.trajectory_keys import Found, Key, Keyframe, KeySearch, as_keyframes
+from hydrostat.ik.trajectory_pace import ByWinch, Pace, earliest, linear
+from hydrostat.ik.trajectory_poses import Tell, follow
+from hydrostat.ik.trajectory_straight import StraightCourse
+from hydrostat.simulation import Simulation, SolvedPose
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrajectoryOptions:
+    """How carefully a trajectory is made.
+
+    Attributes:
+        rate: samples in a second, at least.
+        knots: steps of a straight path from one keyframe to the next.
+        compare: look whether a search from rest comes nearer to a keyframe that is not reached.
+        jump: distance of a node from where it is predicted, as a share of the body's size, that is a snap if it stays
+            however small the step is.
+        inverse: how keyframes are searched for.
+    """
+
+    rate: float = 50.0
+    knots: int = 12
+    compare: bool = True
+    jump: float = 2e-3
+    inverse: InverseOptions = field(default_factory=InverseOptions)
+
+
+def solve_ik_trajectory(
+    simulation: Simulation,
+    keyframes: Sequence[Key],
+    *,
+    speed: ByWinch | None = 0.05,
+    acceleration: ByWinch | None = None,
+    limits: Limits | None = None,
+    objectives: Sequence[Objective] = (),
+    path: PathKind | str = PathKind.SMOOTH,
+    start: SolvedPose | None = None,
+    loop: bool = False,
+    hold: float = 0.0,
+    options: TrajectoryOptions | None = None,
+    tell: Tell | None = None,
+) -> Trajectory:
+    """From a pose through keyframes, each found from the one before, so that the branch is kept (R58, R72, E20).
+
+    "smooth": contractions are C2 in time and pass keyframes without a stop where they can. "linear": contractions go
+    along lines, as the thesis has it; their speed changes at once. "straight": markers go along straight lines.
+    Keyframes without times are reached as soon as the limits allow. docs/theory/trajectories.md.
+
+    Args:
+        simulation: the robot's physics.
+        keyframes: targets, or (time [s], target), or `Keyframe`; a solved pose is a target too.
+        speed: the most of each winch [m/s], or by name.
+        acceleration: the most of each winch [m/s^2], or by name; 0.2 if left out, none for a linear path.
+        limits: what else the winches may do in keyframes.
+        objectives: what is wished for in keyframes, beside their targets.
+        path: what goes on a simple way.
+        start: the pose to begin in, at rest; the rest pose if left out.
+        loop: go back to the start at the end.
+        hold: how long the robot stays in each keyframe but the last [s].
+        options: samples, and how keyframes are searched for.
+        tell: is told how far the work is.
+
+    Raises:
+        InputError: keyframes, limits or options that do not fit, or times that are too short for the limits.
+        NotConvergedError: no equilibrium somewhere on the way.
+    """
+    chosen = options or TrajectoryOptions()
+    kind = _kind(path)
+    frames = as_keyframes(keyframes)
+    _check(chosen, limits, hold, kind, acceleration, frames, loop)
+    hardest = _ACCELERATION if acceleration is None and kind is not PathKind.LINEAR else acceleration
+    pace = Pace.of(simulation.robot, speed, hardest)
+    allowed = limits or Limits()
+    begin = start or simulation.rest
+    if loop:
+        frames.append(Keyframe(target=begin, name="start" if start else "rest"))
+    search = KeySearch(
+        simulation=simulation,
+        limits=allowed,
+        objectives=tuple(objectives),
+        options=chosen.inverse,
+        compare=chosen.compare,
+        knots=chosen.knots if kind is PathKind.STRAIGHT else 0,
+    )
+    found = _find(search, frames, begin, tell)
+    course, arrivals = _course(kind, begin, found, pace, hold, 1 / chosen.rate)
+    times, samples = _sampled(course.times, chosen.rate)
+    contractions, speeds, accelerations = course.at(times)
+    contractions[samples] = _exact(begin, found, hold)  # as they were found, without rounding
+    near = chosen.jump * simulation.robot.body.mesh.size
+    poses, snaps = follow(simulation, begin, times, contractions, jump=near, tell=tell)
+    return Trajectory(
+        path=kind,
+        times=times,
+        contractions=contractions,
+        speeds=speeds,
+        accelerations=accelerations,
+        pace=pace,
+        poses=poses,
+        keys=_keys(found, times, poses, [int(samples[index]) for index in arrivals], near),
+        snaps=snaps,
+        winches=tuple(winch.name for winch in simulation.robot.winches),
+        cables=tuple(cable.winch for cable in simulation.robot.cables),
+        tension=bounds(simulation, allowed).tension,
+    )
+
+
+def _kind(path: PathKind | str) -> PathKind:
+    try:
+        return PathKind(path)
+    except ValueError:
+        raise InputError(f'path "{path}"? it may be: {", ".join(PathKind)}') from None
+
+
+def _check(
+    options: TrajectoryOptions,
+    limits: Limits | None,
+    hold: float,
+    path: PathKind,
+    acceleration: ByWinch | None,
+    frames: list[Keyframe],
+    loop: bool,
+) -> None:
+    if limits is not None and limits.rate is not None:
+        raise InputError("a trajectory has a limit on the speed in place of one on the rate; give it as speed")
+    if path is PathKind.LINEAR and acceleration is not None:
+        raise InputError(
+            "a linear path changes its speed at once, so no limit on the acceleration can hold; "
+            "leave it out, or take a smooth path"
+        )
+    if not (np.isfinite(hold) and hold >= 0):
+        raise InputError(f"hold must be 0 s or more, not {hold:g}")
+    if loop and frames[0].time is not None:
+        raise InputError("loop goes back as soon as the limits allow; with times, give the start as a last keyframe")
+    if not 1 <= options.rate <= 10_000:
+        raise InputError(f"rate must be from 1 to 10,000 samples in a second, not {options.rate:g}")
+    if options.knots < 1 or not options.jump > 0:
+        raise InputError(f"knots must be 1 or more and jump above 0, not {options.knots} and {options.jump:g}")
+
+
+def _find(search: KeySearch, frames: list[Keyframe], begin: SolvedPose, tell: Tell | None) -> list[Found]:
+    found: list[Found] = []
+    for frame in frames:
+        found.append(search.find(frame, found[-1].pose if found else begin))
+        if tell is not None:
+            tell("finding keyframes", len(found), len(frames))
+    return found
+
+
+def _course(
+    path: PathKind, begin: SolvedPose, found: list[Found], pace: Pace, hold: float, least: float
+) -> tuple[Course | StraightCourse, list[int]]:
+    """Contractions in time, and which of its keys the keyframes are: a hold is one more key."""
+    knots, lengths, arrivals, last, clock = [], [], [], begin.contractions, 0.0
+    for number, one in enumerate(found):
+        knots.append(np.array([last, *(pose.contractions for pose in one.knots)]))
+        time = one.keyframe.time
+        lengths.append(np.nan if time is None else time - clock)
+        arrivals.append(len(knots))
+        last, clock = one.pose.contractions, 0.0 if time is None else time
+        if hold > 0 and number < len(found) - 1:
+            knots.append(np.array([last, last]))
+            lengths.append(hold)
+            clock += hold
+    given = np.array(lengths)
+    keys = np.array([begin.contractions, *(leg[-1] for leg in knots)])
+    if (given <= 0).any():
+        raise InputError(f"a keyframe is to be reached before the hold of {hold:g} s in the one before it has ended")
+    if path is PathKind.STRAIGHT:
+        course = StraightCourse.earliest(knots, given, pace, least=least)
+    else:
+        course = (linear if path is PathKind.LINEAR else earliest)(keys, given, pace, least=least)
+    _check_times(course, pace, [one for one in found if one.keyframe.time is not None], arrivals)
+    return course, arrivals
+
+
+def _check_times(course: Course | StraightCourse, pace: Pace, timed: list[Found], arrivals: list[int]) -> None:
+    """Refuse times that are too short."""
+    used = pace.share(*course.peaks())
+    for one, arrival in zip(timed, arrivals, strict=False):
+        share = float(used[arrival - 1])
+        if share > 1 + _HAIR:
+            length = float(np.diff(course.times)[arrival - 1])
+            raise InputError(
+                f"{length:.3g} s on the way to {one.keyframe.name} are too short for the limits on speed and "
+                f"acceleration; it takes about {share * length:.3g} s"
+            )
+
+
+def _sampled(times: Vector, rate: float) -> tuple[Vector, np.ndarray]:
+    """Even steps in each leg, its ends among them; and where these are."""
+    counts = np.maximum(np.ceil(np.diff(times) * rate - 1e-9).astype(int), 1)
+    parts = [
+        np.linspace(begin, end, count, endpoint=False)
+        for begin, end, count in zip(times[:-1], times[1:], counts, strict=True)
+    ]
+    return np.concatenate([*parts, times[-1:]]), np.concatenate([[0], np.cumsum(counts)])
+
+
+def _exact(begin: SolvedPose, found: list[Found], hold: float) -> np.ndarray:
+    """Contractions of the keys of a course [m]."""
+    rows = [begin.contractions]
+    for number, one in enumerate(found):
+        rows += [one.pose.contractions] * (2 if hold > 0 and number < len(found) - 1 else 1)
+    return np.array(rows)
+
+
+def _keys(
+    found: list[Found], times: Vector, poses: tuple[SolvedPose, ...], samples: list[int], near: float
+) -> tuple[KeyPose, ...]:
+    keys = []
+    for one, leg, sample in zip(found, legs_of([0, *samples]), samples, strict=True):
+        target, pose = one.keyframe.pose, poses[sample]
+        names = list(target.targets if target else pose.markers)
+        places = {name: np.array([step.markers[name] for step in poses[leg]]) for name in names}
+        errors = {
+            name: float(np.linalg.norm(pose.markers[name] - at))
+            for name, at in (target.targets if target else {}).items()
+        }
+        keys.append(
+            KeyPose(
+                name=one.keyframe.name or "",
+                time=float(times[sample]),
+                index=sample,
+                target=target,
+                found=one.reached,
+                pose=pose,
+                errors=errors,
+                stray=stray(places),
+                free_error=one.free_error,
+                same=float(np.linalg.norm(pose.nodes - one.pose.nodes, axis=1).max()) <= near,
+            )
+        )
+    return tuple(keys)
+
+
+_ACCELERATION = 0.2
+"""The most that a winch accelerates, unless told otherwise [m/s^2]."""
+
+_HAIR = 1e-9
+"""Limits hold to this share of them."""

@@ -1,0 +1,184 @@
+"""`Trajectory`: poses in time, that winches can play."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.ik.reached_pose import ReachedPose
+from hydrostat.ik.trajectory_course import Samples
+from hydrostat.ik.trajectory_pace import Pace
+from hydrostat.ik.trajectory_poses import Snap
+from hydrostat.robot import Pose
+from hydrostat.simulation import Profile, SolvedPose
+
+
+class PathKind(StrEnum):
+    """What goes on a simple way from one keyframe to the next."""
+
+    SMOOTH = "smooth"
+    LINEAR = "linear"
+    STRAIGHT = "straight"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KeyPose:
+    """What became of a keyframe.
+
+    Attributes:
+        name: of its pose.
+        time: when it is reached [s].
+        index: of its sample.
+        target: where markers should be; None where a pose was given as such.
+        found: what inverse kinematics found from the keyframe before; None where a pose was given.
+        pose: what the robot is in when the trajectory is there.
+        errors: distance of each marker from its target in that pose [m].
+        stray: largest distance of a marker from the straight line from the keyframe before to this one [m].
+        free_error: rms error that a search from rest finds, where that is better [m].
+        same: whether the way leads to the pose that inverse kinematics found.
+    """
+
+    name: str
+    time: float
+    index: int
+    target: Pose | None
+    found: ReachedPose | None
+    pose: SolvedPose = field(repr=False)
+    errors: Mapping[str, float]
+    stray: float
+    free_error: float | None
+    same: bool
+
+    @property
+    def rms_error(self) -> float:
+        """Root of the mean squared error over the markers [m]."""
+        return float(np.sqrt(np.mean(np.square(list(self.errors.values()))))) if self.errors else 0.0
+
+    def lines(self) -> list[str]:
+        """A plain report."""
+        head = f"{self.time:.2f} s {self.name}: "
+        head += f"marker error {1e3 * self.rms_error:.2f} mm rms" if self.errors else "as given"
+        lines = [f"{head}; markers up to {1e3 * self.stray:.2f} mm off a straight way there"]
+        if self.found is not None:
+            lines[0] += f"; {self.found.reason}"
+            lines += [f"  {words}" for words in self.found.held]
+        if self.free_error is not None:
+            lines.append(
+                f"  a search from rest comes to {1e3 * self.free_error:.2f} mm: start there to take that branch"
+            )
+        if not self.same:
+            lines.append(
+                "  the way leads to another pose than the one that was sought: contractions do not decide here"
+            )
+        return lines
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trajectory:
+    """Contractions in time, and the equilibrium at each sample.
+
+    Attributes:
+        path: what goes on a simple way from one keyframe to the next.
+        times: of the samples, from 0 [s].
+        contractions: [m].
+        speeds: of the contractions [m/s].
+        accelerations: of the contractions [m/s^2]; of a linear path 0, but for its corners, where they are infinite.
+        pace: the limits on both.
+        poses: equilibria, each continued from the one before.
+        keys: what became of the keyframes, the beginning not among them.
+        snaps: where the robot jumps to another branch.
+        winches: their names.
+        cables: the winch of each cable.
+        tension: the limit on the tension of each cable [N]; infinite without one.
+    """
+
+    path: PathKind
+    times: Vector
+    contractions: Samples = field(repr=False)
+    speeds: Samples = field(repr=False)
+    accelerations: Samples = field(repr=False)
+    pace: Pace = field(repr=False)
+    poses: tuple[SolvedPose, ...] = field(repr=False)
+    keys: tuple[KeyPose, ...]
+    snaps: tuple[Snap, ...]
+    winches: tuple[str, ...]
+    cables: tuple[str, ...] = field(repr=False)
+    tension: Vector = field(repr=False)
+
+    @property
+    def seconds(self) -> float:
+        """How long it takes [s]."""
+        return float(self.times[-1])
+
+    @property
+    def markers(self) -> dict[str, Float[np.ndarray, "samples dim"]]:
+        """Where each marker is at each sample [m]."""
+        return {name: np.array([pose.markers[name] for pose in self.poses]) for name in self.poses[0].markers}
+
+    @property
+    def tensions(self) -> Float[np.ndarray, "samples cables"]:
+        """Of each cable at each sample [N]."""
+        return np.array([pose.tensions for pose in self.poses])
+
+    def profile(self) -> Profile:
+        """The contractions for `Simulation.play` and for motors: along lines from sample to sample."""
+        return Profile(times=self.times, values=self.contractions)
+
+    def lines(self) -> list[str]:
+        """A plain report: keyframes, what is used of the limits, what holds and what does not."""
+        lines = [line for key in self.keys for line in key.lines()]
+        lines.append(f"{self.seconds:.2f} s in all, {len(self.times)} samples; path {self.path}")
+        if self.winches:
+            lines.append(self._most("speed", self.speeds, self.pace.speed, "mm/s"))
+            if self.path is PathKind.LINEAR:
+                lines.append("acceleration: without limit at the keyframes, as the speed changes at once there")
+            else:
+                lines.append(self._most("acceleration", self.accelerations, self.pace.acceleration, "mm/s^2"))
+        lines += self._over_tension()
+        for snap in self.snaps:
+            lines.append(f"at {snap.time:.2f} s the robot snaps: a node jumps by {1e3 * snap.distance:.1f} mm")
+        return lines
+
+    def _most(self, what: str, values: Samples, limits: Vector, unit: str) -> str:
+        most = np.abs(values).max(axis=0)
+        winch = int(np.argmax(most / limits if np.isfinite(limits).any() else most))
+        limit = f" of {1e3 * limits[winch]:.4g}" if np.isfinite(limits[winch]) else ""
+        return f"largest {what}: {1e3 * most[winch]:.4g}{limit} {unit} ({self.winches[winch]})"
+
+    def _over_tension(self) -> list[str]:
+        """Cables that pull harder on the way than they may: a limit on tension is one of the keyframes."""
+        lines = []
+        tensions = self.tensions
+        for cable, limit in enumerate(self.tension):
+            sample = int(np.argmax(tensions[:, cable]))
+            most = tensions[sample, cable]
+            if most > limit * (1 + _HAIR):
+                lines.append(
+                    f"at {self.times[sample]:.2f} s cable {cable + 1} ({self.cables[cable]}) pulls with {most:.3g} N on "
+                    f"the way between keyframes, more than {limit:.3g} N"
+                )
+        return lines
+
+
+def stray(markers: Mapping[str, Float[np.ndarray, "samples dim"]]) -> float:
+    """Largest distance of a marker from the line between its first and its last place [m]."""
+    most = 0.0
+    for places in markers.values():
+        way, offsets = places[-1] - places[0], places - places[0]
+        square = float(way @ way)
+        shares = np.clip(offsets @ way / square, 0.0, 1.0) if square > 0 else np.zeros(len(places))
+        most = max(most, float(np.linalg.norm(offsets - shares[:, None] * way, axis=1).max()))
+    return most
+
+
+def legs_of(indices: list[int]) -> list[slice]:
+    """The samples of each leg, both ends included."""
+    return [slice(first, last + 1) for first, last in pairwise(indices)]
+
+
+_HAIR = 1e-3
+"""A tension may exceed its limit by this share before it is told."""

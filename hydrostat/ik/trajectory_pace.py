@@ -1,0 +1,109 @@
+"""`Pace`: how fast winches may turn, and the earliest course that keeps to it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.ik.trajectory_course import ACCELERATION_OF_REST, SPEED_OF_REST, Course, Keys, Peaks
+from hydrostat.robot import Robot
+
+ByWinch = float | Mapping[str, float]
+"""One number for all winches, or numbers by name."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pace:
+    """The most that each winch may do.
+
+    Attributes:
+        speed: of its contraction [m/s]; infinite without a limit.
+        acceleration: of its contraction [m/s^2]; infinite without a limit.
+    """
+
+    speed: Vector
+    acceleration: Vector
+
+    @classmethod
+    def of(cls, robot: Robot, speed: ByWinch | None, acceleration: ByWinch | None) -> Self:
+        """Limits on the winches of a robot.
+
+        Raises:
+            InputError: a winch that it does not have, or a limit not above 0.
+        """
+        return cls(
+            speed=_by_winch(robot, speed, "speed", "m/s"),
+            acceleration=_by_winch(robot, acceleration, "acceleration", "m/s^2"),
+        )
+
+    def share(self, speeds: Peaks, accelerations: Peaks) -> Vector:
+        """What each leg uses of the limits: it would keep to them if it took so many times as long."""
+        used = np.maximum(speeds / self.speed, np.sqrt(accelerations / self.acceleration))
+        return used.max(axis=1, initial=0.0)
+
+    def rest_to_rest(self, keys: Keys) -> Vector:
+        """The least time of each leg, were it to begin and end at rest [s]."""
+        ways = np.abs(np.diff(keys, axis=0))
+        return self.share(SPEED_OF_REST * ways, ACCELERATION_OF_REST * ways)
+
+
+def earliest(keys: Keys, lengths: Vector, pace: Pace, *, least: float) -> Course:
+    """The smooth course that is soon at its end: keys are passed without a stop where that saves time.
+
+    Lengths and passing speeds depend on each other. From stops at all keys on, each leg is lengthened or shortened by
+    what it uses of the limits; each course on the way is then scaled as a whole, so that the limits hold exactly, and
+    the shortest is kept. So it never takes longer than with a stop at each key.
+
+    Args:
+        keys: contractions [m], a row a key.
+        lengths: of the legs [s]; NaN where free.
+        pace: the limits.
+        least: length of a free leg in which nothing moves [s].
+    """
+    free = np.isnan(lengths)
+    lengths = np.where(free, np.maximum(pace.rest_to_rest(keys), least), lengths)
+    best = Course.smooth(_times(lengths), keys, passing=False)
+    if not free.any():
+        return Course.smooth(_times(lengths), keys)
+    for _ in range(_ROUNDS):
+        course = Course.smooth(_times(lengths), keys)
+        used = np.where(free, pace.share(*course.peaks()), 0.0)
+        scaled = Course.smooth(_times(np.where(free, used.max() * lengths, lengths)), keys)
+        if scaled.seconds < best.seconds and pace.share(*scaled.peaks()).max() <= 1 + _HAIR:
+            best = scaled
+        lengths = np.where(free, np.maximum(lengths * np.sqrt(used), least), lengths)
+    return best
+
+
+def linear(keys: Keys, lengths: Vector, pace: Pace, *, least: float) -> Course:
+    """The linear course whose speeds keep to the limits in free legs."""
+    soonest = (np.abs(np.diff(keys, axis=0)) / pace.speed).max(axis=1, initial=least)
+    return Course.linear(_times(np.where(np.isnan(lengths), soonest, lengths)), keys)
+
+
+def _times(lengths: Vector) -> Vector:
+    return np.concatenate([[0.0], np.cumsum(lengths)])
+
+
+def _by_winch(robot: Robot, given: ByWinch | None, what: str, unit: str) -> Vector:
+    if given is None:
+        return np.full(len(robot.winches), np.inf)
+    if isinstance(given, Mapping):
+        for name in given:
+            robot.winch(name)
+        values = [given.get(winch.name, np.inf) for winch in robot.winches]
+    else:
+        values = [given] * len(robot.winches)
+    for value in values:
+        if not value > 0:
+            raise InputError(f"a limit on the {what} must be above 0 {unit}, not {value:g}")
+    return np.array(values, dtype=float)
+
+
+_ROUNDS = 60
+
+_HAIR = 1e-9
+"""Limits hold to this share of them."""

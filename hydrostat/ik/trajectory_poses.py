@@ -1,0 +1,107 @@
+"""`follow`: the poses that a robot takes one after another, on one branch as long as there is one."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import NotConvergedError
+from hydrostat.ik.trajectory_course import Samples
+from hydrostat.simulation import Simulation, SolvedPose
+
+Tell = Callable[[str, int, int], None]
+"""Is told the stage, how much of it is done, and how much there is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Snap:
+    """Where a robot jumps from one branch of equilibria to another.
+
+    Attributes:
+        time: [s].
+        distance: how far a node is from where the branch would have led it [m].
+    """
+
+    time: float
+    distance: float
+
+
+def follow(
+    simulation: Simulation,
+    start: SolvedPose,
+    times: Vector,
+    contractions: Samples,
+    *,
+    jump: float,
+    tell: Tell | None = None,
+) -> tuple[tuple[SolvedPose, ...], tuple[Snap, ...]]:
+    """The equilibria at given contractions, each continued from the one before, and where they snap (E20).
+
+    A step is taken when the nodes come to rest where the predictor x + dx/da da has put them, within `jump`; else it is
+    halved. On a branch the distance falls with the square of the step, where a cable becomes taut with the step itself;
+    at a snap it stays, however small the step is.
+
+    Args:
+        simulation: the robot's physics.
+        start: the pose to begin from; the first pose is at the first contractions.
+        times: of the samples [s].
+        contractions: at these times [m].
+        jump: the largest distance from the prediction [m].
+        tell: is told how far the work is.
+
+    Raises:
+        NotConvergedError: no equilibrium is found at some time.
+    """
+    poses: list[SolvedPose] = []
+    snaps: list[Snap] = []
+    pose = start
+    for index, (time, goal) in enumerate(zip(times, contractions, strict=True)):
+        pose, distance = _go(simulation, pose, goal, jump, _HALVINGS)
+        if not pose.result.converged:
+            raise NotConvergedError(f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.reason}")
+        if distance > 0:
+            snaps.append(Snap(time=float(time), distance=distance))
+        poses.append(pose)
+        if tell is not None:
+            tell("following the way", index + 1, len(times))
+    return tuple(poses), tuple(snaps)
+
+
+def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, halvings: int) -> tuple[SolvedPose, float]:
+    """The pose at other contractions, and how far it snapped on the way [m]; 0 if it did not."""
+    if (pose.contractions == goal).all():
+        return pose, 0.0
+    predicted = _predicted(simulation, pose, goal)
+    result = simulation.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
+    distance = _apart(result.nodes, predicted)
+    if result.converged and result.stable and distance <= jump:
+        return simulation.posed(goal, result), 0.0
+    if halvings:
+        middle, first = _go(simulation, pose, 0.5 * (pose.contractions + goal), jump, halvings - 1)
+        if not middle.result.converged:
+            return middle, first
+        end, second = _go(simulation, middle, goal, jump, halvings - 1)
+        return end, max(first, second)
+    found = simulation.solve(goal, start=pose, strict=False)
+    return found, _apart(found.nodes, predicted)
+
+
+def _predicted(simulation: Simulation, pose: SolvedPose, goal: Vector) -> Nodes:
+    """Where the nodes go to first order."""
+    try:
+        return pose.nodes + simulation.jacobian(pose) @ (goal - pose.contractions)
+    except NotConvergedError:
+        return pose.nodes
+
+
+def _apart(one: Nodes, other: Nodes) -> float:
+    """Largest distance of a node [m]."""
+    return float(np.linalg.norm(one - other, axis=1).max())
+
+
+_HALVINGS = 10
+"""A snap is one that is still there when a step is 2 to the power of so many times smaller."""
+
+_ITERATIONS = 20
+"""Steps of Newton; near a branch a few are enough."""
