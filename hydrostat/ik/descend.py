@@ -116,7 +116,7 @@ class _Descent:
         return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
 
 
-_ROUGH = 1e-4
+_ROUGH = 1e-2
 """Progress at which a descent with a fixed weight of the effort ends: it is a stage on the way."""
 
 _EXCESS = 1e-6

@@ -67,9 +67,9 @@ def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut:
 class LinearModel:
     """Residuals and tensions to first order, and the step that promises most.
 
-    The unknowns are the contractions of the channels, each beginning where its first cable is taut. A cable cannot push,
-    so the tension of that cable must not fall below 0: a channel that would have to push follows instead with tension
-    0, which is what a slack one does to the body. So one bounded problem knows who joins and who lets go (E15).
+    The unknowns are the contractions of the channels, each beginning where its first cable is taut. A cable cannot
+    push, so the tension of that cable must not fall below 0: a channel that would have to push follows instead with
+    tension 0, which is what a slack one does to the body. So one bounded problem knows who joins and who lets go (E15).
     """
 
     def __init__(

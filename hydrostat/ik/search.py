@@ -140,17 +140,14 @@ class Search:
         """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
         return self._model(state).slope(weight * self._worth)
 
-    def wasteful(self, state: State) -> bool:
-        """Whether the goals leave a choice, and other contractions nearby would reach them with less effort."""
+    def redundant(self, state: State) -> bool:
+        """Whether some change of the contractions moves nothing that counts."""
         model = self._model(state)
         moves = (model.matrix * model.range)[:, model.active]
         if not moves.size:
             return False
         values = np.linalg.svd(moves, compute_uv=False)
-        if moves.shape[0] >= moves.shape[1] and values[-1] >= _IDLE * values[0]:
-            return False
-        step, _ = model.best(_IDLE * self._worth, 1.0)
-        return bool((np.abs(step) > _WASTE * model.range).any())
+        return moves.shape[0] < moves.shape[1] or bool(values[-1] < _IDLE * values[0])
 
     def slopes(self, state: State) -> Slopes:
         """D residual / d contractions of the channels; slack ones as if they had just become taut."""
@@ -291,9 +288,6 @@ _LEFT = 0.2
 
 _IDLE = 1e-3
 """A change that moves less than this share of what the best one moves counts as none."""
-
-_WASTE = 2e-3
-"""Contractions of least effort are not told from others nearer than this share of their range."""
 
 _SHARE = 0.1
 """Weight of the effort, as a share of the error in sizes of the body."""

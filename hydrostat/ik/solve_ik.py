@@ -1,6 +1,6 @@
 """`solve_ik`: the contractions that bring a robot nearest to a pose."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 
 from hydrostat.errors import InputError, NotConvergedError
@@ -13,7 +13,7 @@ from hydrostat.ik.marker_goal import MarkerGoal
 from hydrostat.ik.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.restarts import restarts
-from hydrostat.ik.search import InverseOptions, Search
+from hydrostat.ik.search import InverseOptions, Search, State
 from hydrostat.robot import Point, Pose
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -60,7 +60,8 @@ def solve_ik(
     begun = search.begin(start)
     if begun is None:
         raise NotConvergedError("inverse kinematics finds no equilibrium to begin from; give another start")
-    found = least_effort(search, _best(search, descend(search, begun)))
+    seek = least_effort if search.options.unique and search.redundant(begun) else descend
+    found = _best(search, seek(search, begun), seek)
     return answer(search, found, target)
 
 
@@ -83,14 +84,14 @@ def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objecti
     return found
 
 
-def _best(search: Search, found: Descent) -> Descent:
+def _best(search: Search, found: Descent, seek: Callable[[Search, State], Descent]) -> Descent:
     """The best of several beginnings; the first that reaches its goal."""
     if found.reason is InverseReason.REACHED or not found.state.errors:
         return found
     spent = found.iterations
     best = [found.state]
     for begun in islice(restarts(search, lambda: best[-1]), search.options.restarts):
-        other = descend(search, begun)
+        other = seek(search, begun)
         spent += other.iterations
         if search.objective(other.state, found.weight) < search.objective(found.state, found.weight):
             found = other

@@ -11,14 +11,15 @@ from hydrostat.ik.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search import InverseOptions, Search
 from hydrostat.ik.solve_ik import Targets, as_pose, wishes
+from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose
 
 
 class Tracker:
     """Any-time inverse kinematics: each update is one step nearer, and a pose of its own (R34).
 
-    Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once. Slack cables
-    are kept just short of taut, so that they can join without a delay.
+    Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once. Slack
+    cables are kept just short of taut, so that they can join without a delay.
 
         tracker = hs.Tracker(simulation, limits=hs.Limits(rate=0.1))
         while True:
@@ -89,7 +90,7 @@ class Tracker:
         self.pose = reached.pose
         return reached
 
-    def _search(self, target, seconds: float) -> Search:
+    def _search(self, target: Pose | None, seconds: float) -> Search:
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)
         allowed = allowed.near(allowed.channel(self.pose.contractions))
