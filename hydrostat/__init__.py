@@ -16,7 +16,21 @@ if TYPE_CHECKING:
     from hydrostat.design import DesignOptions, Network, design_cables
     from hydrostat.errors import HydrostatError, InputError, NotConvergedError
     from hydrostat.fabrication import PatternOptions, export_kit
-    from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
+    from hydrostat.ik import (
+        CentreGoal,
+        Closeness,
+        Effort,
+        InverseOptions,
+        Keyframe,
+        Limits,
+        MarkerGoal,
+        ReachedPose,
+        ShapeGoal,
+        Tracker,
+        Trajectory,
+        solve_ik,
+        solve_ik_trajectory,
+    )
     from hydrostat.mechanics import NewtonOptions
     from hydrostat.robot import Cable, Marker, Material, Pin, Pose, Robot, Winch, load_robot, save_robot
     from hydrostat.simulation import (
@@ -36,11 +50,17 @@ __version__ = "0.1.0"
 __all__ = [
     "Branch",
     "Cable",
+    "CentreGoal",
+    "Closeness",
     "DesignOptions",
+    "Effort",
     "HydrostatError",
     "InputError",
     "InverseOptions",
+    "Keyframe",
+    "Limits",
     "Marker",
+    "MarkerGoal",
     "Material",
     "Motion",
     "Network",
@@ -53,9 +73,12 @@ __all__ = [
     "Profile",
     "ReachedPose",
     "Robot",
+    "ShapeGoal",
     "Simulation",
     "SolvedPose",
     "StepOptions",
+    "Tracker",
+    "Trajectory",
     "Winch",
     "__version__",
     "design_cables",
@@ -65,16 +88,23 @@ __all__ = [
     "path_dependence",
     "save_robot",
     "solve_ik",
+    "solve_ik_trajectory",
 ]
 
 _HOMES = {
     "Branch": "simulation",
     "Cable": "robot",
+    "CentreGoal": "ik",
+    "Closeness": "ik",
     "DesignOptions": "design",
+    "Effort": "ik",
     "HydrostatError": "errors",
     "InputError": "errors",
     "InverseOptions": "ik",
+    "Keyframe": "ik",
+    "Limits": "ik",
     "Marker": "robot",
+    "MarkerGoal": "ik",
     "Material": "robot",
     "Motion": "simulation",
     "Network": "design",
@@ -87,9 +117,12 @@ _HOMES = {
     "Profile": "simulation",
     "ReachedPose": "ik",
     "Robot": "robot",
+    "ShapeGoal": "ik",
     "Simulation": "simulation",
     "SolvedPose": "simulation",
     "StepOptions": "simulation",
+    "Tracker": "ik",
+    "Trajectory": "ik",
     "Winch": "robot",
     "design_cables": "design",
     "export_kit": "fabrication",
@@ -98,6 +131,7 @@ _HOMES = {
     "path_dependence": "simulation",
     "save_robot": "robot",
     "solve_ik": "ik",
+    "solve_ik_trajectory": "ik",
 }
 
 

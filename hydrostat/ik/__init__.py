@@ -12,7 +12,11 @@ from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search import InverseOptions
 from hydrostat.ik.shape_goal import ShapeGoal
 from hydrostat.ik.solve_ik import Targets, solve_ik
+from hydrostat.ik.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory
 from hydrostat.ik.tracker import Tracker
+from hydrostat.ik.trajectory import KeyPose, PathKind, Trajectory
+from hydrostat.ik.trajectory_keys import Key, Keyframe
+from hydrostat.ik.trajectory_poses import Snap
 
 __all__ = [
     "CentreGoal",
@@ -22,18 +26,26 @@ __all__ = [
     "EffortKind",
     "InverseOptions",
     "InverseReason",
+    "Key",
+    "KeyPose",
+    "Keyframe",
     "Limits",
     "MarkerGoal",
     "Moves",
     "Objective",
+    "PathKind",
     "Posture",
     "ReachedPose",
     "ShapeGoal",
+    "Snap",
     "Targets",
     "Term",
     "Tracker",
+    "Trajectory",
+    "TrajectoryOptions",
     "drawn_pose",
     "moves_at",
     "posture_at",
     "solve_ik",
+    "solve_ik_trajectory",
 ]

@@ -26,7 +26,7 @@ class TrajectoryOptions:
     Attributes:
         rate: samples in a second, at least.
         knots: steps of a straight path from one keyframe to the next.
-        compare: look whether a search from rest comes nearer to a keyframe that is not reached.
+        compare: look from rest too where a keyframe is not reached from the one before.
         jump: distance of a node from where it is predicted, as a share of the body's size, that is a snap if it stays
             however small the step is.
         inverse: how keyframes are searched for.
@@ -88,12 +88,14 @@ def solve_ik_trajectory(
     begin = start or simulation.rest
     if loop:
         frames.append(Keyframe(target=begin, name="start" if start else "rest"))
+    near = chosen.jump * simulation.robot.body.mesh.size
     search = KeySearch(
         simulation=simulation,
         limits=allowed,
         objectives=tuple(objectives),
         options=chosen.inverse,
         compare=chosen.compare,
+        jump=near,
         knots=chosen.knots if kind is PathKind.STRAIGHT else 0,
     )
     found = _find(search, frames, begin, tell)
@@ -101,7 +103,6 @@ def solve_ik_trajectory(
     times, samples = _sampled(course.times, chosen.rate)
     contractions, speeds, accelerations = course.at(times)
     contractions[samples] = _exact(begin, found, hold)  # as they were found, without rounding
-    near = chosen.jump * simulation.robot.body.mesh.size
     poses, snaps = follow(simulation, begin, times, contractions, jump=near, tell=tell)
     return Trajectory(
         path=kind,

@@ -38,7 +38,7 @@ class KeyPose:
         pose: what the robot is in when the trajectory is there.
         errors: distance of each marker from its target in that pose [m].
         stray: largest distance of a marker from the straight line from the keyframe before to this one [m].
-        free_error: rms error that a search from rest finds, where that is better [m].
+        free_error: rms error that a search from rest finds on another branch, where that is better [m].
         same: whether the way leads to the pose that inverse kinematics found.
     """
 
@@ -68,7 +68,7 @@ class KeyPose:
             lines += [f"  {words}" for words in self.found.held]
         if self.free_error is not None:
             lines.append(
-                f"  a search from rest comes to {1e3 * self.free_error:.2f} mm: start there to take that branch"
+                f"  a search from rest comes to {1e3 * self.free_error:.2f} mm, on a branch that is not led to from here"
             )
         if not self.same:
             lines.append(
@@ -158,8 +158,8 @@ class Trajectory:
             most = tensions[sample, cable]
             if most > limit * (1 + _HAIR):
                 lines.append(
-                    f"at {self.times[sample]:.2f} s cable {cable + 1} ({self.cables[cable]}) pulls with {most:.3g} N on "
-                    f"the way between keyframes, more than {limit:.3g} N"
+                    f"at {self.times[sample]:.2f} s cable {cable + 1} ({self.cables[cable]}) pulls with {most:.3g} N "
+                    f"between keyframes, more than {limit:.3g} N"
                 )
         return lines
 

@@ -3,13 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hydrostat.errors import InputError
+import numpy as np
+
+from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.effort import Effort, EffortKind
 from hydrostat.ik.limits import Limits
 from hydrostat.ik.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search import InverseOptions
 from hydrostat.ik.solve_ik import Targets, as_pose, solve_ik
+from hydrostat.ik.trajectory_poses import follow
 from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -47,7 +50,7 @@ class Found:
         keyframe: what was asked for.
         pose: what was found.
         reached: how it was found; None for a pose that was given.
-        free_error: rms error that a search from rest finds, where that is better [m].
+        free_error: rms error that a search from rest finds on another branch, where that is better [m].
         knots: poses on the way there that are to be passed; the last one is `pose`.
     """
 
@@ -101,6 +104,7 @@ class KeySearch:
         objectives: what is wished for beside the targets.
         options: of a search from rest; one from a keyframe does not restart.
         compare: look whether a search from rest does better.
+        jump: distance of a node from where it is predicted that is a snap [m].
         knots: poses on a way along which markers go straight; 0 for other ways.
     """
 
@@ -109,6 +113,7 @@ class KeySearch:
     objectives: tuple[Objective, ...]
     options: InverseOptions
     compare: bool
+    jump: float
     knots: int
 
     def find(self, keyframe: Keyframe, before: SolvedPose) -> Found:
@@ -122,46 +127,73 @@ class KeySearch:
             return Found(keyframe=keyframe, pose=keyframe.target, reached=None, free_error=None, knots=knots)
         target = keyframe.pose
         assert target is not None
-        reached = self._solve(target, before)
+        reached, free_error = self._best(target, before)
         knots = self._straight(tuple(target.targets), before, reached.pose)
-        return Found(
-            keyframe=keyframe,
-            pose=reached.pose,
-            reached=reached,
-            free_error=self._free_error(target, reached),
-            knots=knots,
+        return Found(keyframe=keyframe, pose=reached.pose, reached=reached, free_error=free_error, knots=knots)
+
+    def _best(self, target: Pose, before: SolvedPose) -> tuple[ReachedPose, float | None]:
+        """What is found from the pose before; and the error that only a search from rest comes to, if it is less.
+
+        What a search from rest finds is taken where the branch of the pose before leads there.
+        """
+        reached = self._solve(target, before, self.options)
+        if not self.compare or reached.reason is InverseReason.REACHED:
+            return reached, None
+        free = solve_ik(self.simulation, target, limits=self.limits, objectives=self._wishes(), options=self.options)
+        if not self._better(free, reached):
+            return reached, None
+        end = self._way(before, free.pose)
+        if end is not None:
+            other = self._solve(target, end, self.options)
+            if self._better(other, reached):
+                reached = other
+        return reached, free.rms_error if self._better(free, reached) else None
+
+    def _solve(self, target: Targets, start: SolvedPose, options: InverseOptions) -> ReachedPose:
+        options = replace(options, restarts=0)
+        return solve_ik(
+            self.simulation, target, limits=self.limits, objectives=self._wishes(), start=start, options=options
         )
 
-    def _solve(self, target: Targets, start: SolvedPose) -> ReachedPose:
-        wishes = self.objectives
-        if self.knots:
-            wishes = (*wishes, _TAUT)
-        options = replace(self.options, restarts=0)
-        return solve_ik(self.simulation, target, limits=self.limits, objectives=wishes, start=start, options=options)
+    def _wishes(self) -> tuple[Objective, ...]:
+        return (*self.objectives, _TAUT) if self.knots else self.objectives
 
-    def _free_error(self, target: Pose, reached: ReachedPose) -> float | None:
-        if not self.compare or reached.reason is InverseReason.REACHED:
-            return None
-        free = solve_ik(self.simulation, target, limits=self.limits, objectives=self.objectives, options=self.options)
+    def _better(self, one: ReachedPose, other: ReachedPose) -> bool:
         near = _TELL * self.simulation.robot.body.mesh.size
-        better = free.rms_error < min((1 - _BETTER) * reached.rms_error, reached.rms_error - near)
-        return free.rms_error if better else None
+        return one.rms_error < min((1 - _BETTER) * other.rms_error, other.rms_error - near)
+
+    def _way(self, begin: SolvedPose, goal: SolvedPose) -> SolvedPose | None:
+        """The pose to which the branch of one pose leads at the contractions of another; None if it ends before."""
+        shares = np.linspace(0.0, 1.0, _STEPS + 1)
+        contractions = (1 - shares)[:, None] * begin.contractions + shares[:, None] * goal.contractions
+        try:
+            poses, snaps = follow(self.simulation, begin, shares, contractions, jump=self.jump)
+        except NotConvergedError:
+            return None
+        return None if snaps else poses[-1]
 
     def _straight(self, names: tuple[str, ...], begin: SolvedPose, end: SolvedPose) -> tuple[SolvedPose, ...]:
         """Poses in which the markers are on the straight lines between two poses, at even steps."""
         poses, last = [], begin
+        rough = replace(self.options, iterations=min(self.options.iterations, _ITERATIONS))
         for knot in range(1, self.knots):
             share = knot / self.knots
             places = {
                 name: tuple(((1 - share) * begin.markers[name] + share * end.markers[name]).tolist()) for name in names
             }
-            last = self._solve(places, last).pose
+            last = self._solve(places, last, rough).pose
             poses.append(last)
         return (*poses, end)
 
 
 _TAUT = Effort(of=EffortKind.SLACK, weight=0.0)
 """Slack cables are kept just short of taut, so that they join without a jump of their contraction."""
+
+_STEPS = 20
+"""Of a way that is followed to contractions found from rest; each is cut into smaller ones as need be."""
+
+_ITERATIONS = 15
+"""Most Gauss-Newton steps to a pose on a straight way."""
 
 _BETTER = 0.01
 """A search from rest is better when its error is smaller by this share,"""

@@ -59,7 +59,9 @@ def follow(
     for index, (time, goal) in enumerate(zip(times, contractions, strict=True)):
         pose, distance = _go(simulation, pose, goal, jump, _HALVINGS)
         if not pose.result.converged:
-            raise NotConvergedError(f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.reason}")
+            raise NotConvergedError(
+                f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.reason}", pose.result
+            )
         if distance > 0:
             snaps.append(Snap(time=float(time), distance=distance))
         poses.append(pose)
