@@ -34,6 +34,8 @@ STIFFNESS = Dimension("a stiffness", "N/m", "N/mm", "4 N/mm")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "m/s^2", "9.81 m/s^2")
 VISCOSITY = Dimension("a viscosity", "Pa*s", "Pa s", "40 Pa s")
 TIME = Dimension("a time", "s", "s", "2 s")
+FORCE = Dimension("a force", "N", "N", "20 N")
+SPEED = Dimension("a speed", "m/s", "mm/s", "50 mm/s")
 
 COMMON = {
     (unit, dimension): Decimal(factor).normalize()
@@ -42,9 +44,11 @@ COMMON = {
         PRESSURE: {"Pa": "1", "kPa": "1000", "MPa": "1000000"},
         DENSITY: {"kg/m^3": "1"},
         STIFFNESS: {"N/m": "1", "N/mm": "1000"},
-        ACCELERATION: {"m/s^2": "1"},
+        ACCELERATION: {"m/s^2": "1", "mm/s^2": "0.001"},
         VISCOSITY: {"Pa s": "1"},
         TIME: {"s": "1", "ms": "0.001"},
+        FORCE: {"N": "1"},
+        SPEED: {"m/s": "1", "mm/s": "0.001"},
     }.items()
     for unit, factor in factors.items()
 }

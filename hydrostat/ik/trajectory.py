@@ -68,7 +68,7 @@ class KeyPose:
             lines += [f"  {words}" for words in self.found.held]
         if self.free_error is not None:
             lines.append(
-                f"  a search from rest comes to {1e3 * self.free_error:.2f} mm, on a branch that is not led to from here"
+                f"  a search from rest comes to {1e3 * self.free_error:.2f} mm, on another branch than this"
             )
         if not self.same:
             lines.append(

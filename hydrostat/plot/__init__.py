@@ -13,6 +13,8 @@ from hydrostat.plot.pose_figures import draw_portrait, draw_pose, draw_reached
 from hydrostat.plot.report import report_text, write_report
 from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
 from hydrostat.plot.scene import save_glb
+from hydrostat.plot.trajectory_figure import draw_trajectory
+from hydrostat.plot.trajectory_film import trajectory_frames
 
 __all__ = [
     "Film",
@@ -29,6 +31,7 @@ __all__ = [
     "draw_reached",
     "draw_rest",
     "draw_target",
+    "draw_trajectory",
     "draw_trees",
     "film",
     "find_ffmpeg",
@@ -41,6 +44,7 @@ __all__ = [
     "save_glb",
     "save_mp4",
     "save_png",
+    "trajectory_frames",
     "winch_stops",
     "write_report",
 ]

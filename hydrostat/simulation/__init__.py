@@ -9,7 +9,7 @@ from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
 from hydrostat.simulation.pose_file import pose_facts, write_pose
-from hydrostat.simulation.profile import Profile, read_profile
+from hydrostat.simulation.profile import Profile, read_profile, write_profile
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
@@ -41,4 +41,5 @@ __all__ = [
     "round_off",
     "write_motion",
     "write_pose",
+    "write_profile",
 ]

@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot
+from hydrostat.robot import Robot, replace_file
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,6 +85,16 @@ def read_profile(path: Path, robot: Robot) -> Profile:
         return Profile(times=np.array(times), values=np.array(values).reshape(len(times), len(names)))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def write_profile(path: Path, robot: Robot, profile: Profile) -> Path:
+    """Write a profile as `read_profile` reads it, whole or not at all; returns its path. A gentle one loses that."""
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time_s", *(winch.name for winch in robot.winches)])
+    for time, row in zip(profile.times, 1e3 * profile.values, strict=True):
+        writer.writerow([f"{time:.9g}", *(f"{value:.9g}" for value in row + 0.0)])
+    return replace_file(path, text.getvalue().encode())
 
 
 def _numbers(path: Path, number: int, head: list[str], row: list[str]) -> dict[str, float]:

@@ -1,0 +1,205 @@
+"""`hydrostat trajectory`."""
+
+import json
+import time
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.prepare import prepared, read_robot
+from hydrostat.cli.progress import progress_bar
+from hydrostat.cli.quantities import positive, winch_groups
+from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.ik import Keyframe, Limits, Trajectory
+    from hydrostat.simulation import Simulation
+
+
+class Way(StrEnum):
+    """What goes on a simple way."""
+
+    SMOOTH = "smooth"
+    LINEAR = "linear"
+    STRAIGHT = "straight"
+
+
+REST = "rest"
+"""Name of the pose without contractions, unless the robot has a pose of this name."""
+
+
+def trajectory(
+    robot: RobotFolder,
+    out: OutFolder,
+    poses: Annotated[
+        str | None,
+        typer.Option(metavar="NAME,NAME...", help="Poses in their order, rest among them; all if left out."),
+    ] = None,
+    path: Annotated[
+        Way,
+        typer.Option(
+            metavar="smooth|linear|straight",
+            help="Contractions smooth, contractions along lines, or markers along lines.",
+        ),
+    ] = Way.SMOOTH,
+    speed: Annotated[str, typer.Option(metavar="SPEED", help="The most of each winch.")] = "50 mm/s",
+    acceleration: Annotated[
+        str | None,
+        typer.Option(metavar="ACCELERATION", help="The most of each winch; 200 mm/s^2 if left out, none if linear."),
+    ] = None,
+    hold: Annotated[str, typer.Option(metavar="TIME", help="How long to stay in each pose.")] = "0s",
+    loop: Annotated[bool, typer.Option("--loop", help="Go back to rest at the end.")] = False,
+    tension: Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears in a pose.")] = None,
+    equal: Annotated[
+        list[str] | None,
+        typer.Option(metavar="WINCH,WINCH", help="Winches of one contraction; may be repeated."),
+    ] = None,
+    width: Annotated[int, typer.Option(metavar="PIXELS", help="Width of the animation.")] = 640,
+) -> None:
+    """Go through poses one after another, within limits on the speed and acceleration of the winches.
+
+    Writes trajectory.csv (for simulate --dynamic --play, and for motors), trajectory.json, trajectory.png and
+    trajectory.gif. Each pose is found from the one before, and the way between them is followed; where the robot
+    snaps, or misses what it reaches from rest, that is told.
+
+    Example: hydrostat trajectory examples/starfish --poses wave,star_jump --loop --out build/dance
+    """
+    from hydrostat.ik import InverseReason, Limits, solve_ik_trajectory
+    from hydrostat.plot.animation import WIDTHS
+    from hydrostat.units import ACCELERATION, FORCE, SPEED, TIME
+
+    require_folder(out)
+    fastest = positive("--speed", speed, SPEED)
+    hardest = None if acceleration is None else positive("--acceleration", acceleration, ACCELERATION)
+    stay = positive("--hold", hold, TIME, zero=True)
+    limits = Limits(
+        tension=None if tension is None else positive("--tension", tension, FORCE),
+        equal=winch_groups("--equal", equal or []),
+    )
+    if not WIDTHS[0] <= width <= WIDTHS[1]:
+        raise InputError(f"--width {width}: must be {WIDTHS[0]} to {WIDTHS[1]}")
+    loaded = read_robot(robot)
+    names = _names(loaded, poses)
+    simulation = prepared(loaded)
+    began = time.process_time()
+    with progress_bar() as tell:
+        made = solve_ik_trajectory(
+            simulation,
+            _keyframes(simulation, names),
+            speed=fastest,
+            acceleration=hardest,
+            limits=limits,
+            path=path.value,
+            loop=loop,
+            hold=stay,
+            tell=tell,
+        )
+        facts = _facts(simulation, made, limits, time.process_time() - began)
+        files = _write(simulation, made, facts, out, width, tell)
+    print(*made.lines(), sep="\n")
+    print("Wrote " + ", ".join(str(file) for file in files))
+    stuck = (InverseReason.ITERATION_LIMIT, InverseReason.NO_EQUILIBRIUM)
+    if any(key.found is not None and key.found.reason in stuck for key in made.keys):
+        raise typer.Exit(1)
+
+
+def _names(robot: Any, poses: str | None) -> list[str]:
+    """Names of the keyframes.
+
+    Raises:
+        InputError: none, or one that the robot does not have.
+    """
+    if poses is None:
+        if not robot.poses:
+            raise InputError(f"{robot.name}: the robot has no [[pose]]; add one, or give --poses rest")
+        return list(robot.poses)
+    names = [name.strip() for name in poses.split(",") if name.strip()]
+    if not names:
+        raise InputError('--poses: names none; write for example "wave,rest"')
+    for name in names:
+        if name != REST:
+            robot.pose(name)
+    return names
+
+
+def _keyframes(simulation: "Simulation", names: list[str]) -> "list[Keyframe]":
+    from hydrostat.ik import Keyframe
+
+    known = simulation.robot.poses
+    return [Keyframe(target=known.get(name, simulation.rest), name=name) for name in names]
+
+
+def _write(
+    simulation: "Simulation",
+    made: "Trajectory",
+    facts: dict[str, Any],
+    out: Path,
+    width: int,
+    tell: Callable[[str, int, int], None],
+) -> list[Path]:
+    from hydrostat.plot import draw_trajectory, save_gif, save_png, trajectory_frames
+    from hydrostat.robot import replace_file
+    from hydrostat.simulation import write_profile
+
+    out.mkdir(parents=True, exist_ok=True)
+    robot = simulation.robot
+    frames, step = trajectory_frames(made)
+    return [
+        write_profile(out / "trajectory.csv", robot, made.profile()),
+        replace_file(out / "trajectory.json", (json.dumps(facts, indent=1) + "\n").encode()),
+        save_png(draw_trajectory(robot, made), out / "trajectory.png"),
+        save_gif(robot, frames, out / "trajectory.gif", step=step, width=width, tell=tell),
+    ]
+
+
+def _facts(simulation: "Simulation", made: "Trajectory", limits: "Limits", seconds: float) -> dict[str, Any]:
+    """What trajectory.json holds, in SI units: markers and tensions at the samples of trajectory.csv."""
+    from hydrostat import __version__
+    from hydrostat.robot import robot_hash
+
+    return {
+        "version": __version__,
+        "robot": robot_hash(simulation.robot),
+        "path": str(made.path),
+        "duration": made.seconds,
+        "seconds": seconds,
+        "speed_limit": _by_winch(made, made.pace.speed),
+        "acceleration_limit": _by_winch(made, made.pace.acceleration),
+        "tension_limit": limits.tension,
+        "equal": [list(group) for group in limits.equal],
+        "report": made.lines(),
+        "keyframes": [_key_facts(made, key) for key in made.keys],
+        "snaps": [{"time": snap.time, "distance": snap.distance} for snap in made.snaps],
+        "times": made.times.tolist(),
+        "markers": {name: places.tolist() for name, places in made.markers.items()},
+        "tensions": made.tensions.tolist(),
+    }
+
+
+def _key_facts(made: "Trajectory", key: Any) -> dict[str, Any]:
+    facts = {
+        "name": key.name,
+        "time": key.time,
+        "contractions": _by_winch(made, key.pose.contractions),
+        "errors": dict(key.errors),
+        "stray": key.stray,
+        "rms_error_from_rest": key.free_error,
+        "same_pose": key.same,
+    }
+    if key.found is not None:
+        facts |= {
+            "reason": str(key.found.reason),
+            "optimality": key.found.optimality,
+            "held": list(key.found.held),
+        }
+    return facts
+
+
+def _by_winch(made: "Trajectory", values: Any) -> dict[str, float | None]:
+    """Numbers by winch; None where there is no limit."""
+    finite = [float(value) if abs(value) < float("inf") else None for value in values]
+    return dict(zip(made.winches, finite, strict=True))
