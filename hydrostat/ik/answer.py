@@ -37,13 +37,9 @@ def held(search: Search, found: Descent) -> tuple[str, ...]:
         elif value <= bounds.low[channel] + hair[channel] and state.posture.tensions[bounds.cables == channel].any():
             words.append(f"{name}: let out as far as it may, {-1e3 * value:.4g} mm")
     full = state.posture.tensions >= (1.0 - _HAIR) * bounds.tension
-    for name in dict.fromkeys(robot.cables[cable].winch for cable in np.flatnonzero(full)):
-        words.append(f"{name}: pulls as hard as it may, {bounds.tension[_first(search, name)]:.4g} N")
+    pulling = {robot.cables[cable].winch: bounds.tension[cable] for cable in np.flatnonzero(full)}
+    words.extend(f"{name}: pulls as hard as it may, {most:.4g} N" for name, most in pulling.items())
     return tuple(words)
-
-
-def _first(search: Search, winch: str) -> int:
-    return next(index for index, cable in enumerate(search.simulation.robot.cables) if cable.winch == winch)
 
 
 _HAIR = 1e-6

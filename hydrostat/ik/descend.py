@@ -24,6 +24,11 @@ class Descent:
     iterations: int
     weight: float
 
+    @property
+    def allowed(self) -> bool:
+        """Whether all tensions are within their limits."""
+        return self.state.excess <= _EXCESS
+
     def after(self, iterations: int) -> "Descent":
         """The same, counted with what was tried before."""
         return replace(self, iterations=iterations)
@@ -73,7 +78,8 @@ class _Descent:
             accepted = trial is not None and self._accepts(trial, ratio)
             if not (accepted or self.state.sharp) and self._sharpen():
                 continue  # what a state that does not rest yet promised may have been too good
-            self.radius = min(_next_radius(self.radius, ratio, self._used(step)), options.largest_step)
+            if self.state.excess <= _EXCESS or not accepted:
+                self.radius = min(_next_radius(self.radius, ratio, self._used(step)), options.largest_step)
             if trial is not None and accepted:
                 self.state = trial
                 if not trial.excess > _EXCESS:

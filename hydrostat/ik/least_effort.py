@@ -7,8 +7,8 @@ from hydrostat.ik.search import Search, State
 def least_effort(search: Search, state: State) -> Descent:
     """The goal approached with least squared tensions, where it leaves a choice (E18).
 
-    With a heavy effort there is one optimum, near rest, whatever the start. It is followed while the weight of the
-    effort falls. Walking along the poses that reach the goal would be slow, as these are curved.
+    With a heavy effort the optimum is near rest. It is followed while the weight of the effort falls. Walking along the
+    poses that reach the goal would be slow, as these are curved.
 
     Args:
         search: the problem.
@@ -22,5 +22,5 @@ def least_effort(search: Search, state: State) -> Descent:
     return found.after(spent + found.iterations)
 
 
-_WEIGHTS = (1.0, 0.1, 1e-2, 1e-3)
+_WEIGHTS = (0.1, 1e-2, 1e-3)
 """Of the effort, one after the other."""

@@ -122,7 +122,7 @@ def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vec
         robot.winch(name)
         if not (np.isfinite([low, high]).all() and low <= high):
             raise InputError(
-                f'contraction of winch "{name}" must lie between two numbers [m], not {low:g} and {high:g}'
+                f'contraction of winch "{name}" must lie between two rising numbers [m], not {low:g} and {high:g}'
             )
         ranges[name] = (low, high)
     values = np.array(list(ranges.values()), dtype=float).reshape(-1, 2)

@@ -41,7 +41,8 @@ def solve_ik(
         targets: where markers should go [m].
         limits: what the winches may do, beside their travel and release.
         objectives: more that is wished for, or instead.
-        start: a pose to begin from, and to count rates from; the rest pose if left out.
+        start: a pose to begin from, and to count rates from; the rest pose if left out. Where the goals leave a choice
+            it does not matter, unless `options.unique` is off.
         options: tolerances and limits of the search.
 
     Raises:
@@ -60,7 +61,10 @@ def solve_ik(
     begun = search.begin(start)
     if begun is None:
         raise NotConvergedError("inverse kinematics finds no equilibrium to begin from; give another start")
-    seek = least_effort if search.options.unique and search.redundant(begun) else descend
+    seek = descend
+    if search.options.unique and search.redundant(begun):
+        seek = least_effort
+        begun = begun if given.rate is not None else search.begin(None) or begun
     found = _best(search, seek(search, begun), seek)
     return answer(search, found, target)
 
@@ -93,7 +97,8 @@ def _best(search: Search, found: Descent, seek: Callable[[Search, State], Descen
     for begun in islice(restarts(search, lambda: best[-1]), search.options.restarts):
         other = seek(search, begun)
         spent += other.iterations
-        if search.objective(other.state, found.weight) < search.objective(found.state, found.weight):
+        lower = search.objective(other.state, found.weight) < search.objective(found.state, found.weight)
+        if (other.allowed and not found.allowed) or (other.allowed >= found.allowed and lower):
             found = other
             best.append(other.state)
         if found.reason is InverseReason.REACHED:

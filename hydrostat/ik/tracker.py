@@ -9,7 +9,7 @@ from hydrostat.ik.descend import Descent
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search import InverseOptions, Search
+from hydrostat.ik.search import InverseOptions, Search, State
 from hydrostat.ik.solve_ik import Targets, as_pose, wishes
 from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose
@@ -68,14 +68,14 @@ class Tracker:
         if state.error <= search.reached:
             reason = InverseReason.REACHED
         else:
-            before = search.objective(state, weight)
+            least = self._options.progress * search.objective(state, weight)
             for _ in range(_TRIES):
                 step = search.step(state, weight, self._radius)
-                if step.promise <= self._options.progress * before:
+                if step.promise <= least and state.excess <= _EXCESS:
                     reason = InverseReason.OPTIMAL
                     break
                 trial = search.follow(state, step.values)
-                if trial is not None and search.objective(trial, weight) < before and trial.excess <= _EXCESS:
+                if trial is not None and self._accepts(search, state, trial, weight):
                     self._radius = min(2.0 * self._radius, self._options.largest_step)
                     state = trial
                     break
@@ -90,6 +90,13 @@ class Tracker:
         self.pose = reached.pose
         return reached
 
+    @staticmethod
+    def _accepts(search: Search, state: State, trial: State, weight: float) -> bool:
+        """Whether a trial is better, or mends a tension that is too large."""
+        if state.excess > _EXCESS:
+            return trial.excess <= 0.5 * state.excess
+        return trial.excess <= _FAR and search.objective(trial, weight) < search.objective(state, weight)
+
     def _search(self, target: Pose | None, seconds: float) -> Search:
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)
@@ -101,5 +108,8 @@ class Tracker:
 _TRIES = 3
 """Steps tried in one update before the robot stays where it is."""
 
-_EXCESS = 1e-3
-"""A tension may exceed its limit by this share on the way."""
+_EXCESS = 1e-6
+"""A tension may exceed its limit by this share."""
+
+_FAR = 1e-3
+"""On the way it may do so by this one, until the next update mends it."""

@@ -67,9 +67,7 @@ class KeyPose:
             lines[0] += f"; {self.found.reason}"
             lines += [f"  {words}" for words in self.found.held]
         if self.free_error is not None:
-            lines.append(
-                f"  a search from rest comes to {1e3 * self.free_error:.2f} mm, on another branch than this"
-            )
+            lines.append(f"  a search from rest comes to {1e3 * self.free_error:.2f} mm, on another branch than this")
         if not self.same:
             lines.append(
                 "  the way leads to another pose than the one that was sought: contractions do not decide here"

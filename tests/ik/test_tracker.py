@@ -1,0 +1,74 @@
+"""Targets that move. Oracles: the equilibrium of the streamed contractions, the limits, solve_ik at the end."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from builders import box_robot, strip_robot
+
+from hydrostat.errors import InputError
+from hydrostat.ik import InverseReason, Limits, Tracker, solve_ik
+from hydrostat.simulation import Simulation
+
+INTERVAL = 1 / 30
+
+
+def path(simulation: Simulation, hidden: list[float], updates: int) -> list[dict[str, tuple[float, ...]]]:
+    """The tip on a straight line from rest to where hidden contractions bring it."""
+    rest, end = (simulation.solve(np.array(a)).markers["tip"] for a in (np.zeros(2), hidden))
+    return [{"tip": tuple((rest + (end - rest) * i / updates).tolist())} for i in range(1, updates + 1)]
+
+
+@pytest.mark.parametrize("robot", [strip_robot(), box_robot()], ids=["flat", "space"])
+def test_a_moving_target_is_followed_by_real_poses(robot) -> None:
+    simulation = Simulation(robot)
+    tracker = Tracker(simulation)
+    for targets in path(simulation, [0.012, 0.004], 12):
+        reached = tracker.update(targets, seconds=INTERVAL)
+        assert reached.pose.result.converged
+        assert reached.pose.result.stable
+        again = simulation.solve(reached.pose.contractions, start=reached.pose)
+        assert np.abs(again.nodes - reached.pose.nodes).max() < 1e-8 * robot.body.mesh.size
+        assert max(reached.errors.values()) < 5e-3 * robot.body.mesh.size
+    for _ in range(6):
+        reached = tracker.update(targets, seconds=INTERVAL)
+    assert reached.reason is InverseReason.REACHED
+    assert max(reached.errors.values()) < 1e-6 * robot.body.mesh.size
+
+
+def test_limits_hold_at_every_update() -> None:
+    simulation = Simulation(strip_robot())
+    tracker = Tracker(simulation, limits=Limits(rate=0.06, tension=2.0))
+    goal = {"tip": tuple(simulation.solve(np.array([0.04, 0.0])).markers["tip"].tolist())}
+    before = np.zeros(2)
+    for _ in range(25):
+        reached = tracker.update(goal, seconds=INTERVAL)
+        assert np.abs(reached.pose.contractions - before).max() <= 0.06 * INTERVAL * (1 + 1e-9)
+        assert reached.pose.tensions.max() <= 2.0 * (1 + 2e-3)
+        before = reached.pose.contractions
+    best = solve_ik(simulation, goal, limits=Limits(tension=2.0))
+    assert max(reached.errors.values()) == pytest.approx(max(best.errors.values()), rel=1e-3)
+
+
+def test_slack_cables_join_under_a_limit_of_the_rate() -> None:
+    """E15: from the far side of a bend the other cable hangs loose by millimetres."""
+    simulation = Simulation(strip_robot(slack=0.004))
+    start = simulation.solve(np.array([0.0, 0.02]))
+    goal = {"tip": tuple(simulation.solve(np.array([0.025, 0.0])).markers["tip"].tolist())}
+    tracker = Tracker(simulation, limits=Limits(rate=0.05), start=start)
+    errors = [max(tracker.update(goal, seconds=INTERVAL).errors.values()) for _ in range(60)]
+    assert errors[-1] < 1e-6
+    assert all(later <= earlier * (1 + 1e-9) for earlier, later in pairwise(errors))
+
+
+def test_idle_updates_change_nothing() -> None:
+    simulation = Simulation(strip_robot())
+    tracker = Tracker(simulation)
+    goal = {"tip": tuple(simulation.solve(np.array([0.01, 0.0])).markers["tip"].tolist())}
+    found = [tracker.update(goal, seconds=INTERVAL).pose.contractions for _ in range(30)]
+    assert np.abs(np.diff(found[15:], axis=0)).max() == 0.0
+
+
+def test_time_must_pass() -> None:
+    with pytest.raises(InputError, match="above 0"):
+        Tracker(Simulation(strip_robot())).update({"tip": (0.2, 0.0)}, seconds=0.0)
