@@ -2,55 +2,148 @@
 
 import json
 import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.prepare import read_robot
+from hydrostat.cli.quantities import positive, winch_groups
 from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.geometry import Outline
+    from hydrostat.ik import Limits, ReachedPose
+    from hydrostat.robot import Pose, Robot
+    from hydrostat.simulation import Simulation
 
 
 def pose(
     robot: RobotFolder,
     out: OutFolder,
-    name: Annotated[str | None, typer.Option("--pose", metavar="NAME", help="One pose; all if left out.")] = None,
+    name: Annotated[
+        str | None, typer.Option("--pose", metavar="NAME", help="One pose; all if left out, none with --drawing.")
+    ] = None,
+    drawing: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="The shape of the pose, drawn over the body's own drawing."),
+    ] = None,
+    tension: Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears.")] = None,
+    equal: Annotated[
+        list[str] | None,
+        typer.Option(metavar="WINCH,WINCH", help="Winches of one contraction; may be repeated."),
+    ] = None,
+    restarts: Annotated[
+        int | None, typer.Option(metavar="N", help="How often to begin elsewhere where a goal is missed.")
+    ] = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
 ) -> None:
     """Find the contractions that come nearest to a pose.
 
     Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png; several poses get a folder each.
+    A pose is markers at points, or with --drawing a whole shape; --pose and --drawing together are both.
 
     Example: hydrostat pose examples/starfish --pose wave --out build/wave
     """
-    from hydrostat import __version__
-    from hydrostat.ik import InverseReason, solve_ik
-    from hydrostat.plot import draw_reached, save_png
-    from hydrostat.robot import replace_file
-    from hydrostat.simulation import Simulation, write_pose
+    from hydrostat.ik import InverseOptions, InverseReason, Limits, ShapeGoal, drawn_pose, solve_ik
+    from hydrostat.simulation import Simulation
+    from hydrostat.units import FORCE
 
     require_folder(out)
+    limits = Limits(
+        tension=None if tension is None else positive("--tension", tension, FORCE),
+        equal=winch_groups("--equal", equal or []),
+    )
+    if restarts is not None and restarts < 0:
+        raise InputError(f"--restarts {restarts}: must be 0 or more")
+    options = InverseOptions() if restarts is None else InverseOptions(restarts=restarts)
     loaded = read_robot(robot)
-    if not loaded.poses:
-        raise InputError(f"{robot}: the robot has no [[pose]]; add one")
-    targets = [loaded.pose(name)] if name else list(loaded.poses.values())
+    outline = None if drawing is None else drawn_pose(loaded, drawing)
+    wishes = [] if outline is None else [ShapeGoal(outline=outline)]
+    targets = _targets(loaded, robot, name, drawing)
     simulation = Simulation(loaded)
     stuck = False
-    for target in targets:
+    for title, target in targets:
         began = time.process_time()
-        reached = solve_ik(simulation, target)
+        reached = solve_ik(simulation, target, limits=limits, objectives=wishes, options=options)
         seconds = time.process_time() - began
-        folder: Path = out / target.name if len(targets) > 1 else out
-        extra = {"seconds": seconds, "version": __version__, "pose": target.name, "errors": dict(reached.errors)}
-        write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)
-        taken = {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
-        replace_file(folder / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())
-        save_png(draw_reached(loaded, reached), folder / "pose.png")
-        text = ", ".join(f"{winch} {1e3 * value:.1f} mm" for winch, value in taken.items())
-        print(f"{target.name}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.reason} ({1e3 * seconds:.0f} ms)")
-        print(f"  contractions: {text}")
+        folder: Path = out / title if len(targets) > 1 else out
+        _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)
+        _tell(loaded, reached, title, seconds)
         print(f"  wrote {folder}")
         stuck |= reached.reason in (InverseReason.ITERATION_LIMIT, InverseReason.NO_EQUILIBRIUM)
     if stuck:
         raise typer.Exit(1)
+
+
+def _targets(
+    loaded: "Robot", folder: Path, name: str | None, drawing: Path | None
+) -> "Sequence[tuple[str, Pose | None]]":
+    """Poses with their names; None where only a drawing is given.
+
+    Raises:
+        InputError: there is nothing to reach.
+    """
+    if name:
+        return [(name, loaded.pose(name))]
+    if drawing is not None:
+        return [(drawing.stem, None)]
+    if not loaded.poses:
+        raise InputError(f"{folder}: the robot has no [[pose]]; add one, or draw one and give it as --drawing")
+    return list(loaded.poses.items())
+
+
+def _write(
+    simulation: "Simulation",
+    reached: "ReachedPose",
+    folder: Path,
+    title: str,
+    limits: "Limits",
+    seconds: float,
+    *,
+    outline: "Outline | None",
+    jacobian: bool,
+) -> None:
+    from hydrostat import __version__
+    from hydrostat.plot import draw_reached, save_png
+    from hydrostat.plot.labels import shorten
+    from hydrostat.robot import replace_file
+    from hydrostat.simulation import write_pose
+
+    extra: dict[str, Any] = {
+        "seconds": seconds,
+        "version": __version__,
+        "pose": title,
+        "errors": dict(reached.errors),
+        "inverse": str(reached.reason),
+        "optimality": reached.optimality,
+        "held": list(reached.held),
+        "tension_limit": limits.tension,
+        "equal": [list(group) for group in limits.equal],
+    }
+    write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)
+    taken = _taken(simulation.robot, reached)
+    replace_file(folder / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())
+    head = None if reached.target is not None else f"Reached: {shorten(title)}"
+    save_png(draw_reached(simulation.robot, reached, title=head, outline=outline), folder / "pose.png")
+
+
+def _tell(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -> None:
+    """What was reached, and what keeps it from more."""
+    print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.reason} ({1e3 * seconds:.0f} ms)")
+    text = ", ".join(f"{winch} {1e3 * value:.1f} mm" for winch, value in _taken(loaded, reached).items())
+    print(f"  contractions: {text}")
+    for words in reached.held:
+        print(f"  limit: {words}")
+    if reached.held or reached.optimality > _STEEP:
+        print(f"  optimality: {reached.optimality:.1g} (0 at an optimum within these limits)")
+
+
+def _taken(loaded: "Robot", reached: "ReachedPose") -> dict[str, float]:
+    return {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
+
+
+_STEEP = 1e-3
+"""An optimality above this is told: there was more to gain."""

@@ -1,11 +1,12 @@
 """Pictures of a robot in a pose that its winches make."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.geometry.outline import Outline, Ring
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.hardware import (
     cable_dots,
@@ -18,6 +19,7 @@ from hydrostat.plot.hardware import (
 )
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
+from hydrostat.plot.palette import ERROR, LIGHT
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.places import Places, Spread
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
@@ -50,20 +52,31 @@ def draw_pose(
     return sheet.figure
 
 
-def draw_reached(robot: Robot, reached: ReachedPose, *, title: str | None = None, width: float = WIDTH) -> Figure:
+def draw_reached(
+    robot: Robot,
+    reached: ReachedPose,
+    *,
+    title: str | None = None,
+    outline: Outline | None = None,
+    width: float = WIDTH,
+) -> Figure:
     """What the winches reach of a pose: targets as crosses, each marker's error as a red line with its millimetres.
 
     Args:
         robot: to draw.
         reached: the pose found.
         title: above the picture; the pose's name if left out, nothing if empty.
+        outline: the shape that a flat body should take, dashed.
         width: of the picture [inch].
     """
-    head = f"Reached: {shorten(reached.target.name)}" if title is None else title
-    note = f"marker error {MILLIMETRES * reached.rms_error:.2f} mm rms"
-    goals = target_places(reached.target)
-    sheet, panes, labels = _in_pose(robot, reached.pose, head, note, width, targets=goals)
+    head = _reached_head(reached) if title is None else title
+    goals = {} if reached.target is None else target_places(reached.target)
+    rings = [] if outline is None else list(outline.rings)
+    note = _reached_note(reached, list(goals))
+    sheet, panes, labels = _in_pose(robot, reached.pose, head, note, width, targets=goals, rings=rings)
     tracked = {name: reached.pose.markers[name] for name in goals}
+    for ring in rings:
+        _draw_wanted(sheet, MILLIMETRES * ring)
     for pane in panes:
         markers, targets = pane.named(tracked), pane.named(goals)
         draw_errors(sheet, markers, targets)
@@ -72,6 +85,26 @@ def draw_reached(robot: Robot, reached: ReachedPose, *, title: str | None = None
     for name, place in panes[0].named(tracked).items():
         labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
     return sheet.figure
+
+
+def _reached_head(reached: ReachedPose) -> str:
+    return "Reached" if reached.target is None else f"Reached: {shorten(reached.target.name)}"
+
+
+def _reached_note(reached: ReachedPose, names: list[str]) -> str:
+    """Errors in words: of the markers together, of each other goal by its name."""
+    markers = [reached.errors[name] for name in names]
+    parts = [f"marker error {MILLIMETRES * float(np.sqrt(np.mean(np.square(markers)))):.2f} mm rms"] if markers else []
+    others = {name: error for name, error in reached.errors.items() if name not in names}
+    parts += [f"{shorten(name)} error {MILLIMETRES * error:.2f} mm" for name, error in others.items()]
+    return ", ".join(parts) or str(reached.reason)
+
+
+def _draw_wanted(sheet: Sheet, ring: Places) -> None:
+    """A ring of the shape that is wanted [mm], dashed."""
+    closed = np.concatenate([ring, ring[:1]])
+    sheet.curve(closed, color=LIGHT, linewidth=2.6, zorder=14)
+    sheet.curve(closed, color=ERROR, linewidth=1.2, linestyle=(0, (3.5, 2.0)), zorder=14.1)
 
 
 def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, width: float = WIDTH) -> Figure:
@@ -94,13 +127,26 @@ def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, wi
 
 
 def _in_pose(
-    robot: Robot, pose: SolvedPose, title: str, subtitle: str, width: float, *, targets: Mapping[str, Vector]
+    robot: Robot,
+    pose: SolvedPose,
+    title: str,
+    subtitle: str,
+    width: float,
+    *,
+    targets: Mapping[str, Vector],
+    rings: Sequence[Ring] = (),
 ) -> tuple[Sheet, list[Pane], Labels]:
-    """A sheet with ghost, posed body, cables by tension and winches, and room for labels off the targets [m]."""
+    """A sheet with ghost, posed body, cables by tension and winches, room for rings and for labels off targets [m]."""
     rest, cables, winches = robot.body.mesh.nodes, cable_points(robot, pose.nodes), winch_points(robot, pose.nodes)
     goals = np.array(list(targets.values())).reshape(-1, robot.body.mesh.dim)
     sheet, panes = open_sheet(
-        robot, [pose.nodes, rest], [*cables, goals], title=title, subtitle=subtitle, width=width, bar=bool(cables)
+        robot,
+        [pose.nodes, rest],
+        [*cables, goals, *rings],
+        title=title,
+        subtitle=subtitle,
+        width=width,
+        bar=bool(cables),
     )
     scale = TensionScale.of(pose.tensions)
     colours = [scale.colour(float(tension)) for tension in pose.tensions]

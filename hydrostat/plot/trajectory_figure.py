@@ -47,9 +47,9 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
     shown = _told_apart(shown)[: MOST_POSES + 1]
     images = _portraits(robot, [pose for _, _, pose in shown])
     side = (width - 0.2) / max(len(shown), 3)
-    tall = min(max(image.shape[0] / image.shape[1] for image in images) * side, TALLEST)
+    tall = min(max(image.shape[0] / image.shape[1] for image in images) * 0.94 * side, TALLEST)
     top = 0.55 if title != "" else 0.3
-    height = top + tall + 0.3 + 3 * CHART + 0.5
+    height = top + tall + 0.2 + 3 * CHART + 0.5
     figure = Figure(figsize=(width, height), facecolor="none")
     FigureCanvasAgg(figure)
     _head(figure, shorten(robot.name) if title is None else title, trajectory)
@@ -59,7 +59,7 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
         axes.imshow(image, interpolation="antialiased")
         axes.set_axis_off()
         axes.set_title(f"{shorten(name)}\n{time:.2f} s", fontsize=7.5, color=INK, pad=2, parse_math=False)
-    _charts(figure, robot, trajectory, height - top - tall - 0.3)
+    _charts(figure, robot, trajectory, height - top - tall - 0.2)
     return figure
 
 
