@@ -11,7 +11,7 @@ from hydrostat.simulation import Simulation
 Progress = Callable[[str, int, int], None]
 """Told the stage, how much of it is done, and how much there is."""
 
-_ROUNDS = (InverseOptions(iterations=3), InverseOptions(iterations=4), InverseOptions())
+_ROUNDS = tuple(InverseOptions(iterations=steps, restarts=0, unique=False) for steps in (3, 4, 100))
 """Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
 
 _KEPT = 4

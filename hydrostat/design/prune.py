@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from hydrostat.design.judge import cost
-from hydrostat.ik import ReachedPose, solve_ik
+from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
 
@@ -29,7 +29,11 @@ def prune(
             continue
         trial = robot.with_network(robot.winches, others)
         simulation = Simulation(trial)
-        found = tuple(solve_ik(simulation, pose) for pose in poses)
+        found = tuple(solve_ik(simulation, pose, options=_OPTIONS) for pose in poses)
         if cost(found, tension) <= allowed:
             robot, reached = trial, found
     return robot, reached
+
+
+_OPTIONS = InverseOptions(restarts=0, unique=False)
+"""One descent tells enough."""

@@ -128,7 +128,11 @@ class Search:
         values = self.bounds.channel(pose.contractions)
         if (self.bounds.spread @ values == pose.contractions).all() and _sound(pose.result):
             return self._state(values, self._result(pose))
-        return self._relaxed(values, self._result(pose))
+        found = self._relaxed(values, self._result(pose))
+        if found is None:
+            solved = self.simulation.solve(self.bounds.spread @ values, start=pose, strict=False)
+            found = self._state(values, self._result(solved)) if _sound(solved.result) else None
+        return found
 
     def step(self, state: State, weight: float, radius: float) -> Step:
         """Where to go from a state: contractions of the channels [m], and what that promises."""

@@ -71,7 +71,7 @@ def earliest(keys: Keys, lengths: Vector, pace: Pace, *, least: float) -> Course
     for _ in range(_ROUNDS):
         course = Course.smooth(_times(lengths), keys)
         used = np.where(free, pace.share(*course.peaks()), 0.0)
-        scaled = Course.smooth(_times(np.where(free, used.max() * lengths, lengths)), keys)
+        scaled = Course.smooth(_times(np.where(free, np.maximum(used.max() * lengths, least), lengths)), keys)
         if scaled.seconds < best.seconds and pace.share(*scaled.peaks()).max() <= 1 + _HAIR:
             best = scaled
         lengths = np.where(free, np.maximum(lengths * np.sqrt(used), least), lengths)

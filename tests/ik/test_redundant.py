@@ -1,4 +1,4 @@
-"""Cables that can reach a goal in many ways. Oracles: one answer from all starts, and less effort than its neighbours."""
+"""Cables that can reach a goal in many ways. Oracles: one answer from all starts, with less effort than others."""
 
 from dataclasses import replace
 

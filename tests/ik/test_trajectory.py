@@ -1,0 +1,213 @@
+"""Poses in time. Oracles: inverse kinematics of each pose, closed forms, the fold of a branch, play."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from arches import arch
+from builders import strip_robot
+
+from hydrostat.errors import InputError
+from hydrostat.ik import InverseOptions, Keyframe, Limits, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
+from hydrostat.ik.trajectory import stray
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Simulation, follow_branch
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+COARSE = TrajectoryOptions(rate=20)
+
+
+def strip() -> Robot:
+    return strip_robot(columns=10, rows=2)
+
+
+@pytest.fixture(scope="module")
+def simulation() -> Simulation:
+    return Simulation(strip())
+
+
+def poses(simulation: Simulation) -> list[Pose]:
+    """Poses with contractions that are known."""
+    hidden = {"up": [0.03, 0.0], "half": [0.015, 0.0], "down": [0.0, 0.02]}
+    return [
+        Pose(name=name, targets={"tip": tuple(simulation.solve(np.array(values)).markers["tip"].tolist())})
+        for name, values in hidden.items()
+    ]
+
+
+def moved(trajectory: Trajectory) -> float:
+    return float(np.ptp(trajectory.contractions, axis=0).max())
+
+
+@pytest.mark.parametrize("path", ["smooth", "linear", "straight"])
+def test_every_keyframe_is_the_pose_that_inverse_kinematics_finds(simulation: Simulation, path: str) -> None:
+    wanted = poses(simulation)
+    found = solve_ik_trajectory(simulation, wanted, path=path, options=COARSE)
+    start = None
+    for key, pose in zip(found.keys, wanted, strict=True):
+        alone = solve_ik(simulation, pose, start=start, options=InverseOptions(restarts=0))
+        start = alone.pose
+        assert key.name == pose.name
+        assert key.same
+        assert key.rms_error < 2e-6
+        assert found.times[key.index] == key.time
+        assert np.abs(key.pose.nodes - alone.pose.nodes).max() < 1e-5
+        assert (found.poses[key.index].nodes == key.pose.nodes).all()
+    assert found.snaps == ()
+    assert found.keys[-1].time == found.seconds
+
+
+def test_each_sample_is_an_equilibrium_at_its_contractions(simulation: Simulation) -> None:
+    found = solve_ik_trajectory(simulation, poses(simulation)[:1], options=COARSE)
+    for contractions, pose in zip(found.contractions, found.poses, strict=True):
+        assert (pose.contractions == contractions).all()
+        alone = simulation.solve(contractions)
+        assert np.abs(alone.nodes - pose.nodes).max() < 1e-7
+    assert found.markers["tip"].shape == (len(found.times), 2)
+    assert found.tensions[-1] == pytest.approx(found.poses[-1].tensions)
+
+
+def test_the_samples_keep_to_the_limits_by_winch(simulation: Simulation) -> None:
+    limits = {"up": 0.02, "down": 0.05}
+    found = solve_ik_trajectory(simulation, poses(simulation), speed=limits, acceleration=0.1, options=COARSE)
+    speeds = np.abs(found.speeds).max(axis=0)
+    assert speeds[0] <= 0.02 * (1 + 1e-9)
+    assert speeds[1] <= 0.05 * (1 + 1e-9)
+    assert np.abs(found.accelerations).max() <= 0.1 * (1 + 1e-9)
+    steps = np.diff(found.contractions, axis=0) / np.diff(found.times)[:, None]
+    assert (np.abs(steps).max(axis=0) <= np.array([0.02, 0.05]) * (1 + 1e-9)).all()
+
+
+def test_what_needs_no_motion_does_not_move(simulation: Simulation) -> None:
+    rest = {"tip": tuple(simulation.rest.markers["tip"].tolist())}
+    found = solve_ik_trajectory(simulation, [rest, simulation.rest])
+    assert moved(found) == 0.0
+    assert (found.poses[-1].nodes == simulation.rest.nodes).all()
+
+
+def test_the_profile_is_what_a_motion_plays(simulation: Simulation) -> None:
+    """Played slowly, the robot ends where the trajectory ends."""
+    found = solve_ik_trajectory(simulation, poses(simulation)[:1], speed=0.02, options=COARSE)
+    profile = found.profile()
+    for time, contractions in zip(found.times, found.contractions, strict=True):
+        assert profile.at(float(time)) == pytest.approx(contractions, abs=1e-15)
+    *_, last = simulation.play(profile, found.seconds + 1.0, 0.05)
+    assert last.markers["tip"] == pytest.approx(found.keys[-1].pose.markers["tip"], abs=2e-3)
+
+
+def test_times_are_kept_or_refused(simulation: Simulation) -> None:
+    up, _, down = poses(simulation)
+    found = solve_ik_trajectory(simulation, [(2.0, up), (5.0, down)], options=COARSE)
+    assert [key.time for key in found.keys] == pytest.approx([2.0, 5.0])
+    with pytest.raises(InputError, match=r"0\.3 s on the way to up are too short .* it takes about 1\.\d* s"):
+        solve_ik_trajectory(simulation, [(0.3, up)], options=COARSE)
+
+
+def test_a_hold_stays_and_a_loop_comes_back(simulation: Simulation) -> None:
+    up, _, down = poses(simulation)
+    found = solve_ik_trajectory(simulation, [up, down], hold=0.5, loop=True, options=COARSE)
+    stays = (found.times >= found.keys[0].time) & (found.times <= found.keys[0].time + 0.5)
+    assert (found.contractions[stays] == found.contractions[found.keys[0].index]).all()
+    assert np.ptp(found.times[stays]) == pytest.approx(0.5)
+    assert found.keys[-1].name == "rest"
+    assert not found.contractions[-1].any()
+    assert np.abs(found.poses[-1].nodes - simulation.rest.nodes).max() < 1e-7
+
+
+def test_markers_go_straight(simulation: Simulation) -> None:
+    """Two winches can hold the tip of a strip on a line; by contractions along lines it leaves that line."""
+    robot = replace(strip(), winches=tuple(replace(winch, release=0.02) for winch in strip().winches))
+    free = Simulation(robot)
+    tip = free.solve({"up": 0.03, "down": 0.01}).markers["tip"]
+    first = solve_ik(free, {"tip": tuple(tip.tolist())}).pose
+    target = {"tip": (float(tip[0]), float(tip[1]) - 0.02)}
+    straight = solve_ik_trajectory(free, [target], start=first, path="straight", options=COARSE).keys[0]
+    smooth = solve_ik_trajectory(free, [target], start=first, options=COARSE).keys[0]
+    assert straight.stray < 2e-5
+    assert smooth.stray > 10 * straight.stray
+    assert straight.rms_error < 1e-5
+
+
+def test_stray_is_the_distance_from_the_line() -> None:
+    places = np.array([[0.0, 0.0], [1.0, 0.5], [2.0, -0.75], [3.0, 0.0]])
+    assert stray({"tip": places}) == pytest.approx(0.75)
+    assert stray({"tip": places[:1], "nose": places[[0, 3]]}) == 0.0
+    assert stray({"tip": places[[0, 1, 0]]}) == pytest.approx(np.hypot(1.0, 0.5))
+
+
+def test_a_snap_is_told_where_the_branch_folds() -> None:
+    """Oracle: the fold of the same branch, followed by arclength."""
+    simulation = Simulation(arch())
+    goal = np.array([0.25])
+    branch = follow_branch(simulation, simulation.rest, goal)
+    assert len(branch.folds) == 1
+    through = simulation.solve(goal, start=simulation.rest)
+    found = solve_ik_trajectory(simulation, [through], path="linear", options=COARSE)
+    (snap,) = found.snaps
+    fold = branch.folds[0] * goal[0]
+    sample = int(np.flatnonzero(found.times == snap.time)[0])
+    assert found.contractions[sample - 1, 0] < fold <= found.contractions[sample, 0] + 1e-4
+    assert snap.distance > 0.01
+    assert "snaps" in " ".join(found.lines())
+
+
+def test_a_branch_without_folds_does_not_snap() -> None:
+    """Half the way to the fold, at so few samples that steps have to be halved."""
+    simulation = Simulation(arch())
+    branch = follow_branch(simulation, simulation.rest, np.array([0.25]))
+    near = simulation.solve(np.array([0.5 * branch.folds[0] * 0.25]))
+    options = TrajectoryOptions(rate=1, compare=False)
+    found = solve_ik_trajectory(simulation, [near], speed=1.0, acceleration=10.0, options=options)
+    assert len(found.times) == 2
+    assert found.snaps == ()
+    assert found.keys[0].same
+
+
+def test_what_only_a_search_from_rest_reaches_is_found_or_told(simulation: Simulation) -> None:
+    """From a start with few iterations the pose is missed; the way to what rest finds is on the same branch."""
+    up, _, down = poses(simulation)
+    lame = TrajectoryOptions(rate=20, inverse=InverseOptions(iterations=3))
+    alone = solve_ik(
+        simulation, down, start=simulation.solve({"up": 0.03}), options=InverseOptions(iterations=3, restarts=0)
+    )
+    free = solve_ik(simulation, down, options=lame.inverse)
+    key = solve_ik_trajectory(simulation, [up, down], options=lame).keys[1]
+    assert key.rms_error <= min(alone.rms_error, free.rms_error) * 1.01 + 1e-5 or key.free_error is not None
+
+
+def test_a_limit_on_the_tension_holds_in_keyframes_and_is_told_between(simulation: Simulation) -> None:
+    up, _, down = poses(simulation)
+    most = 0.5 * float(simulation.solve({"up": 0.03}).tensions.max())
+    found = solve_ik_trajectory(simulation, [up, down], limits=Limits(tension=most), options=COARSE)
+    for key in found.keys:
+        assert key.pose.tensions.max() <= most * (1 + 1e-5)
+    assert any("pulls as hard as it may" in line for line in found.lines())
+    over = any("between keyframes, more than" in line for line in found.lines())
+    assert over == bool((found.tensions > most * 1.001).any())
+
+
+BAD = {
+    "at least one keyframe": {"keyframes": []},
+    "keyframe 1 has no target": {"keyframes": [{}]},
+    "give one to all or to none": {"keyframes": [(1.0, {"tip": (0.1, 0.0)}), {"tip": (0.1, 0.0)}]},
+    "must rise from above 0 s, not 0 s": {"keyframes": [(0.0, {"tip": (0.1, 0.0)})]},
+    "smooth, linear, straight": {"path": "round"},
+    "no limit on the acceleration can hold": {"path": "linear", "acceleration": 0.1},
+    "hold must be 0 s or more, not -1": {"hold": -1.0},
+    "in place of one on the rate": {"limits": Limits(rate=0.1, interval=1.0)},
+    "rate must be from 1": {"options": TrajectoryOptions(rate=0.0)},
+    "knots must be 1 or more": {"options": TrajectoryOptions(knots=0)},
+    "loop goes back as soon": {"keyframes": [(1.0, {"tip": (0.1, 0.0)})], "loop": True},
+    "before the hold of 2 s": {
+        "keyframes": [(1.0, {"tip": (0.2, 0.0)}), (2.0, {"tip": (0.2, 0.0)}), (9.0, {"tip": (0.2, 0.0)})],
+        "hold": 2.0,
+    },
+}
+
+
+@pytest.mark.parametrize("words", BAD)
+def test_bad_input(simulation: Simulation, words: str) -> None:
+    arguments = {"keyframes": [Keyframe(target={"tip": (0.19, 0.01)})], **BAD[words]}
+    with pytest.raises(InputError, match=words):
+        solve_ik_trajectory(simulation, **arguments)
