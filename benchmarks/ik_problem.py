@@ -63,9 +63,7 @@ def timed(call: Callable[[], Answer]) -> tuple[Answer, float]:
 
 def middle(values: Sequence[float], form: str = ".3g") -> str:
     """Median and 99th percentile."""
-    if not len(values):
-        return "-"
-    return " / ".join(format(float(value), form) for value in np.percentile(values, [50, 99]))
+    return " / ".join(format(float(value), form) for value in np.percentile(values, [50, 99])) if values else "-"
 
 
 class Problem:

@@ -4,9 +4,9 @@
 
 The targets of all markers run along a smooth closed curve: where the hand rests while contractions go from none through
 hidden ones (drawn evenly from the ranges of all winches) and back. Each update, 1/30 s after the last, is given the
-targets of that moment; its own CPU time is taken. Then, at every second, a copy of the tracker goes on with targets that stay
-where they are, for half a second. Every pose is judged afresh: forces in balance, a minimum, no inverted element,
-contractions in their ranges and no faster than the rate, tensions within their limit (at most 0.2 % above it).
+targets of that moment; its own CPU time is taken. Then, at every second, a copy of the tracker goes on with targets
+that stay where they are, for half a second. Every pose is judged afresh: forces in balance, a minimum, no inverted
+element, contractions in their ranges and no faster than the rate, tensions within their limit (at most 0.2 % above it).
 Limits of 1.2 times what the curve needs leave every target within reach; with 0.7 times some are not.
 """
 
