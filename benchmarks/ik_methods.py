@@ -78,7 +78,7 @@ METHODS: dict[str, Method] = {
 
 
 def robot_named(name: str) -> Robot:
-    """A robot of the gallery, or one that SOFA ships."""
+    """A robot that SOFA ships, or one of the gallery."""
     others = sofa_robots()
     return others[name]() if name in others else hs.load_robot(gallery_folder(name))
 

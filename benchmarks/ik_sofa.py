@@ -83,7 +83,7 @@ def rows(name: str, task: Task, repeats: int) -> list[str]:
         sofa = (
             "- | - | -"
             if task.sofa is None
-            else (f"{task.sofa[0]:.0f} to {task.sofa[1]:.0f} | {task.left} | {task.sofa[0] / spent:.0f}")
+            else (f"{task.sofa[0]:.0f} to {task.sofa[1]:.0f} | {task.left} | {task.sofa[0] / spent:.1f}")
         )
         lines.append(
             f"| {name} | {', '.join(f'{value:g}' for value in goal)} | {found.reason.name} | {1e3 * error:.1e} "
