@@ -1,0 +1,96 @@
+"""`hydrostat pose` with limits and drawings; oracle: the library called directly, and hidden contractions."""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hydrostat as hs
+from hydrostat.geometry.files.outline_file import read_drawing
+from hydrostat.plot.skin import Skin
+
+Run = Callable[..., tuple[int, str, str]]
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+HIDDEN = {"right": 0.03, "left": 0.012, "feet": 0.012}
+
+
+@pytest.fixture
+def drawing(starfish: Path, tmp_path: Path) -> Path:
+    """The drawing of the starfish, with its outline as it is under the hidden contractions."""
+    robot = hs.load_robot(starfish)
+    body = robot.body
+    page = read_drawing(body.content, name=body.file, size=body.size).page
+    nodes = hs.Simulation(robot).solve(HIDDEN).nodes
+    ring = Skin.of(body).shape(nodes)[0] / np.array(page.scale) + np.array(page.origin)
+    path = "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in ring) + "Z"
+    file = tmp_path / "bent.svg"
+    file.write_text(re.sub(r' d="[^"]*"', f' d="{path}"', body.content.decode(), count=1, flags=re.DOTALL))
+    return file
+
+
+def test_a_drawing_leads_to_the_contractions_behind_it(run: Run, starfish: Path, drawing: Path, tmp_path: Path) -> None:
+    code, out, _ = run("pose", starfish, "--drawing", drawing, "--out", tmp_path / "out")
+    assert code == 0
+    assert out.startswith("bent: rms error 0.")
+    taken = json.loads((tmp_path / "out" / "contractions.json").read_text())
+    assert taken == pytest.approx(HIDDEN, abs=5e-4)
+    facts = json.loads((tmp_path / "out" / "pose.json").read_text())
+    assert set(facts["errors"]) == {"outline"}
+    assert facts["pose"] == "bent"
+    assert (tmp_path / "out" / "pose.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_markers_and_a_drawing_together(run: Run, starfish: Path, drawing: Path, tmp_path: Path) -> None:
+    assert run("pose", starfish, "--drawing", drawing, "--pose", "wave", "--out", tmp_path / "out")[0] == 0
+    facts = json.loads((tmp_path / "out" / "pose.json").read_text())
+    assert set(facts["errors"]) == {"outline", *hs.load_robot(starfish).poses["wave"].targets}
+
+
+def test_a_limit_on_the_tension_holds_and_is_told(run: Run, starfish: Path, tmp_path: Path) -> None:
+    code, out, _ = run("pose", starfish, "--pose", "wave", "--tension", "8 N", "--out", tmp_path / "out")
+    assert code == 0
+    facts = json.loads((tmp_path / "out" / "pose.json").read_text())
+    assert max(facts["tensions"]) == pytest.approx(8.0, rel=1e-4)
+    assert facts["held"] == ["right: pulls as hard as it may, 8 N"]
+    assert "  limit: right: pulls as hard as it may, 8 N" in out
+    assert "  optimality: " in out
+    assert facts["optimality"] < 1e-3
+    assert facts["tension_limit"] == 8.0
+
+
+def test_equal_winches_take_in_the_same(run: Run, starfish: Path, tmp_path: Path) -> None:
+    options = ("--pose", "wave", "--equal", "left,right", "--restarts", "0")
+    assert run("pose", starfish, *options, "--out", tmp_path / "out")[0] == 0
+    taken = json.loads((tmp_path / "out" / "contractions.json").read_text())
+    assert taken["left"] == taken["right"]
+    robot = hs.load_robot(starfish)
+    wave = robot.poses["wave"]
+    limits = hs.Limits(equal=[["left", "right"]])
+    alone = hs.solve_ik(hs.Simulation(robot), wave, limits=limits, options=hs.InverseOptions(restarts=0))
+    assert list(taken.values()) == pytest.approx(alone.pose.contractions.tolist(), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--tension", "20"), "--tension 20: "),
+        (("--tension", "-3 N"), "--tension -3 N: must be above 0"),
+        (("--equal", "left"), "--equal left: name two winches"),
+        (("--equal", "left,right", "--equal", "right,feet"), "in two groups"),
+        (("--restarts", "-1"), "--restarts -1: must be 0 or more"),
+        (("--drawing", "none.svg"), "none.svg: cannot be read"),
+    ],
+)
+def test_bad_options_are_one_line(
+    run: Run, starfish: Path, tmp_path: Path, options: tuple[str, ...], words: str
+) -> None:
+    code, _, errors = run("pose", starfish, *options, "--out", tmp_path / "out")
+    assert code == 2
+    assert words in errors
+    assert errors.count("\n") == 1
+    assert not (tmp_path / "out").exists()

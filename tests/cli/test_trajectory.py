@@ -1,0 +1,83 @@
+"""`hydrostat trajectory`; oracle: the library called directly, and the files read back."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import hydrostat as hs
+from hydrostat.simulation import read_profile
+
+Run = Callable[..., tuple[int, str, str]]
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+
+def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Path) -> None:
+    options = ("--poses", "star_jump,rest", "--speed", "0.1 m/s", "--acceleration", "500 mm/s^2", "--width", "200")
+    code, out, err = run("trajectory", starfish, *options, "--out", tmp_path / "out")
+    assert code == 0
+    assert "following the way" in err
+    robot = hs.load_robot(starfish)
+    simulation = hs.Simulation(robot)
+    keyframes = [robot.poses["star_jump"], hs.Keyframe(target=simulation.rest, name="rest")]
+    found = hs.solve_ik_trajectory(simulation, keyframes, speed=0.1, acceleration=0.5)
+    assert found.lines()[-3] in out
+    profile = read_profile(tmp_path / "out" / "trajectory.csv", robot)
+    assert profile.times == pytest.approx(found.times, rel=1e-8)
+    assert profile.values == pytest.approx(found.contractions, abs=1e-9)
+    facts = json.loads((tmp_path / "out" / "trajectory.json").read_text())
+    assert [key["name"] for key in facts["keyframes"]] == ["star_jump", "rest"]
+    assert facts["keyframes"][0]["errors"] == pytest.approx(dict(found.keys[0].errors), abs=1e-8)
+    assert facts["duration"] == pytest.approx(found.seconds)
+    assert np.array(facts["markers"]["left"]) == pytest.approx(found.markers["left"], abs=1e-8)
+    assert np.array(facts["tensions"]) == pytest.approx(found.tensions, abs=1e-5)
+    assert facts["speed_limit"] == {"right": 0.1, "left": 0.1, "feet": 0.1}
+    assert (tmp_path / "out" / "trajectory.png").read_bytes().startswith(b"\x89PNG")
+    with Image.open(tmp_path / "out" / "trajectory.gif") as image:
+        assert image.size[0] == 200
+        assert getattr(image, "n_frames", 1) > 10
+
+
+def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> None:
+    options = ("--poses", "wave", "--path", "linear", "--speed", "200 mm/s", "--width", "200")
+    assert run("trajectory", starfish, *options, "--out", tmp_path / "way")[0] == 0
+    file = tmp_path / "way" / "trajectory.csv"
+    played = ("--dynamic", "--play", file, "--step", "50ms", "--duration", "0.2s")
+    assert run("simulate", starfish, *played, "--out", tmp_path / "motion")[0] == 0
+    facts = json.loads((tmp_path / "motion" / "pose.json").read_text())
+    values = read_profile(file, hs.load_robot(starfish)).at(0.2)
+    assert list(facts["contractions"].values()) == pytest.approx(values.tolist(), abs=1e-9)
+    limits = json.loads((tmp_path / "way" / "trajectory.json").read_text())["acceleration_limit"]
+    assert limits == {"right": None, "left": None, "feet": None}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--speed", "50"), "--speed 50: "),
+        (("--speed", "0 mm/s"), "--speed 0 mm/s: must be above 0"),
+        (("--acceleration", "5 mm"), "--acceleration 5 mm: "),
+        (("--hold", "-1s"), "--hold -1s: must be 0 or more"),
+        (("--poses", "wave,dance"), "dance"),
+        (("--poses", ","), "--poses: names none"),
+        (("--equal", "left"), "--equal left: name two winches"),
+        (("--equal", "left,tail"), "tail"),
+        (("--path", "linear", "--acceleration", "1 m/s^2"), "no limit on the acceleration can hold"),
+        (("--width", "2"), "--width 2"),
+    ],
+)
+def test_bad_options_are_one_line(
+    run: Run, starfish: Path, tmp_path: Path, options: tuple[str, ...], words: str
+) -> None:
+    code, _, errors = run("trajectory", starfish, *options, "--out", tmp_path / "out")
+    assert code == 2
+    assert words in errors
+    assert not (tmp_path / "out").exists()
+
+
+def test_help_has_an_example(run: Run) -> None:
+    assert "Example: hydrostat trajectory" in run("trajectory", "--help")[1]
