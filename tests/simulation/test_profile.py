@@ -65,7 +65,9 @@ def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, message: str
 
 def test_what_is_written_is_read_back(tmp_path: Path) -> None:
     robot = strip_robot(columns=4, rows=2)
-    profile = Profile(times=np.array([0.0, 0.25, 1.0]), values=np.array([[0.0, 0.01], [0.0123456, -0.0], [0.02, 0.0]]))
+    profile = hs.Profile(
+        times=np.array([0.0, 0.25, 1.0]), values=np.array([[0.0, 0.01], [0.0123456, -0.0], [0.02, 0.0]])
+    )
     path = write_profile(tmp_path / "way.csv", robot, profile)
     assert path.read_text().splitlines()[:2] == ["time_s,up,down", "0,0,10"]
     again = read_profile(path, robot)
