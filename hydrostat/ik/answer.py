@@ -28,7 +28,7 @@ def held(search: Search, found: Descent) -> tuple[str, ...]:
     """The limits that hold, in words: winches at their ends, cables at their largest tension."""
     state, bounds, robot = found.state, search.bounds, search.simulation.robot
     words = []
-    hair = _HAIR * (bounds.high - bounds.low)
+    hair = _HAIR * bounds.span
     for channel, value in enumerate(state.values):
         winches = [winch.name for winch, own in zip(robot.winches, bounds.channels, strict=True) if own == channel]
         name = " and ".join(winches)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hydrostat.arrays import Vector
 from hydrostat.ik.reached_pose import InverseReason
 from hydrostat.ik.search import Search, State
 
@@ -94,11 +95,9 @@ class _Descent:
             return trial.excess <= 0.5 * self.state.excess
         return ratio > 0 and trial.excess <= _FAR
 
-    def _used(self, values: np.ndarray) -> float:
-        bounds = self.search.bounds
-        return float(
-            (np.abs(values - self.state.values) / np.maximum(bounds.high - bounds.low, 1e-300)).max(initial=0.0)
-        )
+    def _used(self, values: Vector) -> float:
+        """The largest change of a channel, as a share of its range."""
+        return float((np.abs(values - self.state.values) / self.search.bounds.span).max(initial=0.0))
 
     def _reached(self) -> bool:
         return self.state.error <= self.search.reached and self.state.excess <= _EXCESS

@@ -38,6 +38,7 @@ class Bounds:
     Attributes:
         low: least contraction of each channel [m].
         high: largest contraction of each channel [m].
+        span: from the one to the other, whatever the rate allows [m]; steps are measured by it.
         tension: the most that each cable bears [N]; infinite without a limit.
         reach: how far each channel may be from where it starts [m]; infinite without a limit.
         channels: which channel each winch follows.
@@ -47,6 +48,7 @@ class Bounds:
 
     low: Vector
     high: Vector
+    span: Vector
     tension: Vector
     reach: Vector
     channels: np.ndarray
@@ -83,9 +85,12 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
         if limits.interval is None or not limits.interval > 0:
             raise InputError("a limit on the rate needs an interval above 0 s, the time since the start")
         reach = reach * limits.interval
+    lows = np.array([low[channels == channel].max() for channel in range(count)])
+    highs = np.array([high[channels == channel].min() for channel in range(count)])
     found = Bounds(
-        low=np.array([low[channels == channel].max() for channel in range(count)]),
-        high=np.array([high[channels == channel].min() for channel in range(count)]),
+        low=lows,
+        high=highs,
+        span=np.maximum(highs - lows, np.finfo(float).tiny),
         tension=largest[simulation.cables.winches],
         reach=np.array([reach[channels == channel].min() for channel in range(count)]),
         channels=channels,

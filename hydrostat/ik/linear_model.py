@@ -89,7 +89,7 @@ class LinearModel:
         self._tensions = posture.tensions[limited], tensions[limited], bounds.tension[limited]
         self._efforts = posture.tensions, tensions
         self.active = places.active
-        self.range = np.maximum(bounds.high - bounds.low, np.finfo(float).tiny)
+        self.range = bounds.span
 
     def best(self, effort: Vector, radius: float) -> tuple[Vector, float]:
         """The step of the channels [m] of least residual and effort, and by how much it lowers half their squares.

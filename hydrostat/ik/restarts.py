@@ -39,7 +39,7 @@ def _contractions(search: Search, state: State, number: int, draw: np.random.Gen
     moved = np.flatnonzero(_concerned(search, state))
     kind, turn = number % 3, number // 3
     values = state.values.copy()
-    span = (bounds.high - bounds.low)[moved]
+    span = bounds.span[moved]
     if kind == 0:
         values[moved] = np.clip(0.0, bounds.low, bounds.high)[moved]
         alone = moved[turn % len(moved)]

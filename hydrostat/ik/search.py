@@ -167,7 +167,7 @@ class Search:
         self.solves += 1
         contractions = self.bounds.spread @ values
         result = state.result
-        far = (np.abs(values - state.values) > _FAR * (self.bounds.high - self.bounds.low)).any()
+        far = (np.abs(values - state.values) > _FAR * self.bounds.span).any()
         for _ in range(_RELAXATIONS):
             before = result.nodes
             iterations, tolerance = (_ITERATIONS, _LOOSE) if far else (1, None)
@@ -175,7 +175,7 @@ class Search:
                 before, contractions, result.stiffness, iterations=iterations, tolerance=tolerance
             )
             if not result.stable:
-                break
+                return None if far else self._relaxed(values, state.result)
             found = self._state(values, result)
             left = np.abs(found.posture.nodes - result.nodes).max()
             if found.sharp or left <= _LEFT * np.abs(result.nodes - before).max():
