@@ -11,7 +11,7 @@ from hydrostat.arrays import Vector
 from hydrostat.ik import KeyPose, Trajectory
 from hydrostat.plot.hardware import cable_points, winch_points
 from hydrostat.plot.labels import shorten
-from hydrostat.plot.palette import ERROR, GHOST, GRID, INK, MUTED, winch_colours
+from hydrostat.plot.palette import ERROR, GHOST, GRID, INK, MUTED, WINCHES, winch_colours
 from hydrostat.plot.picture_file import drawing
 from hydrostat.plot.places import Spread
 from hydrostat.plot.pose_figures import draw_portrait
@@ -30,6 +30,9 @@ TALLEST = 1.7
 
 CHART = 1.45
 """Height of a chart [inch]."""
+
+DASHES = ("-", "--", ":", "-.")
+"""Lines of the first winches, and of those after them that have the same colours."""
 
 
 def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None = None, width: float = WIDTH) -> Figure:
@@ -85,7 +88,14 @@ def _portraits(robot: Robot, poses: list[SolvedPose]) -> list[np.ndarray]:
             assert isinstance(canvas, FigureCanvasAgg)
             canvas.draw()
             images.append(np.asarray(canvas.buffer_rgba()).copy())
-    return images
+    return _cropped(images)
+
+
+def _cropped(images: list[np.ndarray]) -> list[np.ndarray]:
+    """Without the border that is empty in all."""
+    drawn = np.any([image[..., 3] > 0 for image in images], axis=0)
+    rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    return [image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] for image in images]
 
 
 def _head(figure: Figure, title: str, trajectory: Trajectory) -> None:
@@ -110,7 +120,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         ("acceleration [mm/s\N{SUPERSCRIPT TWO}]", trajectory.accelerations, trajectory.pace.acceleration),
     )
     colours = winch_colours(robot)
-    right = 1.05 if len(trajectory.winches) > 1 else 0.9
+    right = 0.5 + 0.068 * max((len(shorten(name)) for name in trajectory.winches), default=0)
     first = None
     for row, (label, values, limits) in enumerate(rows):
         low = top - (row + 1) * CHART + 0.12
@@ -123,7 +133,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         for column, name in enumerate(trajectory.winches):
             axes.plot(
                 trajectory.times, MILLIMETRES * values[:, column], color=colours[name], linewidth=1.4,
-                label=shorten(name),
+                linestyle=DASHES[column // len(WINCHES) % len(DASHES)], label=shorten(name),
             )  # fmt: skip
         if limits is not None:
             _limits(axes, limits)
@@ -131,7 +141,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
             _name_keys(axes, trajectory.keys, trajectory.seconds)
             axes.legend(
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=7.5, frameon=False, labelcolor=INK,
-                handlelength=1.2, borderaxespad=0.0,
+                handlelength=1.6, borderaxespad=0.0, labelspacing=0.35,
             )  # fmt: skip
     assert first is not None
     first.set_xlim(0.0, trajectory.seconds)
@@ -176,6 +186,6 @@ def _limits(axes: Axes, limits: Vector) -> None:
         for sign in (-1.0, 1.0):
             axes.axhline(sign * MILLIMETRES * limits[0], color=ERROR, linewidth=0.9, linestyle=(0, (3, 2)), zorder=2)
         axes.annotate(
-            "limit", (1.0, MILLIMETRES * limits[0]), xycoords=("axes fraction", "data"), xytext=(4, 0),
-            textcoords="offset points", fontsize=7, color=ERROR, va="center",
+            "limit", (1.0, MILLIMETRES * limits[0]), xycoords=("axes fraction", "data"), xytext=(-2, 2),
+            textcoords="offset points", fontsize=6.5, color=ERROR, ha="right", va="bottom",
         )  # fmt: skip
