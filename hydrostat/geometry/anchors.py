@@ -1,5 +1,6 @@
 """`Anchors`: points stuck to the material of a mesh."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 from itertools import chain
@@ -45,6 +46,11 @@ class Anchors:
         rows = np.repeat(np.arange(len(self.stencils)), self.stencils.shape[1])
         entries = (self.weights.ravel(), (rows, self.stencils.ravel()))
         return csr_array(entries, shape=(len(self.stencils), node_count))
+
+    def chosen(self, points: Int[np.ndarray, " chosen"] | Sequence[int]) -> "Anchors":
+        """Some of them, by number."""
+        which = np.asarray(points, dtype=np.int64)
+        return Anchors(self.stencils[which], self.weights[which], self.distances[which])
 
     @property
     def inside(self) -> Bool[np.ndarray, " points"]:

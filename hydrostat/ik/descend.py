@@ -80,7 +80,8 @@ class _Descent:
             if not (accepted or self.state.sharp) and self._sharpen():
                 continue  # what a state that does not rest yet promised may have been too good
             if self.state.excess <= _EXCESS or not accepted:
-                self.radius = min(_next_radius(self.radius, ratio, self._used(step)), options.largest_step)
+                gained = ratio if accepted else -np.inf  # too tight a cable also asks for a shorter step
+                self.radius = min(_next_radius(self.radius, gained, self._used(step)), options.largest_step)
             if trial is not None and accepted:
                 self.state = trial
                 if not trial.excess > _EXCESS:

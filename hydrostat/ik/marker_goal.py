@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry.anchors import Anchors
 from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Simulation
@@ -45,10 +45,11 @@ class MarkerGoal(Objective):
                 if name not in self.targets:
                     raise InputError(f'marker "{name}" has a weight or free axes but no target; give it one')
         goals = np.array([_target(name, target, dim) for name, target in self.targets.items()]).reshape(-1, dim)
-        places = np.array([_place(robot, name) for name in names]).reshape(-1, dim)
+        chosen = [_index(robot, name) for name in names]
+        anchors = simulation.marker_anchors.chosen(chosen)
         scales = np.array([_weight(name, self.weights.get(name, 1.0)) for name in names]).reshape(-1)
         held = np.array([_held(name, self.free.get(name, ""), dim) for name in names], dtype=bool).reshape(-1, dim)
-        return _Markers(names, locate(robot.body.mesh, places), goals, scales, held)
+        return _Markers(names, anchors, goals, scales, held)
 
 
 class _Markers(Term):
@@ -83,12 +84,12 @@ class _Markers(Term):
         return self.anchors.positions(posture.nodes) - self.goals
 
 
-def _place(robot: Robot, name: str) -> Point:
-    markers = {marker.name: marker.at for marker in robot.markers}
-    if name not in markers:
-        known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
+def _index(robot: Robot, name: str) -> int:
+    names = [marker.name for marker in robot.markers]
+    if name not in names:
+        known = f"its markers are: {', '.join(names)}" if names else "it has no markers"
         raise InputError(f'the robot has no marker "{name}"; {known}')
-    return markers[name]
+    return names.index(name)
 
 
 def _target(name: str, target: Point, dim: int) -> Point:
