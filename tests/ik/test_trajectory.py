@@ -178,7 +178,7 @@ def test_what_only_a_search_from_rest_reaches_is_found_or_told(simulation: Simul
 
 def test_a_limit_on_the_tension_holds_in_keyframes_and_is_told_between(simulation: Simulation) -> None:
     up, _, down = poses(simulation)
-    most = 0.6 * float(simulation.solve({"up": 0.03}).tensions.max())
+    most = 0.5 * float(simulation.solve({"up": 0.03}).tensions.max())
     found = solve_ik_trajectory(simulation, [up, down], limits=Limits(tension=most), options=COARSE)
     for key in found.keys:
         assert key.pose.tensions.max() <= most * (1 + 1e-5)
