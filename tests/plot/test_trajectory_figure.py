@@ -39,7 +39,7 @@ def test_lines_are_the_trajectory() -> None:
         for column, name in enumerate(trajectory.winches):
             assert lines[name].get_ydata() == pytest.approx(1e3 * wanted[:, column])
             assert to_hex(lines[name].get_color()) == colours[name]
-    dashed = [line.get_ydata()[0] for line in charts[1].lines if to_hex(line.get_color()) == ERROR]
+    dashed = [float(np.ravel(line.get_ydata())[0]) for line in charts[1].lines if to_hex(line.get_color()) == ERROR]
     assert dashed == pytest.approx([-50.0, 50.0])
 
 
