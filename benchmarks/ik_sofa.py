@@ -6,9 +6,9 @@ The goal of the tip is where our own equilibrium has it under known contractions
 begins at rest under gravity; what that pose costs is said below each table. SOFA's figures (SOFA 25.06 with
 SoftRobots.Inverse, one thread at 2.1 GHz, goals of the same contractions) are for its corotated material, ours is
 Neo-Hookean; the ratios are the least and the most of SOFA's CPU times over ours. For the trunk, eight cables for one
-point, no figure of its inverse is known: its direct simulation takes 2.3 to 12 s to rest with one cable. Answer "one" is
-that of least effort where cables are redundant, "any" the first that reaches the goal; "tensions" is the length of the
-vector of all tensions, as hidden and as found.
+point, no figure of its inverse is known: its direct simulation takes 2.3 to 12 s to rest with one cable. Answer "one"
+is that of least effort where cables are redundant, "any" the first that reaches the goal; "tensions" is the length of
+the vector of all tensions, as hidden and as found.
 """
 
 import argparse

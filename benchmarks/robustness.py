@@ -70,6 +70,7 @@ class CountingSimulation(hs.Simulation):
         self.calls: list[NewtonResult] = []
 
     def relax(self, *given: Any, **options: Any) -> NewtonResult:
+        """As it is, remembered."""
         self.calls.append(super().relax(*given, **options))
         return self.calls[-1]
 

@@ -97,7 +97,7 @@ def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int,
         reached.append(solve_ik(simulation, simulation.robot.pose(pose)))
         tell("finding poses", index + 1, len(names))
     for found in reached:
-        print(f"{found.target.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.reason}")
+        print(f"{found.wanted.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.reason}")
     return pose_stops(reached)
 
 

@@ -116,7 +116,7 @@ def _print_table(network: "Network", rest: float, seconds: float) -> None:
             for winch, value in zip(robot.winches, reached.pose.contractions, strict=True)
         )
         table.add_row(
-            reached.target.name,
+            reached.wanted.name,
             f"{1e3 * reached.rms_error:.2f} mm",
             f"{worst} {1e3 * reached.errors[worst]:.1f} mm",
             ", ".join(taken),

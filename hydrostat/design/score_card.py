@@ -25,7 +25,7 @@ def score_card(network: Network, source: Robot, options: DesignOptions, *, versi
         "rms_error": network.rms_error,
         "rms_error_at_rest": rest_error(network),
         "rms_error_with_all_fibres": float(np.sqrt(np.mean([a.rms_error**2 for a in network.activations]))),
-        "poses": {pose.target.name: _reached(robot, pose) for pose in network.reached},
+        "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
         "winches": [{"name": winch.name, "at": list(winch.at)} for winch in robot.winches],
         "cables": [
             {"winch": cable.winch, "length": cable.length, "sheathed": cable.length - bare}
@@ -48,7 +48,7 @@ def rest_error(network: Network) -> float:
     """Root of the mean squared marker error over all poses if nothing moved [m]."""
     places = {marker.name: np.array(marker.at) for marker in network.robot.markers}
     squares = [
-        np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.target.targets.items()])
+        np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.wanted.targets.items()])
         for pose in network.reached
     ]
     return float(np.sqrt(np.mean(squares)))

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from hydrostat.errors import InputError
 from hydrostat.robot import Pose
 from hydrostat.simulation import SolvedPose
 
@@ -43,6 +44,17 @@ class ReachedPose:
     solves: int
     optimality: float = 0.0
     held: tuple[str, ...] = ()
+
+    @property
+    def wanted(self) -> Pose:
+        """The targets of the markers.
+
+        Raises:
+            InputError: only objectives were asked for.
+        """
+        if self.target is None:
+            raise InputError("this was asked for by objectives alone, there is no pose of targets")
+        return self.target
 
     @property
     def rms_error(self) -> float:

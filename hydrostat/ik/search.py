@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.linear_model import LinearModel, channels, slopes
 from hydrostat.ik.objective import Posture, Rows, Slopes, Term
@@ -122,17 +122,26 @@ class Search:
         self._ready = ready
         self.solves = 0
 
-    def begin(self, start: SolvedPose | None) -> State | None:
-        """The state of a pose, of rest if it is left out, within the limits; None if no equilibrium is found there."""
+    def begin(self, start: SolvedPose | None) -> State:
+        """The state of a pose, of rest if it is left out, within the limits.
+
+        Raises:
+            NotConvergedError: no equilibrium is found there.
+        """
         pose = start or self.simulation.rest
         values = self.bounds.channel(pose.contractions)
         if (self.bounds.spread @ values == pose.contractions).all() and _sound(pose.result):
             return self._state(values, self._result(pose))
         found = self._relaxed(values, self._result(pose))
-        if found is None:
-            solved = self.simulation.solve(self.bounds.spread @ values, start=pose, strict=False)
-            found = self._state(values, self._result(solved)) if _sound(solved.result) else None
-        return found
+        if found is not None:
+            return found
+        solved = self.simulation.solve(self.bounds.spread @ values, start=pose, strict=False)
+        if not _sound(solved.result):
+            raise NotConvergedError(
+                f"inverse kinematics finds no stable equilibrium to begin from: {solved.result.reason}; give a start",
+                solved.result,
+            )
+        return self._state(values, self._result(solved))
 
     def step(self, state: State, weight: float, radius: float) -> Step:
         """Where to go from a state: contractions of the channels [m], and what that promises."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 
-from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.errors import InputError
 from hydrostat.ik.answer import answer
 from hydrostat.ik.descend import Descent, descend
 from hydrostat.ik.effort import keeps_taut
@@ -59,12 +59,10 @@ def solve_ik(
     ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
     search = Search(simulation, terms, allowed, options or InverseOptions(), ready=ready)
     begun = search.begin(start)
-    if begun is None:
-        raise NotConvergedError("inverse kinematics finds no equilibrium to begin from; give another start")
     seek = descend
     if search.options.unique and search.redundant(begun):
         seek = least_effort
-        begun = begun if given.rate is not None else search.begin(None) or begun
+        begun = begun if start is None or given.rate is not None else search.begin(None)
     found = _best(search, seek(search, begun), seek)
     return answer(search, found, target)
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.errors import InputError
 from hydrostat.ik.answer import answer
 from hydrostat.ik.descend import Descent
 from hydrostat.ik.limits import Limits, bounds
@@ -61,8 +61,6 @@ class Tracker:
         target = as_pose(targets)
         search = self._search(target, seconds)
         state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
-        if state is None:
-            raise NotConvergedError("inverse kinematics finds no equilibrium to begin from; give another start")
         weight = search.weight(state)
         reason = InverseReason.ITERATION_LIMIT
         if state.error <= search.reached:

@@ -62,7 +62,9 @@ class KeyPose:
         """A plain report."""
         head = f"{self.time:.2f} s {self.name}: "
         head += f"marker error {1e3 * self.rms_error:.2f} mm rms" if self.errors else "as given"
-        lines = [f"{head}; markers up to {1e3 * self.stray:.2f} mm off a straight way there"]
+        if self.pose.markers:
+            head += f"; markers up to {1e3 * self.stray:.2f} mm off a straight way there"
+        lines = [head]
         if self.found is not None:
             lines[0] += f"; {self.found.reason}"
             lines += [f"  {words}" for words in self.found.held]

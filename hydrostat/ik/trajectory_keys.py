@@ -176,7 +176,7 @@ class KeySearch:
         """Poses in which the markers are on the straight lines between two poses, at even steps."""
         poses, last = [], begin
         rough = replace(self.options, iterations=min(self.options.iterations, _ITERATIONS))
-        for knot in range(1, self.knots):
+        for knot in range(1, self.knots if names else 0):
             share = knot / self.knots
             places = {
                 name: tuple(((1 - share) * begin.markers[name] + share * end.markers[name]).tolist()) for name in names

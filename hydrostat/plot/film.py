@@ -61,10 +61,10 @@ def pose_stops(reached: Iterable[ReachedPose]) -> list[Stop]:
     """A stop for each pose that inverse kinematics found."""
     return [
         Stop(
-            name=shorten(found.target.name),
+            name=shorten(found.wanted.name),
             contractions=found.pose.contractions,
-            target=found.target,
-            words=f"{shorten(found.target.name)}: marker error {MILLIMETRES * found.rms_error:.1f} mm rms",
+            target=found.wanted,
+            words=f"{shorten(found.wanted.name)}: marker error {MILLIMETRES * found.rms_error:.1f} mm rms",
         )
         for found in reached
     ]

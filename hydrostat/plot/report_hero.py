@@ -71,15 +71,15 @@ def _portraits(network: Network) -> Html:
         for nodes, name, label in ((rest, "hero-rest", "At rest"), (first.pose.nodes, "hero-pose", "In a pose"))
     )
     if rest.shape[1] == 3:
-        return tag("div", _figure_of(still, "At rest", ", as it is made"), _figure_of(posed, first.target.name, HOW),
+        return tag("div", _figure_of(still, "At rest", ", as it is made"), _figure_of(posed, first.wanted.name, HOW),
             class_="grid")  # fmt: skip
     frames = motion_frames(robot, [reached.pose.contractions for reached in network.reached])
     moving = motion_svg(robot, frames, label="The robot moves from rest into each of its poses and back")
-    names = ", ".join(reached.target.name for reached in network.reached)
+    names = ", ".join(reached.wanted.name for reached in network.reached)
     return tag(
         "div",
         _figure_of(still, "At rest", ", as it is sewn"),
-        _figure_of(posed, first.target.name, HOW, class_="still"),
+        _figure_of(posed, first.wanted.name, HOW, class_="still"),
         _figure_of(moving, names, HOW, class_="moving"),
         class_="grid",
     )

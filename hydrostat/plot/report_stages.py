@@ -59,7 +59,7 @@ def _targets(network: Network) -> Chapter:
     words = "Each pose names targets for markers: a cross is a target, and a marker without an arrow should stay."
     pictures = []
     for index, reached in enumerate(network.reached):
-        pose = reached.target
+        pose = reached.wanted
         figure = draw_target(network.robot.with_network((), ()), pose, title="", width=NARROW)
         note = f": where {counted(len(pose.targets), 'marker')} should go"
         pictures.append(_figure(figure, f"target-{index}", pose.name, note))
@@ -126,7 +126,7 @@ def _reached_pose(robot: Robot, reached: ReachedPose, index: int) -> Html:
     }
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
     return tag(
-        "div", _figure(figure, f"reached-{index}", reached.target.name, note), tag("div", *numbers), class_="pose"
+        "div", _figure(figure, f"reached-{index}", reached.wanted.name, note), tag("div", *numbers), class_="pose"
     )
 
 

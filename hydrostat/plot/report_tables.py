@@ -17,11 +17,11 @@ from hydrostat.robot import Robot, robot_hash
 
 def marker_table(robot: Robot, reached: ReachedPose) -> Html:
     """Target, reached place and error of each marker."""
-    before = rest_errors(robot, reached.target)
+    before = rest_errors(robot, reached.wanted)
     rows = [
         (name, place(target), place(reached.pose.markers[name]), f"{MILLIMETRES * before[name]:.1f}",
          tag("span", f"{MILLIMETRES * reached.errors[name]:.2f}", class_="error"))
-        for name, target in reached.target.targets.items()
+        for name, target in reached.wanted.targets.items()
     ]  # fmt: skip
     heads = ("marker", "target [mm]", "reached [mm]", "error at rest [mm]", "error [mm]")
     return table(heads, rows, numbers=(1, 2, 3, 4))

@@ -139,6 +139,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
             _limits(axes, limits)
         if row == 0:
             _name_keys(axes, trajectory.keys, trajectory.seconds)
+        if row == 0 and trajectory.winches:
             axes.legend(
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=7.5, frameon=False, labelcolor=INK,
                 handlelength=1.6, borderaxespad=0.0, labelspacing=0.35,

@@ -82,12 +82,9 @@ def test_the_gradient_of_the_objective(contractions: list[float]) -> None:
     start = simulation.solve(given)
 
     def objective(contractions: np.ndarray) -> float:
-        state = search.begin(simulation.solve(contractions, start=start))
-        assert state is not None
-        return search.objective(state, 0.0)
+        return search.objective(search.begin(simulation.solve(contractions, start=start)), 0.0)
 
     here = search.begin(start)
-    assert here is not None
     gradient = search.slopes(here).T @ here.residual
     found = [(objective(given + d) - objective(given - d)) / (2 * step) for d in step * np.eye(2)]
     assert gradient == pytest.approx(found, rel=1e-5, abs=1e-7 * np.abs(gradient).max())

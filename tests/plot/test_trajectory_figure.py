@@ -1,5 +1,6 @@
 """Pictures of trajectories and of poses without markers. Oracle: the lines that matplotlib holds, the trajectory."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -47,6 +48,14 @@ def test_each_keyframe_has_a_portrait_with_its_name() -> None:
     robot, trajectory = made()
     titles = [axes.get_title() for axes in draw_trajectory(robot, trajectory).axes if axes.images]
     assert [title.split("\n")[0] for title in titles] == ["start", "target", "target", "rest"]
+
+
+def test_a_robot_without_cables_and_markers_stays_at_rest() -> None:
+    robot = replace(strip_robot(columns=6, rows=2), winches=(), cables=(), markers=())
+    simulation = Simulation(robot)
+    trajectory = solve_ik_trajectory(simulation, [simulation.rest], path="straight")
+    assert trajectory.lines() == ["0.02 s keyframe 1: as given", "0.02 s in all, 2 samples; path straight"]
+    assert len(draw_trajectory(robot, trajectory).axes) == 4
 
 
 def test_frames_are_samples_at_equal_times() -> None:
