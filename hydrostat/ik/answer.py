@@ -35,7 +35,7 @@ def held(search: Search, found: Descent) -> tuple[str, ...]:
         if value >= bounds.high[channel] - hair[channel]:
             words.append(f"{name}: taken in as far as it may, {1e3 * value:.4g} mm")
         elif value <= bounds.low[channel] + hair[channel] and state.posture.tensions[bounds.cables == channel].any():
-            words.append(f"{name}: let out as far as it may, {-1e3 * value:.4g} mm")
+            words.append(f"{name}: let out as far as it may, {abs(round(1e3 * value, 3)):g} mm")
     full = state.posture.tensions >= (1.0 - _HAIR) * bounds.tension
     pulling = {robot.cables[cable].winch: bounds.tension[cable] for cable in np.flatnonzero(full)}
     words.extend(f"{name}: pulls as hard as it may, {most:.4g} N" for name, most in pulling.items())
