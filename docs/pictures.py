@@ -22,6 +22,7 @@ from hydrostat.plot import (
     draw_portrait,
     draw_pose,
     draw_reached,
+    draw_trajectory,
     save_png,
 )
 from hydrostat.robot import gallery_folder, gallery_names
@@ -41,10 +42,18 @@ def main() -> None:
     save_png(draw_activation(robot, network.activations[0], title=""), HERE / "activation.png", dpi=110)
     save_png(draw_network(network.robot, title=""), HERE / "network.png", dpi=110)
     save_png(draw_reached(network.robot, network.reached[0], title=""), HERE / "reached.png", dpi=110)
+    draw_dance()
     draw_gallery()
     draw_bodies()
     draw_hand()
     draw_dirt()
+
+
+def draw_dance() -> None:
+    """The starfish of the gallery through its poses and back to rest."""
+    robot = hs.load_robot(gallery_folder("starfish"))
+    trajectory = hs.solve_ik_trajectory(hs.Simulation(robot), list(robot.poses.values()), loop=True)
+    save_png(draw_trajectory(robot, trajectory, title=""), HERE / "trajectory.png", dpi=80)
 
 
 def draw_hand() -> None:

@@ -72,6 +72,7 @@ def pose(
         folder: Path = out / title if len(targets) > 1 else out
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)
         _tell(loaded, reached, title, seconds)
+        _warn(simulation, reached)
         print(f"  wrote {folder}")
         stuck |= reached.reason in (InverseReason.ITERATION_LIMIT, InverseReason.NO_EQUILIBRIUM)
     if stuck:
@@ -141,9 +142,23 @@ def _tell(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -
         print(f"  optimality: {reached.optimality:.1g} (0 at an optimum within these limits)")
 
 
+def _warn(simulation: "Simulation", reached: "ReachedPose") -> None:
+    """Say it if the contractions alone do not decide the pose (E20): at once from rest they may lead to another."""
+    import numpy as np
+
+    pose = simulation.solve(reached.pose.contractions, strict=False)
+    away = float(np.linalg.norm(pose.nodes - reached.pose.nodes, axis=1).max())
+    if pose.result.converged and away > _APART * simulation.robot.body.mesh.size:
+        print(f"  note: at once from rest these contractions lead to another pose, up to {1e3 * away:.1f} mm away;")
+        print("  take them in step by step, or see `hydrostat branches`")
+
+
 def _taken(loaded: "Robot", reached: "ReachedPose") -> dict[str, float]:
     return {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
 
+
+_APART = 1e-3
+"""Poses that differ by more than this share of the body's size are different."""
 
 _STEEP = 1e-3
 """An optimality above this is told: there was more to gain."""

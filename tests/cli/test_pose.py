@@ -3,12 +3,15 @@
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import strip_robot
 
 import hydrostat as hs
+from hydrostat.cli.pose import _warn
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.plot.skin import Skin
 
@@ -94,3 +97,14 @@ def test_bad_options_are_one_line(
     assert words in errors
     assert errors.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_a_pose_on_another_branch_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """A pose that is not the one to which its contractions lead from rest; and one that is."""
+    simulation = hs.Simulation(strip_robot())
+    reached = hs.solve_ik(simulation, {"tip": (0.18, 0.05)})
+    _warn(simulation, reached)
+    assert capsys.readouterr().out == ""
+    elsewhere = replace(reached.pose, nodes=reached.pose.nodes + [0.0, 0.003])
+    _warn(simulation, replace(reached, pose=elsewhere))
+    assert "another pose, up to 3.0 mm away" in capsys.readouterr().out
