@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from hydrostat.ik.descend import Descent
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search import Search
+from hydrostat.ik.search.descend import Descent
+from hydrostat.ik.search.search import Search
 from hydrostat.robot import Pose
 
 

@@ -5,15 +5,15 @@ from itertools import islice
 
 from hydrostat.errors import InputError
 from hydrostat.ik.answer import answer
-from hydrostat.ik.descend import Descent, descend
-from hydrostat.ik.effort import keeps_taut
-from hydrostat.ik.least_effort import least_effort
 from hydrostat.ik.limits import Limits, bounds
-from hydrostat.ik.marker_goal import MarkerGoal
-from hydrostat.ik.objective import Objective
+from hydrostat.ik.objectives.effort import keeps_taut
+from hydrostat.ik.objectives.marker_goal import MarkerGoal
+from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.restarts import restarts
-from hydrostat.ik.search import InverseOptions, Search, State
+from hydrostat.ik.search.descend import Descent, descend
+from hydrostat.ik.search.least_effort import least_effort
+from hydrostat.ik.search.restarts import restarts
+from hydrostat.ik.search.search import InverseOptions, Search, State
 from hydrostat.robot import Point, Pose
 from hydrostat.simulation import Simulation, SolvedPose
 

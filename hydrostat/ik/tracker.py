@@ -5,11 +5,11 @@ from dataclasses import replace
 
 from hydrostat.errors import InputError
 from hydrostat.ik.answer import answer
-from hydrostat.ik.descend import Descent
 from hydrostat.ik.limits import Limits, bounds
-from hydrostat.ik.objective import Objective
+from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search import InverseOptions, Search, State
+from hydrostat.ik.search.descend import Descent
+from hydrostat.ik.search.search import InverseOptions, Search, State
 from hydrostat.ik.solve_ik import Targets, as_pose, wishes
 from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose

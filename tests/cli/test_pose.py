@@ -105,6 +105,6 @@ def test_a_pose_on_another_branch_is_told(capsys: pytest.CaptureFixture[str]) ->
     reached = hs.solve_ik(simulation, {"tip": (0.18, 0.05)})
     _warn(simulation, reached)
     assert capsys.readouterr().out == ""
-    elsewhere = replace(reached.pose, nodes=reached.pose.nodes + [0.0, 0.003])
+    elsewhere = replace(reached.pose, nodes=reached.pose.nodes + np.array([0.0, 0.003]))
     _warn(simulation, replace(reached, pose=elsewhere))
     assert "another pose, up to 3.0 mm away" in capsys.readouterr().out

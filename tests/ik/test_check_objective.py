@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from wishes import BENT, FLAT, PLANE
 
-from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation
 from hydrostat.testing import ConformanceError, check_objective
 

@@ -10,13 +10,13 @@ from wishes import BEFORE, BENT, BODIES, FLAT, PLANE, SPACE, arc, box
 from hydrostat.errors import InputError
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.surface import Surface
-from hydrostat.ik.centre_goal import CentreGoal
-from hydrostat.ik.closeness import Closeness
-from hydrostat.ik.effort import Effort
-from hydrostat.ik.marker_goal import MarkerGoal
-from hydrostat.ik.objective import Objective, Posture
-from hydrostat.ik.postures import posture_at
-from hydrostat.ik.shape_goal import ShapeGoal
+from hydrostat.ik.objectives.centre_goal import CentreGoal
+from hydrostat.ik.objectives.closeness import Closeness
+from hydrostat.ik.objectives.effort import Effort
+from hydrostat.ik.objectives.marker_goal import MarkerGoal
+from hydrostat.ik.objectives.objective import Objective, Posture
+from hydrostat.ik.objectives.postures import posture_at
+from hydrostat.ik.objectives.shape_goal import ShapeGoal
 from hydrostat.simulation import Simulation
 from hydrostat.testing import check_objective
 

@@ -11,8 +11,8 @@ from scipy.optimize import least_squares, minimize
 from hydrostat.errors import InputError
 from hydrostat.ik import InverseOptions, InverseReason, ReachedPose, solve_ik
 from hydrostat.ik.limits import Limits, bounds
-from hydrostat.ik.marker_goal import MarkerGoal
-from hydrostat.ik.search import Search
+from hydrostat.ik.objectives.marker_goal import MarkerGoal
+from hydrostat.ik.search.search import Search
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Marker, Pose, Robot, load_robot
 from hydrostat.simulation import Simulation

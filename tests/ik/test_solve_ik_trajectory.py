@@ -9,7 +9,7 @@ from builders import strip_robot
 
 from hydrostat.errors import InputError
 from hydrostat.ik import InverseOptions, Keyframe, Limits, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
-from hydrostat.ik.trajectory import stray
+from hydrostat.ik.trajectory.trajectory import stray
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation, follow_branch
 

@@ -9,12 +9,12 @@ from builders import box_robot, strip_robot
 
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.surface import Surface
-from hydrostat.ik.centre_goal import CentreGoal
-from hydrostat.ik.closeness import Closeness
-from hydrostat.ik.effort import Effort
-from hydrostat.ik.marker_goal import MarkerGoal
-from hydrostat.ik.objective import Objective
-from hydrostat.ik.shape_goal import ShapeGoal
+from hydrostat.ik.objectives.centre_goal import CentreGoal
+from hydrostat.ik.objectives.closeness import Closeness
+from hydrostat.ik.objectives.effort import Effort
+from hydrostat.ik.objectives.marker_goal import MarkerGoal
+from hydrostat.ik.objectives.objective import Objective
+from hydrostat.ik.objectives.shape_goal import ShapeGoal
 from hydrostat.robot import Marker, Robot
 from hydrostat.simulation import Simulation
 

@@ -7,8 +7,8 @@ from typing import Self
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.trajectory_course import Course, Keys, Peaks, Samples
-from hydrostat.ik.trajectory_pace import Pace
+from hydrostat.ik.trajectory.course import Course, Keys, Peaks, Samples
+from hydrostat.ik.trajectory.pace import Pace
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.ik.trajectory_course import ACCELERATION_OF_REST, SPEED_OF_REST, Course, Keys, Peaks
+from hydrostat.ik.trajectory.course import ACCELERATION_OF_REST, SPEED_OF_REST, Course, Keys, Peaks
 from hydrostat.robot import Robot
 
 ByWinch = float | Mapping[str, float]

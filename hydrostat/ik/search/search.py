@@ -9,8 +9,8 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.limits import Bounds
-from hydrostat.ik.linear_model import LinearModel, channels, slopes
-from hydrostat.ik.objective import Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Posture, Rows, Slopes, Term
+from hydrostat.ik.search.linear_model import LinearModel, channels, slopes
 from hydrostat.mechanics import NewtonResult
 from hydrostat.simulation import Simulation, SolvedPose
 

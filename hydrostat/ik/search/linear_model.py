@@ -7,9 +7,9 @@ from jaxtyping import Float
 from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.least_squares import least_squares
 from hydrostat.ik.limits import Bounds
-from hydrostat.ik.objective import Moves, Posture
+from hydrostat.ik.objectives.objective import Moves, Posture
+from hydrostat.ik.search.least_squares import least_squares
 from hydrostat.mechanics import Stiffness, TensionLaw
 from hydrostat.simulation import Simulation
 

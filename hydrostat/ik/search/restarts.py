@@ -6,7 +6,7 @@ from itertools import count
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.search import Search, State
+from hydrostat.ik.search.search import Search, State
 
 SEED = 0
 

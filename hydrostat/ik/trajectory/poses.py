@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import NotConvergedError
-from hydrostat.ik.trajectory_course import Samples
+from hydrostat.ik.trajectory.course import Samples
 from hydrostat.simulation import Simulation, SolvedPose
 
 Tell = Callable[[str, int, int], None]

@@ -8,14 +8,14 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
-from hydrostat.ik.objective import Objective
-from hydrostat.ik.search import InverseOptions
-from hydrostat.ik.trajectory import KeyPose, PathKind, Trajectory, legs_of, stray
-from hydrostat.ik.trajectory_course import Course
-from hydrostat.ik.trajectory_keys import Found, Key, Keyframe, KeySearch, as_keyframes
-from hydrostat.ik.trajectory_pace import ByWinch, Pace, earliest, linear
-from hydrostat.ik.trajectory_poses import Tell, follow
-from hydrostat.ik.trajectory_straight import StraightCourse
+from hydrostat.ik.objectives.objective import Objective
+from hydrostat.ik.search.search import InverseOptions
+from hydrostat.ik.trajectory.course import Course
+from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes
+from hydrostat.ik.trajectory.pace import ByWinch, Pace, earliest, linear
+from hydrostat.ik.trajectory.poses import Tell, follow
+from hydrostat.ik.trajectory.straight import StraightCourse
+from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory, legs_of, stray
 from hydrostat.simulation import Simulation, SolvedPose
 
 

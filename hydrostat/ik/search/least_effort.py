@@ -1,7 +1,7 @@
 """`least_effort`: of the many contractions that reach a goal, those that pull least."""
 
-from hydrostat.ik.descend import Descent, descend
-from hydrostat.ik.search import Search, State
+from hydrostat.ik.search.descend import Descent, descend
+from hydrostat.ik.search.search import Search, State
 
 
 def least_effort(search: Search, state: State) -> Descent:

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors
-from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Simulation
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.robot import Point
 from hydrostat.simulation import Simulation
 from hydrostat.simulation.build import node_masses

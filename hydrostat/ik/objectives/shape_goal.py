@@ -12,7 +12,7 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
 from hydrostat.geometry.surface import Surface
-from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation
 
 

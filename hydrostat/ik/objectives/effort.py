@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation
 
 

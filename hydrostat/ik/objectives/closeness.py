@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.ik.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation, SolvedPose
 
 

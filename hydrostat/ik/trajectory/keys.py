@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik.effort import Effort, EffortKind
 from hydrostat.ik.limits import Limits
-from hydrostat.ik.objective import Objective
+from hydrostat.ik.objectives.effort import Effort, EffortKind
+from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search import InverseOptions
+from hydrostat.ik.search.search import InverseOptions
 from hydrostat.ik.solve_ik import Targets, as_pose, solve_ik
-from hydrostat.ik.trajectory_poses import follow
+from hydrostat.ik.trajectory.poses import follow
 from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose
 

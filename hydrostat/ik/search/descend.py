@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.ik.reached_pose import InverseReason
-from hydrostat.ik.search import Search, State
+from hydrostat.ik.search.search import Search, State
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.ik.objective import Moves, Posture
+from hydrostat.ik.objectives.objective import Moves, Posture
 from hydrostat.simulation import Simulation, SolvedPose
 
 

@@ -1,0 +1,1 @@
+"""What is wished for of a pose: each objective in a file of its own."""
