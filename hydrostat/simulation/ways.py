@@ -37,15 +37,18 @@ class Way:
 def ways_to(robot: Robot, goal: Vector, count: int, seed: int) -> list[Way]:
     """So many ways to contractions `goal` [m], the plain ones first.
 
-    From rest at once, all winches together, back from full travel; then in turn: one winch after the other, pushed
-    aside and let go, from other contractions. Orders and pushes that are drawn come from `seed`.
+    From rest at once, all winches together, back from full travel, and from full release where there is any; then in
+    turn: one winch after the other, pushed aside and let go, from other contractions. Orders and pushes that are drawn
+    come from `seed`.
     """
-    full = np.array([winch.travel for winch in robot.winches])
+    low, high = _range(robot)
     plain = [
         Way(name="from rest at once", stops=(goal,), at_once=True),
         Way(name="from rest, all winches together", stops=(goal,)),
-        Way(name="back from full travel", stops=(full, goal)),
+        Way(name="back from full travel", stops=(high, goal)),
     ]
+    if low.any():
+        plain.append(Way(name="back from full release", stops=(low, goal)))
     random = np.random.default_rng(seed)
     kinds = [_orders(robot, goal, random), _pushes(robot, goal, random), _elsewhere(robot, goal, random)]
     return list(islice(chain(plain, _in_turn(kinds)), count))
@@ -62,6 +65,12 @@ def go(simulation: Simulation, way: Way) -> SolvedPose:
     for stop in others:
         pose = _in_steps(simulation, pose, stop)
     return pose if way.push is None else _let_go(simulation, pose, way.push, way.reach)
+
+
+def _range(robot: Robot) -> tuple[Vector, Vector]:
+    """Least and largest contraction of each winch [m]."""
+    low = np.array([-winch.release for winch in robot.winches])
+    return low, np.array([winch.travel for winch in robot.winches])
 
 
 def _in_turn(kinds: list[Iterator[Way]]) -> Iterator[Way]:
@@ -104,17 +113,17 @@ def _pushes(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator
 
 def _elsewhere(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Way]:
     """From contractions anywhere in the range of the winches."""
-    low = np.array([-winch.release for winch in robot.winches])
-    high = np.array([winch.travel for winch in robot.winches])
+    low, high = _range(robot)
     while True:
         yield Way(name="from other contractions", stops=(random.uniform(low, high), goal), at_once=True)
 
 
 def _in_steps(simulation: Simulation, pose: SolvedPose, goal: Vector) -> SolvedPose:
-    """From pose to pose in even steps of a small part of a winch's travel; no further than it converges."""
-    travel = np.array([winch.travel for winch in simulation.robot.winches])
+    """From pose to pose in even steps of a small part of a winch's range; no further than it converges."""
+    low, high = _range(simulation.robot)
     begin = pose.contractions
-    steps = max(1, ceil(float((np.abs(goal - begin) / travel).max(initial=0.0)) / _STEP - 1e-9))
+    steps = ceil(float((np.abs(goal - begin) / (high - low)).max(initial=0.0)) / _STEP - 1e-9)
+    steps = min(max(1, steps), _MOST_STEPS)
     for step in range(1, steps + 1):
         if not pose.result.converged:
             break
@@ -152,6 +161,9 @@ _REACHES = (0.1, 0.4)
 """Least and largest reach of a push."""
 
 _STEP = 0.1
-"""Largest step on a way, as a share of a winch's travel."""
+"""Largest step on a way, as a share of a winch's travel and release together."""
+
+_MOST_STEPS = 100
+"""More steps are not taken, however far beyond its range a winch goes; they are longer then."""
 
 _HALVINGS = 12
