@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from machine import machine as machine  # before NumPy: it sets one thread
 
@@ -112,21 +112,10 @@ class Problem:
         return 0.5 * float(residual @ residual)
 
     def least_squares(self, begin: Vector, *, differences: bool = False) -> None:
-        """SciPy's trust region in its bounds ("trf"), from contractions [m]; by its own differences or dx/da."""
-        matrix: Any = "2-point" if differences else self._matrix
-        step = _STEP if differences else None
-        self._run(
-            lambda: least_squares(
-                self._residual,
-                self._inside(begin),
-                matrix,
-                bounds=(0, 1),
-                diff_step=step,
-                ftol=_END,
-                xtol=_END,
-                gtol=_END,
-            )
-        )
+        """SciPy's trust region in its bounds ("trf"), from contractions [m]; by differences or dx/da."""
+        matrix, shares = self._differences if differences else self._matrix, self._inside(begin)
+        ends = {"ftol": _END, "xtol": _END, "gtol": _END, "max_nfev": _MOST}
+        self._run(lambda: least_squares(self._residual, shares, matrix, bounds=(0, 1), **ends))
 
     def quasi_newton(self, begin: Vector) -> None:
         """SciPy's L-BFGS-B from contractions [m], on the gradient by the adjoint."""
@@ -174,6 +163,19 @@ class Problem:
         slopes = self._term.slopes(posture_at(self.simulation, self._pose), moves_at(self.simulation, self._pose))
         return np.vstack([slopes, np.diag(self._effort)]) * (self.high - self.low)
 
+    def _differences(self, shares: Vector) -> np.ndarray:
+        """Forward differences; backward ones at the far end of a range.
+
+        The step is the same wherever a winch stands. SciPy's own steps are relative to the shares: near 0 they are
+        below the noise of an equilibrium.
+        """
+        first, columns = self._residual(shares).copy(), []
+        for winch, share in enumerate(shares):
+            beside = np.array(shares)
+            beside[winch] += _STEP if share + _STEP <= 1.0 else -_STEP
+            columns.append((self._residual(beside) - first) / (beside[winch] - share))
+        return np.column_stack(columns)
+
     def _slope(self, shares: Vector) -> tuple[float, Vector]:
         """The objective in squares of the body's size, and its slope: L-BFGS-B takes the slope as its first step."""
         residual = self._residual(shares)
@@ -193,7 +195,7 @@ _END = 1e-12
 """Relative changes at which SciPy's solvers end, where they have not reached the pose before."""
 
 _MOST = 100
-"""Evaluations before a solver is stopped, not counting those for differences."""
+"""Evaluations before a solver is stopped, not counting those for differences; SciPy's trf counts so by itself."""
 
 _STEP = 1e-5
-"""Of a finite difference, in shares of a range; an equilibrium is known to about 1e-10."""
+"""Of a finite difference, in shares of a range; slopes of the starfish are wrong by less than 1e-4 then, by curvature."""
