@@ -187,6 +187,26 @@ def test_a_limit_on_the_tension_holds_in_keyframes_and_is_told_between(simulatio
     assert over == bool((found.tensions > most * 1.001).any())
 
 
+@pytest.mark.parametrize("as_start", [False, True])
+def test_given_poses_keep_to_the_limits(simulation: Simulation, as_start: bool) -> None:
+    """A solved pose is streamed as it is, so what the winches may not do is refused."""
+    name = "start" if as_start else "keyframe 1"
+    travel = simulation.robot.winch("up").travel
+    for hidden, limits, words in (
+        ({"up": travel + 0.01}, None, rf'winch "up" is {travel + 0.01:g} m, but its limits are 0 to {travel:g} m'),
+        ({"up": 0.03}, Limits(contraction={"up": (0.0, 0.005)}), r'winch "up" is 0\.03 m, .* are 0 to 0\.005 m'),
+        ({"up": 0.03, "down": 0.01}, Limits(equal=[["up", "down"]]), r'not equal: "up" 0\.03 m, "down" 0\.01 m'),
+    ):
+        pose = simulation.solve(hidden)
+        start, keyframe = (pose, simulation.rest) if as_start else (None, pose)
+        with pytest.raises(InputError, match=f"^{name}: .*{words}"):
+            solve_ik_trajectory(simulation, [keyframe], start=start, limits=limits)
+    with pytest.raises(InputError, match=r'^rest, where it starts: .*winch "down" is 0 m'):
+        solve_ik_trajectory(simulation, [pose], limits=Limits(contraction={"down": (0.005, 0.02)}))
+    inside = simulation.solve({"up": travel})
+    assert solve_ik_trajectory(simulation, [inside], options=COARSE).contractions.max() == travel
+
+
 BAD = {
     "at least one keyframe": {"keyframes": []},
     "keyframe 1 has no target": {"keyframes": [{}]},

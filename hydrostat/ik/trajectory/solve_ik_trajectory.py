@@ -11,6 +11,7 @@ from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.search.search import InverseOptions
 from hydrostat.ik.trajectory.course import Course
+from hydrostat.ik.trajectory.given import check_given
 from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes
 from hydrostat.ik.trajectory.pace import ByWinch, Pace, earliest, linear
 from hydrostat.ik.trajectory.poses import Tell, follow
@@ -65,17 +66,18 @@ def solve_ik_trajectory(
         keyframes: targets, or (time [s], target), or `Keyframe`; a solved pose is a target too.
         speed: the most of each winch [m/s], or by name.
         acceleration: the most of each winch [m/s^2], or by name; 0.2 if left out, none for a linear path.
-        limits: what else the winches may do in keyframes.
+        limits: what else the winches may do in keyframes; a start and solved poses must keep to it but for tension.
         objectives: what is wished for in keyframes, beside their targets.
         path: what goes on a simple way.
-        start: the pose to begin in, at rest; the rest pose if left out.
+        start: the pose to begin in, not moving; the rest pose if left out.
         loop: go back to the start at the end.
         hold: how long the robot stays in each keyframe but the last [s].
         options: samples, and how keyframes are searched for.
         tell: is told how far the work is.
 
     Raises:
-        InputError: keyframes, limits or options that do not fit, or times that are too short for the limits.
+        InputError: keyframes, limits or options that do not fit, a given pose of another robot or out of the limits,
+            or times that are too short for them.
         NotConvergedError: no equilibrium somewhere on the way.
     """
     chosen = options or TrajectoryOptions()
@@ -84,14 +86,19 @@ def solve_ik_trajectory(
     _check(chosen, limits, hold, kind, acceleration, frames, loop)
     hardest = _ACCELERATION if acceleration is None and kind is not PathKind.LINEAR else acceleration
     pace = Pace.of(simulation.robot, speed, hardest)
-    allowed = limits or Limits()
+    given = limits or Limits()
+    allowed = bounds(simulation, given)
     begin = start or simulation.rest
+    check_given(simulation, allowed, "start" if start else "rest, where it starts", begin)
+    for frame in frames:
+        if isinstance(frame.target, SolvedPose):
+            check_given(simulation, allowed, frame.name or "", frame.target)
     if loop:
         frames.append(Keyframe(target=begin, name="start" if start else "rest"))
     near = chosen.jump * simulation.robot.body.mesh.size
     search = KeySearch(
         simulation=simulation,
-        limits=allowed,
+        limits=given,
         objectives=tuple(objectives),
         options=chosen.inverse,
         compare=chosen.compare,
@@ -116,7 +123,7 @@ def solve_ik_trajectory(
         snaps=snaps,
         winches=tuple(winch.name for winch in simulation.robot.winches),
         cables=tuple(cable.winch for cable in simulation.robot.cables),
-        tension=bounds(simulation, allowed).tension,
+        tension=allowed.tension,
     )
 
 
