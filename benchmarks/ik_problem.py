@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from machine import machine as machine  # before NumPy: it sets one thread
 
@@ -113,7 +113,8 @@ class Problem:
 
     def least_squares(self, begin: Vector, *, differences: bool = False) -> None:
         """SciPy's trust region in its bounds ("trf"), from contractions [m]; by differences or dx/da."""
-        matrix, shares = self._differences if differences else self._matrix, self._inside(begin)
+        matrix: Any = self._differences if differences else self._matrix
+        shares = self._inside(begin)
         ends = {"ftol": _END, "xtol": _END, "gtol": _END, "max_nfev": _MOST}
         self._run(lambda: least_squares(self._residual, shares, matrix, bounds=(0, 1), **ends))
 
@@ -198,4 +199,4 @@ _MOST = 100
 """Evaluations before a solver is stopped, not counting those for differences; SciPy's trf counts so by itself."""
 
 _STEP = 1e-5
-"""Of a finite difference, in shares of a range; slopes of the starfish are wrong by less than 1e-4 then, by curvature."""
+"""Of a finite difference, in shares of a range; by it slopes of the starfish are wrong by less than 1e-4."""
