@@ -23,6 +23,10 @@ def svg_without_unit(corners: np.ndarray = CORNERS) -> bytes:
     return svg(corners, 'viewBox="0 0 300 200"')
 
 
+def svg_in_pixels(corners: np.ndarray = CORNERS) -> bytes:
+    return svg(corners, 'width="300" height="200px"')
+
+
 def dxf_drawing(corners: np.ndarray = CORNERS) -> bytes:
     """Heights count upwards."""
     return dxf(lambda space, _: space.add_lwpolyline((corners * [1, -1]).tolist(), close=True))
@@ -39,6 +43,7 @@ KINDS: dict[str, tuple[str, Callable[..., bytes], float | None, float]] = {
     "svg": ("a.svg", svg, None, 1e-12),
     "scaled": ("a.svg", svg, 0.4, 1e-12),
     "without unit": ("a.svg", svg_without_unit, 0.2, 1e-12),
+    "pixels": ("a.svg", svg_in_pixels, 0.2, 1e-12),
     "dxf": ("a.dxf", dxf_drawing, None, 1e-12),
     "picture": ("a.png", png, 0.2, 0.25e-3),
 }
@@ -71,6 +76,26 @@ def test_a_drawing_on_its_own_page_is_itself(name: str) -> None:
 
 WRONG: dict[str, tuple[str, str, bytes, str]] = {
     "other unit": ("svg", "b.svg", svg(page='width="300mm" height="200mm" viewBox="0 0 600 400"'), "0.5 x 0.5 mm"),
+    "larger page": (
+        "svg",
+        "b.svg",
+        svg(page='width="310mm" height="200mm" viewBox="0 0 310 200"'),
+        "units of 1 x 1 mm on a page of 310 x 200 units",
+    ),
+    "moved page": (
+        "svg",
+        "b.svg",
+        svg(page='width="300mm" height="200mm" viewBox="-10 0 300 200"'),
+        r"300 x 200 units from \(-10, 0\)",
+    ),
+    "larger page without unit": (
+        "without unit",
+        "b.svg",
+        svg(page='viewBox="0 0 300 210"'),
+        "size on a page of 300 x 210",
+    ),
+    "no page": ("without unit", "b.svg", svg(page=""), "an SVG drawing without a physical size or page"),
+    "no viewBox": ("pixels", "b.svg", svg(page='width="400" height="200"'), "a page of 400 x 200 units from"),
     "no unit": ("svg", "b.svg", svg_without_unit(), "an SVG drawing without a physical size"),
     "inches": ("dxf", "b.dxf", dxf(lambda space, _: space.add_circle((0, 0), 9), unit=1), "units of 25.4 mm"),
     "other kind": ("svg", "b.dxf", dxf_drawing(), "a DXF drawing in units of 1 mm, the drawing"),

@@ -17,9 +17,9 @@ from hydrostat.robot.body import outline_body
 from hydrostat.simulation import Simulation
 
 
-def svg(x: float, y: float, length: float = 200.0, unit: float = 1.0) -> bytes:
+def svg(x: float, y: float, length: float = 200.0, unit: float = 1.0, height: float = 200.0) -> bytes:
     """A rectangle with its upper left corner at (x, y), on a page of 300 x 200 units."""
-    page = f'width="{300 * unit}mm" height="{200 * unit}mm" viewBox="0 0 300 200"'
+    page = f'width="{300 * unit}mm" height="{height * unit}mm" viewBox="0 0 300 {height}"'
     drawn = f'<rect x="{x}" y="{y}" width="{length}" height="50"/>'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {page}>{drawn}</svg>'.encode()
 
@@ -43,6 +43,16 @@ def test_a_pose_stays_where_it_was_drawn(size: float | None, tmp_path: Path) -> 
     np.testing.assert_allclose(found, np.array([-90, -55, 130, -5]) * scale, atol=1e-12)
 
 
+def test_an_enlarged_page_is_refused(tmp_path: Path) -> None:
+    """A page that grew by 100 at its top, so that a program counts all heights from there; the unit is the same."""
+    (tmp_path / "pose.svg").write_bytes(svg(30, 140, height=300.0))
+    with pytest.raises(
+        OutlineError, match=r"300 x 300 units from \(0, 0\), the drawing .* 300 x 200 units from"
+    ) as told:
+        drawn_pose(drawn(), tmp_path / "pose.svg")
+    assert "\n" not in str(told.value)
+
+
 def test_what_cannot_be_a_pose_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match=r"a\.svg: a pose can be drawn over a drawing only, the body is of a mesh file"
@@ -51,7 +61,7 @@ def test_what_cannot_be_a_pose_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"missing\.svg: cannot be read: No such file"):
         drawn_pose(drawn(), tmp_path / "missing.svg")
     (tmp_path / "pose.svg").write_bytes(svg(30, 40, unit=2.0))
-    with pytest.raises(OutlineError, match=r"pose\.svg: is an SVG drawing in units of 2 x 2 mm, the drawing that"):
+    with pytest.raises(OutlineError, match=r"pose\.svg: is an SVG drawing in units of 2 x 2 mm on a page of"):
         drawn_pose(drawn(), tmp_path / "pose.svg")
 
 

@@ -29,13 +29,17 @@ class Page:
     def check(self, kind: str, name: str) -> None:
         """Refuse a drawing that cannot lie on this page.
 
+        An SVG drawing says its unit and its page, a DXF drawing its unit only, a picture its pixels only. So a DXF
+        drawing that was moved as a whole, by a program that counts from a corner of the page, is not noticed; nor is a
+        picture that was cut to the same number of pixels elsewhere.
+
         Raises:
             OutlineError: it is of another kind, so the same numbers mean other places.
         """
         if kind != self.kind:
             raise OutlineError(
-                f"{name}: is {kind}, the drawing that it should lie on {self.kind}: begin with a copy of that one, and "
-                "save it with the same page"
+                f"{name}: is {kind}, the drawing that it should lie on is {self.kind}: begin with a copy of that one, "
+                "and save it with the same page"
             )
 
 

@@ -17,7 +17,6 @@ from hydrostat.geometry.outline import Outline, Ring
 if TYPE_CHECKING:
     from svgelements import Path
 
-_UNITLESS = "an SVG drawing without a physical size"
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError)
 
 
@@ -47,7 +46,7 @@ def svg_drawing(content: bytes, *, name: str, size: float | None = None, page: P
     check_size(size, name)
     document = open_svg(content, name=name)
     across, down = document.unit or (1.0, 1.0)
-    kind = f"an SVG drawing in units of {1e3 * across:.4g} x {1e3 * down:.4g} mm" if document.unit else _UNITLESS
+    kind = _kind(document)
     if page is not None:
         page.check(kind, name)
     elif size is None and document.unit is None:
@@ -56,6 +55,18 @@ def svg_drawing(content: bytes, *, name: str, size: float | None = None, page: P
     body, holes = body_and_holes(rings, name)
     page = page or page_about(body, kind, (across, -down), size)
     return Drawing(placed(body, holes, page, name), page, notes)
+
+
+def _kind(document: SvgDocument) -> str:
+    """What two drawings must have in common, in words: some programs count from a corner of the page."""
+    kind = "an SVG drawing without a physical size"
+    if document.unit is not None:
+        across, down = document.unit
+        kind = f"an SVG drawing in units of {1e3 * across:.4g} x {1e3 * down:.4g} mm"
+    if document.sheet is None:
+        return f"{kind} or page"
+    left, top, width, height = document.sheet
+    return f"{kind} on a page of {width:.6g} x {height:.6g} units from ({left:.6g}, {top:.6g})"
 
 
 def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:

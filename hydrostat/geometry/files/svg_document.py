@@ -29,10 +29,12 @@ class SvgDocument:
     Attributes:
         content: the SVG again, with width and height such that one user unit is one pixel.
         unit: length of one user unit along x and y [m], None if the drawing has no physical size.
+        sheet: left, top, width and height of the page in user units; None if the drawing does not say.
     """
 
     content: bytes
     unit: tuple[float, float] | None
+    sheet: tuple[float, float, float, float] | None
 
 
 def open_svg(content: bytes, *, name: str) -> SvgDocument:
@@ -54,8 +56,9 @@ def open_svg(content: bytes, *, name: str) -> SvgDocument:
         raise OutlineError(f"{name}: not an SVG drawing, its first element is <{_tag(root)}>: save it as SVG")
     _strip(root)
     _count(root, name)
+    sheet = _sheet(root)
     unit = _normalise(root)
-    return SvgDocument(ElementTree.tostring(root), unit)
+    return SvgDocument(ElementTree.tostring(root), unit, sheet)
 
 
 def _guard(content: bytes, name: str) -> None:
@@ -125,18 +128,30 @@ def _length(text: str | None) -> tuple[float, str] | None:
     return (float(match[1]), match[2].lower()) if match and 0.0 < float(match[1]) < 1e9 else None
 
 
+def _sheet(root: ElementTree.Element) -> tuple[float, float, float, float] | None:
+    """The page in user units: the viewBox, or width and height from the origin."""
+    width, height = (_length(root.get(key)) for key in ("width", "height"))
+    pixels = (0.0, 0.0, _pixels(width), _pixels(height)) if width and height else None
+    return _box(root.get("viewBox", "")) or pixels
+
+
+def _pixels(length: tuple[float, str]) -> float:
+    """A length in pixels."""
+    return length[0] * _METRES.get(length[1], _PIXEL) / _PIXEL
+
+
 def _normalise(root: ElementTree.Element) -> tuple[float, float] | None:
     """Make one user unit one pixel; return the length of a user unit along x and y [m], if it has one."""
     sides = [_length(root.get(key)) for key in ("width", "height")]
     box = _box(root.attrib.pop("viewBox", ""))
     keep = root.attrib.pop("preserveAspectRatio", "").strip()
-    for key, side, extent in zip(("width", "height"), sides, box or (None, None), strict=True):
-        pixels = extent or (side[0] * _METRES.get(side[1], _PIXEL) / _PIXEL if side else 1000.0)
+    for key, side, extent in zip(("width", "height"), sides, box[2:] if box else (None, None), strict=True):
+        pixels = extent or (_pixels(side) if side else 1000.0)
         root.set(key, repr(pixels))
     lengths = [side[0] * _METRES[side[1]] if side and side[1] in _METRES else None for side in sides]
     if box is None:
         return (_PIXEL, _PIXEL) if any(lengths) else None
-    units = [length / extent for length, extent in zip(lengths, box, strict=True) if length]
+    units = [length / extent for length, extent in zip(lengths, box[2:], strict=True) if length]
     if not units:
         return None
     if keep.startswith("none"):
@@ -145,10 +160,10 @@ def _normalise(root: ElementTree.Element) -> tuple[float, float] | None:
     return unit, unit
 
 
-def _box(text: str) -> tuple[float, float] | None:
-    """Width and height of a viewBox in user units; None if there is none, or it is empty."""
+def _box(text: str) -> tuple[float, float, float, float] | None:
+    """Left, top, width and height of a viewBox in user units; None if there is none, or it is empty."""
     try:
-        _, _, width, height = map(float, text.replace(",", " ").split())
+        left, top, width, height = map(float, text.replace(",", " ").split())
     except ValueError:
         return None
-    return (width, height) if 0.0 < width < 1e9 and 0.0 < height < 1e9 else None
+    return (left, top, width, height) if 0.0 < width < 1e9 and 0.0 < height < 1e9 else None

@@ -13,6 +13,8 @@ def drawn_pose(robot: Robot, drawing: Path | str) -> Outline:
 
     Copy the drawing or picture of the body, and bend what is on it; the page must stay as it is. Read by itself, a
     drawing would be put into the middle of its own bounding box, and the pose would no longer be where it was drawn.
+    Another page is noticed by the page and unit of an SVG drawing, the unit of a DXF drawing, the pixels of a picture;
+    DXF has no page, so where its program counts from another corner, the pose is shifted without a word.
 
     Args:
         robot: a flat one, whose body was drawn.
