@@ -8,6 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.ik.checks import above_zero, by_name, numbers, told
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
@@ -70,9 +71,13 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
     """Limits on one robot.
 
     Raises:
-        InputError: a winch that it does not have, an empty range, a rate or tension not above 0, a rate without an
-            interval, a winch in two groups.
+        InputError: no simulation, no limits, a winch that it does not have, an empty range, a rate or tension not above
+            0, a rate without an interval or the other way round, a winch named twice among equal ones.
     """
+    if not isinstance(simulation, Simulation):
+        raise InputError(f"a pose is found by a Simulation(robot), not by {told(simulation)}")
+    if not isinstance(limits, Limits):
+        raise InputError(f"limits must be Limits(...), such as Limits(tension=5.0), not {told(limits)}")
     robot = simulation.robot
     channels = _groups(robot, limits.equal)
     count = channels.max(initial=-1) + 1
@@ -82,9 +87,11 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
     largest = _by_winch(robot, limits.tension, "tension", "N")
     reach = _by_winch(robot, limits.rate, "rate", "m/s")
     if limits.rate is not None:
-        if limits.interval is None or not limits.interval > 0:
+        if limits.interval is None:
             raise InputError("a limit on the rate needs an interval above 0 s, the time since the start")
-        reach = reach * limits.interval
+        reach = reach * above_zero("interval of limits", limits.interval, unit="s")
+    elif limits.interval is not None:
+        raise InputError(f"an interval of {told(limits.interval)} s limits nothing without a rate; give a rate too")
     lows = np.array([low[channels == channel].max() for channel in range(count)])
     highs = np.array([high[channels == channel].min() for channel in range(count)])
     found = Bounds(
@@ -108,14 +115,18 @@ def _groups(robot: Robot, equal: Sequence[Sequence[str]]) -> np.ndarray:
     group = {winch.name: number for number, winch in enumerate(robot.winches)}
     order = dict(group)
     seen: set[str] = set()
+    if isinstance(equal, str) or not isinstance(equal, Sequence):
+        raise InputError(f"equal must be groups of winches, such as {_GROUPS}, not {told(equal)}")
     for names in equal:
-        if isinstance(names, str):
-            raise InputError(f'equal must be groups of winches, such as [["left", "right"]], not "{names}"')
+        if isinstance(names, str) or not isinstance(names, Sequence):
+            raise InputError(f"equal must be groups of winches, such as {_GROUPS}, not of {told(names)}")
         for name in names:
             robot.winch(name)
+            if names.count(name) > 1:
+                raise InputError(f'winch "{name}" is named twice in a group of equal contraction; name it once')
             if name in seen:
                 raise InputError(f'winch "{name}" is in two groups of equal contraction; join them')
-            seen.add(name)
+        seen.update(names)
         first = min((order[name] for name in names), default=0)
         group.update(dict.fromkeys(names, first))
     return np.unique(list(group.values()), return_inverse=True)[1] if group else np.zeros(0, dtype=np.int64)
@@ -123,13 +134,14 @@ def _groups(robot: Robot, equal: Sequence[Sequence[str]]) -> np.ndarray:
 
 def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vector, Vector]:
     ranges = {winch.name: (-winch.release, winch.travel) for winch in robot.winches}
-    for name, (low, high) in given.items():
+    for name, limits in by_name("limits of contraction", given, '{"left": (0.0, 0.02)}').items():
         robot.winch(name)
-        if not (np.isfinite([low, high]).all() and low <= high):
+        ends = numbers(limits)
+        if ends is None or ends.shape != (2,) or not (np.isfinite(ends).all() and ends[0] <= ends[1]):
             raise InputError(
-                f'contraction of winch "{name}" must lie between two rising numbers [m], not {low:g} and {high:g}'
+                f'contraction of winch "{name}" must lie between two rising numbers [m], not {told(limits)}'
             )
-        ranges[name] = (low, high)
+        ranges[name] = (ends[0], ends[1])
     values = np.array(list(ranges.values()), dtype=float).reshape(-1, 2)
     return values[:, 0], values[:, 1]
 
@@ -144,7 +156,7 @@ def _by_winch(robot: Robot, given: float | Mapping[str, float] | None, what: str
         values = [given.get(winch.name, np.inf) for winch in robot.winches]
     else:
         values = [given] * len(robot.winches)
-    for value in values:
-        if not value > 0:
-            raise InputError(f"a limit on the {what} must be above 0 {unit}, not {value:g}")
-    return np.array(values, dtype=float)
+    return np.array([above_zero(f"a limit on the {what}", value, unit=unit) for value in values])
+
+
+_GROUPS = '[["left", "right"]]'

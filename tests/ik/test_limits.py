@@ -1,6 +1,9 @@
 """Limits of inverse kinematics. Oracles: the limits themselves, scipy's SLSQP on the same problem."""
 
+import re
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,10 +12,12 @@ from scipy.optimize import minimize, minimize_scalar
 
 from hydrostat.errors import InputError
 from hydrostat.ik import InverseReason, Limits, solve_ik
+from hydrostat.ik.limits import bounds
 from hydrostat.robot import Winch
 from hydrostat.simulation import Simulation
 
 FAR = {"tip": (0.05, 0.2)}
+STRIP = Simulation(strip_robot())
 
 
 def test_a_range_in_place_of_travel() -> None:
@@ -87,30 +92,61 @@ def test_equal_contractions() -> None:
     assert pair.pose.contractions[0] == pytest.approx(other.x, abs=1e-4)
 
 
-WRONG = {
-    "unknown winch": (Limits(contraction={"left": (0.0, 0.1)}), "left"),
-    "empty range": (Limits(contraction={"up": (0.02, 0.01)}), "two rising numbers"),
-    "not a range": (Limits(contraction={"up": (0.0, float("nan"))}), "two rising numbers"),
-    "no tension": (Limits(tension=0.0), "tension must be above 0 N"),
-    "tension of an unknown winch": (Limits(tension={"left": 1.0}), "left"),
-    "no rate": (Limits(rate=-1.0, interval=1.0), "rate must be above 0 m/s"),
-    "rate without interval": (Limits(rate=1.0), "interval above 0 s"),
-    "in two groups": (Limits(equal=[["up", "down"], ["down"]]), "two groups"),
-    "no group": (Limits(equal=["up"]), "must be groups"),  # type: ignore[arg-type]
-    "group of strangers": (Limits(equal=[["up", "left"]]), "left"),
+RANGE = "must lie between two rising numbers"
+WRONG: Mapping[str, tuple[dict[str, Any], str]] = {
+    "unknown winch": ({"contraction": {"left": (0.0, 0.1)}}, "left"),
+    "empty range": ({"contraction": {"up": (0.02, 0.01)}}, RANGE),
+    "not a range": ({"contraction": {"up": (0.0, float("nan"))}}, RANGE),
+    "one number for a range": ({"contraction": {"up": 0.05}}, f"{RANGE} [m], not 0.05"),
+    "three numbers for a range": ({"contraction": {"up": (0.0, 0.01, 0.02)}}, f"{RANGE} [m], not (0.0, 0.01, 0.02)"),
+    "words for a range": ({"contraction": {"up": ("0", "1")}}, f"{RANGE} [m], not ('0', '1')"),
+    "nothing for a range": ({"contraction": {"up": None}}, f"{RANGE} [m], not None"),
+    "ranges in a list": ({"contraction": [(0.0, 0.1)]}, "contraction must be given by name"),
+    "no ranges": ({"contraction": None}, "contraction must be given by name"),
+    "no tension": ({"tension": 0.0}, "tension must be a number above 0 N, not 0"),
+    "tension with a unit": ({"tension": "5 N"}, "tension must be a number above 0 N, not '5 N'"),
+    "tensions in a list": ({"tension": [1, 2]}, "tension must be a number above 0 N, not [1, 2]"),
+    "tension of nothing": ({"tension": {"up": None}}, "tension must be a number above 0 N, not None"),
+    "a truth for a tension": ({"tension": True}, "tension must be a number above 0 N, not True"),
+    "tension of an unknown winch": ({"tension": {"left": 1.0}}, "left"),
+    "no rate": ({"rate": -1.0, "interval": 1.0}, "rate must be a number above 0 m/s, not -1"),
+    "rate with a unit": ({"rate": "50 mm/s", "interval": 1.0}, "rate must be a number above 0 m/s, not '50 mm/s'"),
+    "rate without interval": ({"rate": 1.0}, "interval above 0 s"),
+    "interval without rate": ({"interval": 0.1}, "an interval of 0.1 s limits nothing without a rate"),
+    "no interval": ({"rate": 1.0, "interval": 0}, "interval of limits must be a number above 0 s, not 0"),
+    "interval with a unit": ({"rate": 1.0, "interval": "1s"}, "must be a number above 0 s, not '1s'"),
+    "in two groups": ({"equal": [["up", "down"], ["down"]]}, "is in two groups of equal contraction; join them"),
+    "twice in a group": ({"equal": [["up", "up"]]}, 'winch "up" is named twice in a group'),
+    "no group": ({"equal": ["up"]}, "must be groups of winches"),
+    "a name for groups": ({"equal": "up"}, "must be groups of winches"),
+    "nothing for groups": ({"equal": None}, "must be groups of winches"),
+    "nothing for a group": ({"equal": [None]}, "must be groups of winches"),
+    "group of strangers": ({"equal": [["up", "left"]]}, "left"),
     "ranges of a group that do not meet": (
-        Limits(contraction={"up": (0.0, 0.01), "down": (0.02, 0.03)}, equal=[["up", "down"]]),
+        {"contraction": {"up": (0.0, 0.01), "down": (0.02, 0.03)}, "equal": [["up", "down"]]},
         "within all of its limits",
     ),
 }
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_wrong_limits_are_told_in_one_line(name: str) -> None:
-    limits, words = WRONG[name]
-    with pytest.raises(InputError, match=words) as error:
-        solve_ik(Simulation(strip_robot()), FAR, limits=limits)
+def test_wrong_limits_are_told_in_one_line(name: str, unchecked: None) -> None:
+    given, words = WRONG[name]
+    with pytest.raises(InputError, match=re.escape(words)) as error:
+        solve_ik(STRIP, FAR, limits=Limits(**given))
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("given", [None, STRIP.robot])
+def test_only_a_simulation_has_limits(given: Any, unchecked: None) -> None:
+    with pytest.raises(InputError, match=r"a pose is found by a Simulation\(robot\), not by (None|a Robot)$"):
+        bounds(given, Limits())
+
+
+def test_limits_are_limits(unchecked: None) -> None:
+    given: Any = {"tension": 3}
+    with pytest.raises(InputError, match=r"limits must be Limits\(...\), .* not {'tension': 3}"):
+        bounds(STRIP, given)
 
 
 def test_a_winch_without_cables_keeps_out_of_it() -> None:
