@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +18,8 @@ from hydrostat.ik.objectives.marker_goal import MarkerGoal
 from hydrostat.ik.objectives.objective import Objective, Posture
 from hydrostat.ik.objectives.postures import posture_at
 from hydrostat.ik.objectives.shape_goal import ShapeGoal
+from hydrostat.ik.reached_pose import InverseReason
+from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.simulation import Simulation
 from hydrostat.testing import check_objective
 
@@ -106,8 +109,9 @@ def test_values_of_the_others() -> None:
     rest, robot = at_rest(FLAT), FLAT.robot
     term = PLANE["weighted markers"].on(FLAT)
     np.testing.assert_allclose(term.residual(rest), [0.0, 3 * -0.06, 0.0, 0.0], atol=1e-12)
-    assert term.errors(rest)["tip"] == pytest.approx(0.06)
-    assert term.errors(rest)["top"] == pytest.approx(np.hypot(0.01, 0.025))
+    assert term.errors(rest) == {"tip": pytest.approx(0.06)}
+    whole = PLANE["markers"].on(FLAT).errors(rest)
+    assert whole == {"tip": pytest.approx(np.hypot(0.03, 0.06)), "top": pytest.approx(np.hypot(0.01, 0.025))}
     centre = BODIES["centre"].on(SPACE)
     np.testing.assert_allclose(centre.residual(at_rest(SPACE)), [0.01, 0.0, -0.01], atol=1e-12)
     slack = Effort(of="slack", weight=1.0, scale=0.2).on(FLAT)
@@ -137,12 +141,12 @@ WRONG: Mapping[str, tuple[Simulation, Objective, str]] = {
         'marker "top" has a weight',
     ),
     "marker's axes": (FLAT, MarkerGoal(targets={"tip": (0, 0)}, free={"tip": "z"}), 'must be of "xy", not "z"'),
-    "centre in space": (FLAT, CentreGoal(target=(0, 0, 0)), "must be 2 finite coordinates"),
-    "centre nowhere": (SPACE, CentreGoal(target=(0, 0, np.inf)), "must be 3 finite coordinates"),
+    "centre in space": (FLAT, CentreGoal(target=(0, 0, 0)), "centre of mass has 3 coordinates, the body 2 dimensions"),
+    "centre nowhere": (SPACE, CentreGoal(target=(0, 0, np.inf)), "centre of mass is not finite: (0.0, 0.0, inf)"),
     "centre's weight": (FLAT, CentreGoal(target=(0, 0), weight=np.nan), "weight of the centre of mass"),
     "kind of effort": (FLAT, Effort(of="power"), "contraction, tension, slack"),
     "effort's weight": (FLAT, Effort(weight=-1e-3), "weight of an effort must be 0 or more, not -0.001"),
-    "effort's scale": (FLAT, Effort(scale=0.0), "scale of an effort must be above 0, not 0"),
+    "effort's scale": (FLAT, Effort(scale=0.0), "scale of an effort must be a number above 0, not 0"),
     "kind of closeness": (FLAT, Closeness(pose=BEFORE[2], of="time"), "nodes, contractions"),
     "closeness's weight": (FLAT, Closeness(pose=BEFORE[2], weight=np.inf), "weight of a closeness"),
     "another robot's pose": (SPACE, Closeness(pose=BEFORE[2]), "is one of another robot"),
@@ -151,13 +155,52 @@ WRONG: Mapping[str, tuple[Simulation, Objective, str]] = {
     "outline in space": (SPACE, ShapeGoal(outline=arc()), "give a surface"),
     "surface in the plane": (FLAT, ShapeGoal(surface=box()), "give an outline"),
     "shape's weight": (FLAT, ShapeGoal(outline=arc(), weight=-1.0), "weight of a shape must be 0 or more, not -1"),
-    "few samples": (FLAT, ShapeGoal(outline=arc(), samples=2), "samples of a shape must be 3 or more, not 2"),
+    "few samples": (FLAT, ShapeGoal(outline=arc(), samples=2), "samples of a shape must be a whole number from 3"),
     "millimetres": (FLAT, ShapeGoal(outline=Outline(1e3 * arc().exterior)), "the body 200 mm; give it in metres"),
     "open surface": (SPACE, ShapeGoal(surface=box().part(np.arange(11))), "surface is not closed; heal it"),
     "flat triangle": (
         SPACE,
         ShapeGoal(surface=Surface(box().vertices, np.concatenate([box().triangles, [[0, 1, 1]]]))),
         "1 triangles without area",
+    ),
+}
+
+TIP: dict[str, Any] = {"targets": {"tip": (0.1, 0.0)}}
+MISTYPED: Mapping[str, tuple[type[Objective], dict[str, Any], str]] = {
+    "name of a pose": (MarkerGoal, {"targets": "wave"}, 'places by name, not "wave"; those of a pose are robot.pose('),
+    "list of targets": (MarkerGoal, {"targets": [1, 2]}, 'targets must be given by name, such as {"tip": (0.1, 0.02)}'),
+    "number of targets": (MarkerGoal, {"targets": 3}, "targets must be given by name"),
+    "no targets": (MarkerGoal, {"targets": {}}, "targets must name at least one marker"),
+    "number for a place": (MarkerGoal, {"targets": {"tip": 0.1}}, "target tip must be 2 coordinates [m], not 0.1"),
+    "nothing for a place": (MarkerGoal, {"targets": {"tip": None}}, "target tip must be 2 coordinates [m], not None"),
+    "words for a place": (MarkerGoal, {"targets": {"tip": ("a", "b")}}, "2 coordinates [m], not ('a', 'b')"),
+    "word for a place": (MarkerGoal, {"targets": {"tip": "ab"}}, "target tip must be 2 coordinates [m], not 'ab'"),
+    "complex place": (MarkerGoal, {"targets": {"tip": (1j, 0)}}, "target tip must be 2 coordinates [m], not (1j, 0)"),
+    "uneven place": (MarkerGoal, {"targets": {"tip": (0, (1, 2))}}, "must be 2 coordinates [m], not (0, (1, 2))"),
+    "target in millimetres": (MarkerGoal, {"targets": {"tip": (190, 30)}}, "targets are in metres"),
+    "words for a weight": (MarkerGoal, {**TIP, "weights": {"tip": "1"}}, "marker tip must be 0 or more, not '1'"),
+    "one weight": (MarkerGoal, {**TIP, "weights": 2.0}, "weights of markers must be given by name"),
+    "number of an axis": (MarkerGoal, {**TIP, "free": {"tip": 0}}, 'marker tip must be of "xy", not 0'),
+    "one free axis": (MarkerGoal, {**TIP, "free": "x"}, "free axes of markers must be given by name"),
+    "file of an outline": (ShapeGoal, {"outline": "a.svg"}, "not 'a.svg'; drawn_pose(robot, file) reads one"),
+    "array for an outline": (
+        ShapeGoal,
+        {"outline": np.zeros((40, 2))},
+        "outline must be an Outline [m], not a ndarray",
+    ),
+    "many samples": (ShapeGoal, {"outline": arc(), "samples": 10**12}, "from 3 to 1000000, not 1e+12"),
+    "broken samples": (ShapeGoal, {"outline": arc(), "samples": 5.5}, "must be a whole number from 3"),
+    "number for a centre": (CentreGoal, {"target": 0.0}, "centre of mass must be 2 coordinates [m], not 0"),
+    "word for a centre": (CentreGoal, {"target": "ab"}, "centre of mass must be 2 coordinates [m], not 'ab'"),
+    "nothing for a centre": (CentreGoal, {"target": None}, "centre of mass must be 2 coordinates [m], not None"),
+    "centre in millimetres": (CentreGoal, {"target": (90, 20)}, "targets are in metres"),
+    "word for a scale": (Effort, {"scale": "1"}, "scale of an effort must be a number above 0, not '1'"),
+    "effort of nothing": (Effort, {"of": None}, "contraction, tension, slack"),
+    "near nothing": (Closeness, {"pose": None}, "must be a SolvedPose, not None"),
+    "near an answer": (
+        Closeness,
+        {"pose": solve_ik(FLAT, {"tip": (0.19, 0.02)})},
+        "must be a SolvedPose, not a ReachedPose, give its .pose",
     ),
 }
 
@@ -169,3 +212,25 @@ def test_wrong_input_is_one_clear_line(name: str) -> None:
         objective.on(simulation)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", MISTYPED)
+def test_a_wrong_type_is_one_clear_line(name: str, unchecked: None) -> None:
+    kind, given, message = MISTYPED[name]
+    with pytest.raises(InputError) as caught:
+        kind(**given).on(FLAT)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_free_axis_may_hold_any_number() -> None:
+    goal = MarkerGoal(targets={"tip": (1e9, 0.0)}, free={"tip": "x"})
+    assert goal.on(FLAT).errors(at_rest(FLAT)) == {"tip": pytest.approx(0.0, abs=1e-12)}
+
+
+def test_a_marker_without_weight_is_not_missed() -> None:
+    """One marker within reach, another far away that does not count: the search must say that it has reached all."""
+    targets = {"tip": tuple(BEFORE[2].markers["tip"].tolist()), "top": (0.1, 0.2)}
+    reached = solve_ik(FLAT, objectives=[MarkerGoal(targets=targets, weights={"top": 0.0})])
+    assert reached.reason is InverseReason.REACHED
+    assert list(reached.errors) == ["tip"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.errors import InputError
+from hydrostat.ik.checks import not_negative, place
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.robot import Point
 from hydrostat.simulation import Simulation
@@ -29,15 +29,12 @@ class CentreGoal(Objective):
         """The goal on this robot.
 
         Raises:
-            InputError: a wrong number of coordinates, a target that is not finite, or a weight below 0.
+            InputError: a target that is no place in the body's space, not finite or not in metres, or a weight below 0.
         """
-        dim = simulation.robot.body.mesh.dim
-        if len(self.target) != dim or not np.isfinite(self.target).all():
-            raise InputError(f"target of the centre of mass must be {dim} finite coordinates, not {tuple(self.target)}")
-        if not (np.isfinite(self.weight) and self.weight >= 0):
-            raise InputError(f"weight of the centre of mass must be 0 or more, not {self.weight:g}")
+        target = place("target of the centre of mass", self.target, simulation.robot.body.mesh)
+        weight = not_negative("weight of the centre of mass", self.weight)
         masses = node_masses(simulation.robot)
-        return _Centre(self.weight, masses / masses.sum(), np.array(self.target, dtype=float))
+        return _Centre(weight, masses / masses.sum(), target)
 
 
 class _Centre(Term):

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
+from hydrostat.ik.checks import not_negative, told
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -36,20 +37,22 @@ class Closeness(Objective):
         """The wish on this robot.
 
         Raises:
-            InputError: a pose of another robot, a kind that there is not, or a weight below 0.
+            InputError: no solved pose or one of another robot, a kind that there is not, or a weight below 0.
         """
         try:
             kind = ClosenessKind(self.of)
         except ValueError:
             raise InputError(f'closeness of "{self.of}"? it may be of: {", ".join(ClosenessKind)}') from None
-        if not (np.isfinite(self.weight) and self.weight >= 0):
-            raise InputError(f"weight of a closeness must be 0 or more, not {self.weight:g}")
+        weight = not_negative("weight of a closeness", self.weight)
+        if not isinstance(self.pose, SolvedPose):
+            hint = ", give its .pose" if isinstance(getattr(self.pose, "pose", None), SolvedPose) else ""
+            raise InputError(f"the pose to stay close to must be a SolvedPose, not {told(self.pose)}{hint}")
         mesh, winches = simulation.robot.body.mesh, simulation.robot.winches
         if self.pose.nodes.shape != mesh.nodes.shape or len(self.pose.contractions) != len(winches):
             raise InputError("the pose to stay close to is one of another robot")
         if kind is ClosenessKind.NODES:
-            return _Nodes(self.weight / np.sqrt(len(mesh.nodes)), self.pose.nodes)
-        return _Contractions(self.weight, self.pose.contractions)
+            return _Nodes(weight / np.sqrt(len(mesh.nodes)), self.pose.nodes)
+        return _Contractions(weight, self.pose.contractions)
 
 
 class _Nodes(Term):

@@ -6,6 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.ik.checks import above_zero, not_negative
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation
 
@@ -42,18 +43,15 @@ class Effort(Objective):
             kind = EffortKind(self.of)
         except ValueError:
             raise InputError(f'effort of "{self.of}"? it may be of: {", ".join(EffortKind)}') from None
-        if not (np.isfinite(self.weight) and self.weight >= 0):
-            raise InputError(f"weight of an effort must be 0 or more, not {self.weight:g}")
-        if self.scale is not None and not (np.isfinite(self.scale) and self.scale > 0):
-            raise InputError(f"scale of an effort must be above 0, not {self.scale:g}")
         robot = simulation.robot
         travel = np.array([winch.travel for winch in robot.winches])
-        weight = self.weight * robot.body.mesh.size
+        weight = not_negative("weight of an effort", self.weight) * robot.body.mesh.size
+        scale = None if self.scale is None else above_zero("scale of an effort", self.scale)
         if kind is EffortKind.TENSION:
-            return _Tension(weight / (self.scale or _TENSION))
+            return _Tension(weight / (scale or _TENSION))
         if kind is EffortKind.SLACK:
-            return _Slack(weight / (self.scale or travel[simulation.cables.winches]))
-        return _Contraction(weight / (self.scale or travel))
+            return _Slack(weight / (scale or travel[simulation.cables.winches]))
+        return _Contraction(weight / (scale or travel))
 
 
 def keeps_taut(objective: Objective) -> bool:

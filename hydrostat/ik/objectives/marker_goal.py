@@ -9,8 +9,9 @@ from jaxtyping import Bool, Float
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors
+from hydrostat.ik.checks import by_name, not_negative, place, told
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
-from hydrostat.robot import Point, Robot
+from hydrostat.robot import Point, Pose, Robot
 from hydrostat.simulation import Simulation
 
 AXES = "xyz"
@@ -34,21 +35,26 @@ class MarkerGoal(Objective):
         """The goal on this robot.
 
         Raises:
-            InputError: a marker that it does not have, a target with a wrong number of coordinates or not finite, a
-                weight below 0, an axis that there is not.
+            InputError: no targets, a marker that it does not have, a target that is no place in the body's space, not
+                finite or not in metres, a weight below 0, an axis that there is not.
         """
         robot = simulation.robot
-        dim = robot.body.mesh.dim
-        names = tuple(self.targets)
-        for given in (self.weights, self.free):
+        mesh = robot.body.mesh
+        targets = _targets(self.targets)
+        names = tuple(targets)
+        weights = by_name("weights of markers", self.weights, '{"tip": 2.0}')
+        free = by_name("free axes of markers", self.free, '{"tip": "x"}')
+        for given in (weights, free):
             for name in given:
-                if name not in self.targets:
+                if name not in targets:
                     raise InputError(f'marker "{name}" has a weight or free axes but no target; give it one')
-        goals = np.array([_target(name, target, dim) for name, target in self.targets.items()]).reshape(-1, dim)
         chosen = [_index(robot, name) for name in names]
         anchors = simulation.marker_anchors.chosen(chosen)
-        scales = np.array([_weight(name, self.weights.get(name, 1.0)) for name in names]).reshape(-1)
-        held = np.array([_held(name, self.free.get(name, ""), dim) for name in names], dtype=bool).reshape(-1, dim)
+        scales = np.array([not_negative(f"weight of marker {name}", weights.get(name, 1.0)) for name in names])
+        held = np.array([_held(name, free.get(name, ""), mesh.dim) for name in names])
+        goals = np.array(
+            [place(f"target {name}", targets[name], mesh, held=axes) for name, axes in zip(names, held, strict=True)]
+        )
         return _Markers(names, anchors, goals, scales, held)
 
 
@@ -66,6 +72,7 @@ class _Markers(Term):
         """Markers by name, where they are stuck, where they should go, how much each counts, along which axes."""
         self.names, self.anchors, self.goals, self.held = tuple(names), anchors, goals, held
         self._scales = weights[:, None] * held
+        self._counts = weights > 0
 
     def residual(self, posture: Posture) -> Rows:
         return (self._scales * self._offsets(posture)).ravel()
@@ -77,8 +84,10 @@ class _Markers(Term):
         return (self._scales[:, :, None] * moved).reshape(self._scales.size, -1)
 
     def errors(self, posture: Posture) -> Mapping[str, float]:
+        """How far each marker is from its target along the axes that count [m]; one of weight 0 is no goal."""
         distances = np.linalg.norm(self.held * self._offsets(posture), axis=1)
-        return dict(zip(self.names, distances.tolist(), strict=True))
+        found = zip(self.names, distances.tolist(), self._counts, strict=True)
+        return {name: distance for name, distance, counts in found if counts}
 
     def _offsets(self, posture: Posture) -> Points:
         return self.anchors.positions(posture.nodes) - self.goals
@@ -92,22 +101,22 @@ def _index(robot: Robot, name: str) -> int:
     return names.index(name)
 
 
-def _target(name: str, target: Point, dim: int) -> Point:
-    if len(target) != dim:
-        raise InputError(f"target {name} has {len(target)} coordinates, the body {dim} dimensions")
-    if not np.isfinite(target).all():
-        raise InputError(f"target {name} is not finite: {tuple(target)}")
-    return target
+def _targets(given: object) -> Mapping[str, Point]:
+    if isinstance(given, Pose):
+        return given.targets
+    if isinstance(given, str):
+        raise InputError(f'targets must be places by name, not "{given}"; those of a pose are robot.pose("{given}")')
+    found = by_name("targets", given, '{"tip": (0.1, 0.02)}')
+    if not found:
+        raise InputError("targets must name at least one marker")
+    return found
 
 
-def _weight(name: str, weight: float) -> float:
-    if not (np.isfinite(weight) and weight >= 0):
-        raise InputError(f"weight of marker {name} must be 0 or more, not {weight:g}")
-    return weight
-
-
-def _held(name: str, free: str, dim: int) -> list[bool]:
-    wrong = set(free) - set(AXES[:dim])
-    if wrong:
-        raise InputError(f'free axes of marker {name} must be of "{AXES[:dim]}", not "{free}"')
+def _held(name: str, free: object, dim: int) -> list[bool]:
+    if not isinstance(free, str) or set(free) - set(AXES[:dim]):
+        raise InputError(f'free axes of marker {name} must be of "{AXES[:dim]}", not {_quoted(free)}')
     return [axis not in free for axis in AXES[:dim]]
+
+
+def _quoted(given: object) -> str:
+    return f'"{given}"' if isinstance(given, str) else told(given)

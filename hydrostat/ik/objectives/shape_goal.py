@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from numbers import Integral
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
 from hydrostat.geometry.surface import Surface
+from hydrostat.ik.checks import not_negative, told
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation
 
@@ -46,13 +48,14 @@ class ShapeGoal(Objective):
 
         Raises:
             InputError: not exactly one shape, one of another dimension than the body, far larger or smaller than it, or
-                not closed; a weight below 0; too few samples.
+                not closed; a weight below 0; too few or many samples.
         """
         mesh = simulation.robot.body.mesh
-        if not (np.isfinite(self.weight) and self.weight >= 0):
-            raise InputError(f"weight of a shape must be 0 or more, not {self.weight:g}")
-        if self.samples is not None and self.samples < _FEWEST:
-            raise InputError(f"samples of a shape must be {_FEWEST} or more, not {self.samples}")
+        weight = not_negative("weight of a shape", self.weight)
+        if self.samples is not None and not (isinstance(self.samples, Integral) and _FEWEST <= self.samples <= _MOST):
+            raise InputError(
+                f"samples of a shape must be a whole number from {_FEWEST} to {_MOST}, not {told(self.samples)}"
+            )
         name, shell = self._shell(mesh)
         _check(name, shell, mesh)
         count = self.samples or max(len(mesh.boundary_nodes), _SAMPLES)
@@ -61,7 +64,7 @@ class ShapeGoal(Objective):
         else:
             assert self.surface is not None
             places = _over(self.surface, count)
-        return _Shape(name, shell, places, mesh, self.weight)
+        return _Shape(name, shell, places, mesh, weight)
 
     def _shell(self, mesh: Mesh) -> tuple[str, Shell]:
         if (self.outline is None) == (self.surface is None):
@@ -69,14 +72,21 @@ class ShapeGoal(Objective):
         if self.outline is not None:
             if mesh.dim != 2:
                 raise InputError("an outline is a goal for flat bodies; this one is in space, give a surface")
+            if not isinstance(self.outline, Outline):
+                raise InputError(
+                    f"outline must be an Outline [m], not {told(self.outline)}; drawn_pose(robot, file) reads one"
+                )
             return "outline", outline_shell(self.outline)
         assert self.surface is not None
         if mesh.dim != 3:
             raise InputError("a surface is a goal for bodies in space; this one is flat, give an outline")
+        if not isinstance(self.surface, Surface):
+            raise InputError(f"surface must be a Surface(vertices, triangles) [m], not {told(self.surface)}")
         return "surface", Shell(self.surface.vertices, self.surface.triangles)
 
 
 _FEWEST = 3
+_MOST = 1_000_000
 _SAMPLES = 200
 
 _LARGEST = 10.0
