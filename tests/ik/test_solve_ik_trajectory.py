@@ -207,11 +207,45 @@ def test_given_poses_keep_to_the_limits(simulation: Simulation, as_start: bool) 
     assert solve_ik_trajectory(simulation, [inside], options=COARSE).contractions.max() == travel
 
 
+@pytest.mark.parametrize("as_start", [False, True])
+def test_given_poses_are_of_this_robot(simulation: Simulation, as_start: bool) -> None:
+    finer = Simulation(strip_robot(columns=12, rows=2))
+    wider = replace(simulation.rest, contractions=np.zeros(3))
+    unmarked = replace(simulation.rest, markers={"nose": simulation.rest.markers["tip"]})
+    for pose, words in (
+        (finer.rest, r"has finite nodes, \(33, 2\), not \(39, 2\)"),
+        (wider, "has 2 finite contractions, not 3"),
+        (unmarked, "has the markers tip, not nose"),
+    ):
+        start, keyframe = (pose, simulation.rest) if as_start else (None, pose)
+        with pytest.raises(InputError, match=f"{'start' if as_start else 'keyframe 1'}: a pose of this robot {words}"):
+            solve_ik_trajectory(simulation, [keyframe], start=start)
+
+
+@pytest.mark.parametrize("solved", [False, True])
+def test_cables_with_friction_are_refused(simulation: Simulation, solved: bool) -> None:
+    robot = replace(strip(), cables=tuple(replace(cable, friction=0.2) for cable in strip().cables))
+    with pytest.raises(InputError, match=r"cables with friction .* set friction = 0"):
+        solve_ik_trajectory(Simulation(robot), [simulation.rest if solved else {"tip": (0.19, 0.0)}])
+
+
 BAD = {
     "at least one keyframe": {"keyframes": []},
     "keyframe 1 has no target": {"keyframes": [{}]},
     "give one to all or to none": {"keyframes": [(1.0, {"tip": (0.1, 0.0)}), {"tip": (0.1, 0.0)}]},
     "must rise from above 0 s, not 0 s": {"keyframes": [(0.0, {"tip": (0.1, 0.0)})]},
+    r"the time of keyframe 1 must be a finite number \[s\], not inf": {"keyframes": [(np.inf, {"tip": (0.1, 0.0)})]},
+    "the time of keyframe 2 must be .*, not nan": {
+        "keyframes": [(1.0, {"tip": (0.1, 0.0)}), (np.nan, {"tip": (0.1, 0.0)})]
+    },
+    "the time of keyframe 1 must be .*, not 'a'": {"keyframes": [("a", {"tip": (0.1, 0.0)})]},
+    r"keyframe 1 must be \(time \[s\], target\) or a target, not \(1\.0,\)": {"keyframes": [(1.0,)]},
+    r"keyframe 1 must be \(time \[s\], target\) .*, 3\)": {"keyframes": [(1.0, {"tip": (0.1, 0.0)}, 3)]},
+    "keyframe 1 needs a target, .* not 5": {"keyframes": [5]},
+    "keyframe 1 needs a target, .* not 'tip'": {"keyframes": ["tip"]},
+    "keyframe 1 needs a target, .* not None": {"keyframes": [(1.0, None)]},
+    "keyframes must be a list of targets, not {'tip'": {"keyframes": {"tip": (0.1, 0.0)}},
+    "keyframes must be a list of targets, not 5": {"keyframes": 5},
     "smooth, linear, straight": {"path": "round"},
     "no limit on the acceleration can hold": {"path": "linear", "acceleration": 0.1},
     "hold must be 0 s or more, not -1": {"hold": -1.0},

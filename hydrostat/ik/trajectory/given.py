@@ -1,10 +1,23 @@
-"""`check_given`: poses that are given and not sought must fit the robot and its limits."""
+"""What is checked before a trajectory is sought: its robot, and poses that are given."""
 
 import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Bounds
 from hydrostat.simulation import Simulation, SolvedPose
+
+
+def check_robot(simulation: Simulation) -> None:
+    """Refuse a robot whose poses do not follow from contractions.
+
+    Raises:
+        InputError: cables with friction.
+    """
+    if simulation.friction is not None:
+        raise InputError(
+            "cables with friction end in another pose for every way there, so a trajectory cannot be found; "
+            "set friction = 0 to find one, then simulate it with friction"
+        )
 
 
 def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: SolvedPose) -> None:
@@ -20,7 +33,7 @@ def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Solved
         InputError: a pose of another robot, a contraction out of its range, or winches that should be equal and are
             not.
     """
-    _check_robot(simulation, name, pose)
+    _check_own(simulation, name, pose)
     winches = [winch.name for winch in simulation.robot.winches]
     for winch, channel, value in zip(winches, allowed.channels, pose.contractions, strict=True):
         low, high = float(allowed.low[channel]) + 0.0, float(allowed.high[channel])
@@ -39,7 +52,7 @@ def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Solved
             )
 
 
-def _check_robot(simulation: Simulation, name: str, pose: SolvedPose) -> None:
+def _check_own(simulation: Simulation, name: str, pose: SolvedPose) -> None:
     robot = simulation.robot
     shape, count = robot.body.mesh.nodes.shape, len(robot.winches)
     remedy = "solve it with the simulation that is given"

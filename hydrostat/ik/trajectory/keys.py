@@ -1,7 +1,8 @@
 """`Keyframe`: a pose to be taken on the way, and the search for its contractions."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 
@@ -65,14 +66,14 @@ def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
     """Keyframes with names.
 
     Raises:
-        InputError: none at all, one without a target, times for some only, or times that do not rise from above 0.
+        InputError: none at all, one that is no keyframe, one without a target, a time that is not finite, times for
+            some only, or times that do not rise from above 0.
     """
-    keyframes = [_as_keyframe(key) for key in given]
+    if not isinstance(given, Sequence) or isinstance(given, str):
+        raise InputError(f"keyframes must be a list of targets, not {_told(given)}")
+    keyframes = [_as_keyframe(number, key) for number, key in enumerate(given, 1)]
     if not keyframes:
         raise InputError("a trajectory needs at least one keyframe")
-    for number, key in enumerate(keyframes, 1):
-        if not isinstance(key.target, SolvedPose) and not key.target:
-            raise InputError(f"keyframe {number} has no target; name a marker and its place")
     times = [key.time for key in keyframes if key.time is not None]
     if times and len(times) < len(keyframes):
         raise InputError(f"{len(times)} of {len(keyframes)} keyframes have a time; give one to all or to none")
@@ -85,13 +86,31 @@ def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
     ]
 
 
-def _as_keyframe(key: Key) -> Keyframe:
-    if isinstance(key, Keyframe):
-        return key
+def _as_keyframe(number: int, given: Key) -> Keyframe:
+    """A keyframe whose parts are of the right kind; scripts are not checked for types."""
+    key = given
     if isinstance(key, tuple):
-        time, target = key
-        return Keyframe(target=target, time=time)
-    return Keyframe(target=key)
+        if len(key) != 2:
+            raise InputError(f"keyframe {number} must be (time [s], target) or a target, not {_told(given)}")
+        key = Keyframe(target=key[1], time=key[0])
+    elif not isinstance(key, Keyframe):
+        key = Keyframe(target=key)
+    if not isinstance(key.target, SolvedPose | Pose | Mapping):
+        raise InputError(
+            f"keyframe {number} needs a target, which is a pose, a solved pose, or places by marker such as "
+            f'{{"tip": (0.1, 0.02)}}, not {_told(key.target)}'
+        )
+    if not isinstance(key.target, SolvedPose) and not as_pose(key.target):
+        raise InputError(f"keyframe {number} has no target; name a marker and its place")
+    if key.time is not None and not (isinstance(key.time, Real) and np.isfinite(key.time)):
+        raise InputError(f"the time of keyframe {number} must be a finite number [s], not {_told(key.time)}")
+    return key
+
+
+def _told(given: object) -> str:
+    """What is given, for an error of one line."""
+    words = repr(given)
+    return words if len(words) <= _LONGEST and "\n" not in words else f"a {type(given).__name__}"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -185,6 +204,9 @@ class KeySearch:
             poses.append(last)
         return (*poses, end)
 
+
+_LONGEST = 60
+"""Longest text of what is given that an error repeats."""
 
 _TAUT = Effort(of=EffortKind.SLACK, weight=0.0)
 """Slack cables are kept just short of taut, so that they join without a jump of their contraction."""

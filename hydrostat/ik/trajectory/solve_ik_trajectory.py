@@ -11,7 +11,7 @@ from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.search.search import InverseOptions
 from hydrostat.ik.trajectory.course import Course
-from hydrostat.ik.trajectory.given import check_given
+from hydrostat.ik.trajectory.given import check_given, check_robot
 from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes
 from hydrostat.ik.trajectory.pace import ByWinch, Pace, earliest, linear
 from hydrostat.ik.trajectory.poses import Tell, follow
@@ -77,9 +77,10 @@ def solve_ik_trajectory(
 
     Raises:
         InputError: keyframes, limits or options that do not fit, a given pose of another robot or out of the limits,
-            or times that are too short for them.
+            times that are too short for them, or cables with friction.
         NotConvergedError: no equilibrium somewhere on the way.
     """
+    check_robot(simulation)
     chosen = options or TrajectoryOptions()
     kind = _kind(path)
     frames = as_keyframes(keyframes)
