@@ -74,8 +74,10 @@ def sensitivity(
         response: solves with the full Hessian at the pose.
 
     Raises:
-        InputError: a pose of another robot, or cotangents of a wrong shape or not finite.
+        InputError: no solved pose or one of another robot, or cotangents of a wrong shape or not finite.
     """
+    if not isinstance(pose, SolvedPose):
+        raise InputError(f"an adjoint needs a SolvedPose, as solve() returns it, not a {type(pose).__name__}")
     if pose.nodes.shape != assembly.shape or pose.tensions.shape != (len(robot.cables),):
         raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {assembly.shape}")
     nodes = _checked("nodes", nodes, assembly.shape)
@@ -103,7 +105,10 @@ def sensitivity(
 
 
 def _checked(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    values = np.asarray(given, dtype=float)
+    try:
+        values = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"the cotangent of {name} must be numbers of shape {shape}, not {given!r:.40}") from None
     if values.shape != shape or not np.isfinite(values).all():
         raise InputError(f"the cotangent of {name} must be finite numbers of shape {shape}, not of {values.shape}")
     return values

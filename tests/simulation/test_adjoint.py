@@ -301,6 +301,16 @@ def test_what_does_not_fit_is_refused() -> None:
         other.adjoint(loss.pose, np.zeros(other.assembly.shape))
 
 
+@pytest.mark.parametrize("pose", [None, {"up": 0.02}])
+def test_only_a_solved_pose_has_an_adjoint(pose: Any, unchecked: None) -> None:
+    simulation = Simulation(strip())
+    with pytest.raises(InputError, match=f"needs a SolvedPose, as solve.. returns it, not a {type(pose).__name__}"):
+        simulation.adjoint(pose, simulation.rest.nodes)
+    words: Any = "up"
+    with pytest.raises(InputError, match=r"cotangent of nodes must be numbers of shape .*, not 'up'"):
+        simulation.adjoint(simulation.rest, words)
+
+
 def test_friction_is_refused() -> None:
     robot = strip()
     simulation = Simulation(with_cable(robot, 0, replace(robot.cables[0], friction=0.2)))
