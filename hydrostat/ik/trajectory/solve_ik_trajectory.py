@@ -108,6 +108,7 @@ def solve_ik_trajectory(
     )
     found = _find(search, frames, begin, tell)
     course, arrivals = _course(kind, begin, found, pace, hold, 1 / chosen.rate)
+    fastest, hardest = course.peaks()
     times, samples = _sampled(course.times, chosen.rate)
     contractions, speeds, accelerations = course.at(times)
     contractions[samples] = _exact(begin, found, hold)  # as they were found, without rounding
@@ -118,6 +119,8 @@ def solve_ik_trajectory(
         contractions=contractions,
         speeds=speeds,
         accelerations=accelerations,
+        fastest=fastest.max(axis=0),
+        hardest=hardest.max(axis=0),
         pace=pace,
         poses=poses,
         keys=_keys(found, times, poses, [int(samples[index]) for index in arrivals], near),

@@ -87,6 +87,8 @@ class Trajectory:
         contractions: [m].
         speeds: of the contractions [m/s].
         accelerations: of the contractions [m/s^2]; of a linear path 0, but for its corners, where they are infinite.
+        fastest: the largest speed of each winch, between samples too [m/s].
+        hardest: the largest acceleration of each winch, between samples too [m/s^2].
         pace: the limits on both.
         poses: equilibria, each continued from the one before.
         keys: what became of the keyframes, the beginning not among them.
@@ -101,6 +103,8 @@ class Trajectory:
     contractions: Samples = field(repr=False)
     speeds: Samples = field(repr=False)
     accelerations: Samples = field(repr=False)
+    fastest: Vector = field(repr=False)
+    hardest: Vector = field(repr=False)
     pace: Pace = field(repr=False)
     poses: tuple[SolvedPose, ...] = field(repr=False)
     keys: tuple[KeyPose, ...]
@@ -133,24 +137,23 @@ class Trajectory:
         lines = [line for key in self.keys for line in key.lines()]
         lines.append(f"{self.seconds:.2f} s in all, {len(self.times)} samples; path {self.path}")
         if self.winches:
-            lines.append(self._most("speed", self.speeds, self.pace.speed, "mm/s"))
+            lines.append(self._most("speed", self.fastest, self.pace.speed, "mm/s"))
             if self.path is PathKind.LINEAR:
                 lines.append("acceleration: without limit at the keyframes, as the speed changes at once there")
             else:
-                lines.append(self._most("acceleration", self.accelerations, self.pace.acceleration, "mm/s^2"))
+                lines.append(self._most("acceleration", self.hardest, self.pace.acceleration, "mm/s^2"))
         lines += self._over_tension()
         for snap in self.snaps:
             lines.append(f"at {snap.time:.2f} s the robot snaps: a node jumps by {1e3 * snap.distance:.1f} mm")
         return lines
 
-    def _most(self, what: str, values: Samples, limits: Vector, unit: str) -> str:
-        most = np.abs(values).max(axis=0)
+    def _most(self, what: str, most: Vector, limits: Vector, unit: str) -> str:
         winch = int(np.argmax(most / limits if np.isfinite(limits).any() else most))
         limit = f" of {1e3 * limits[winch]:.4g}" if np.isfinite(limits[winch]) else ""
         return f"largest {what}: {1e3 * most[winch]:.4g}{limit} {unit} ({self.winches[winch]})"
 
     def _over_tension(self) -> list[str]:
-        """Cables that pull harder on the way than they may: a limit on tension is one of the keyframes."""
+        """Cables that pull harder than they may: the search keeps to a limit on tension in the keyframes it finds."""
         lines = []
         tensions = self.tensions
         for cable, limit in enumerate(self.tension):
@@ -158,10 +161,17 @@ class Trajectory:
             most = tensions[sample, cable]
             if most > limit * (1 + _HAIR):
                 lines.append(
-                    f"at {self.times[sample]:.2f} s cable {cable + 1} ({self.cables[cable]}) pulls with {most:.3g} N "
-                    f"between keyframes, more than {limit:.3g} N"
+                    f"at {self.times[sample]:.2f} s, {self._place(sample)}, cable {cable + 1} ({self.cables[cable]}) "
+                    f"pulls with {most:.3g} N, more than {limit:.3g} N"
                 )
         return lines
+
+    def _place(self, sample: int) -> str:
+        """Where in the trajectory a sample is."""
+        if sample == 0:
+            return "at the start"
+        key = next(key for key in self.keys if key.index >= sample)
+        return f"in {key.name}" if key.index == sample else f"on the way to {key.name}"
 
 
 def stray(markers: Mapping[str, Float[np.ndarray, "samples dim"]]) -> float:
