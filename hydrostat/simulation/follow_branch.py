@@ -140,34 +140,32 @@ class _Follower:
 
     def _advance(self, place: Place, trial: Place, step: float) -> BranchReason | None:
         """Keep what is found between two places, and the second one; a reason if the branch ends."""
-        if not 0.0 <= trial.share <= 1.0:
-            return self._land(place, trial, 1.0 if trial.share > 1.0 else 0.0)
         found = self._find_critical(place, trial, step)
         if found is not None:
             kind, there = found
             if not 0.0 <= there.share <= 1.0:
-                return self._land(place, there, 1.0 if there.share > 1.0 else 0.0)
+                return self._land(place, there)
             self._mark(kind, there)
             if not self.around:
                 return BranchReason[kind.name]
+            place = there
+        if not 0.0 <= trial.share <= 1.0:
+            return self._land(place, trial)
         self._keep(trial)
         return None
 
-    def _land(self, place: Place, beyond: Place, share: float) -> BranchReason:
-        """End the branch at exactly this share, before a place beyond it."""
+    def _land(self, place: Place, beyond: Place) -> BranchReason:
+        """End the branch at the share that lies between two places, 0 or 1."""
+        share = 1.0 if beyond.share > 1.0 else 0.0
         part = (share - place.share) / (beyond.share - place.share)
+        if abs(place.tangent.rate) < _FLAT * abs(beyond.tangent.rate):
+            part = np.sqrt(part)
         guess = place.nodes + part * (beyond.nodes - place.nodes)
         still = Tangent(np.zeros(guess.size), 1.0)
         reach = self.system.farthest(beyond.nodes - place.nodes, beyond.share - place.share)
         landed = self.system.correct(guess, share, still, reach=reach, before=place.tangent)
         if landed is None:
             return BranchReason.STUCK
-        way = self.system.length(landed.nodes - place.nodes, landed.share - place.share)
-        found = self._find_critical(place, landed, way) if way > 0 else None
-        if found is not None and 0.0 <= found[1].share <= 1.0:
-            self._mark(*found)
-            if not self.around:
-                return BranchReason[found[0].name]
         self._keep(landed)
         return BranchReason.ARRIVED if share == 1.0 else BranchReason.BACK
 
@@ -248,6 +246,9 @@ def _solved(simulation: Simulation, controls: Callable[[float], Vector], place: 
 
 _SAME = 1e-5
 """A start this near to an equilibrium, as a share of the body's size, is one."""
+
+_FLAT = 0.1
+"""Where the share grows so much slower than at the next place is a fold: it goes with the square of the length."""
 
 _SHARP = 1e-7
 """Critical points are found to this share of a step."""

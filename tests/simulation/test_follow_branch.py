@@ -166,6 +166,36 @@ def test_a_goal_between_the_folds_is_reached_on_the_branch_first_met(simulation:
     assert all(point.stable for point in found.points)
 
 
+def test_a_fold_in_the_last_step_is_found(simulation: Simulation, branch: Branch) -> None:
+    """From just behind a fold one step leads through it, and past the stable pose at the contractions of the start."""
+    fold = branch.critical[0]
+    start = branch.points[fold.index + 1].pose
+    assert not start.result.stable
+    back = follow_branch(simulation, start, {"down": GOAL}, around_folds=True)
+    assert back.reason is BranchReason.BACK
+    assert len(back.points) == 3
+    assert [point.kind for point in back.critical] == [CriticalKind.FOLD]
+    assert back.points[1].pose.contractions == pytest.approx([fold.share * GOAL], abs=1e-9)
+    stable = follow_branch(simulation, branch.points[0].pose, start.contractions)
+    assert stable.arrived
+    assert np.abs(back.end.nodes - stable.end.nodes).max() < 1e-8
+    assert np.abs(back.end.nodes - start.nodes).max() > 1e-6
+    assert follow_branch(simulation, start, {"down": GOAL}).reason is BranchReason.FOLD
+
+
+def test_a_bifurcation_in_the_last_step_is_found() -> None:
+    """The way ends a thousandth behind the load at which the straight column is no longer stable."""
+    simulation = Simulation(column(4))
+    rest = simulation.solve({})
+    load = follow_branch(simulation, rest, np.full(2, 0.014)).points[-1].share * 0.014
+    found = follow_branch(simulation, rest, np.full(2, 1.001 * load), around_folds=True)
+    assert found.arrived
+    assert [point.kind for point in found.critical] == [CriticalKind.BIFURCATION]
+    assert found.critical[0].index == len(found.points) - 2
+    assert found.critical[0].share == pytest.approx(1 / 1.001, abs=1e-8)
+    assert follow_branch(simulation, rest, np.full(2, 1.001 * load)).reason is BranchReason.BIFURCATION
+
+
 def test_without_its_guard_it_jumps(simulation: Simulation, branch: Branch) -> None:
     """The guard is needed: long steps taken on trust miss the folds, or lose the branch."""
     rough = through(simulation, first_step=0.5, largest_step=0.5, distance=1e3, turn=-1.0)
