@@ -74,7 +74,7 @@ def pose(
         _tell(loaded, reached, title, seconds)
         _warn(simulation, reached)
         print(f"  wrote {folder}")
-        stuck |= reached.reason in (InverseReason.ITERATION_LIMIT, InverseReason.NO_EQUILIBRIUM)
+        stuck |= reached.reason not in (InverseReason.REACHED, InverseReason.OPTIMAL)
     if stuck:
         raise typer.Exit(1)
 

@@ -15,7 +15,9 @@ class InverseReason(StrEnum):
     """Why inverse kinematics ended."""
 
     REACHED = "every goal is reached"
-    OPTIMAL = "as near as these winches can come"
+    OPTIMAL = "as near as these winches come hereabouts"
+    STUCK = "no step brings it nearer, though there is more to gain"
+    TOO_TIGHT = "no pose found that keeps the limits on tension"
     ITERATION_LIMIT = "iteration limit reached"
     NO_EQUILIBRIUM = "no equilibrium could be found on the way"
 

@@ -66,18 +66,20 @@ class Tracker:
         if state.error <= search.reached:
             reason = InverseReason.REACHED
         else:
-            least = self._options.progress * search.objective(state, weight)
+            shorter = min(self._radius / self._options.largest_step, 1.0)
+            least = self._options.progress * search.objective(state, weight) * shorter
             for _ in range(_TRIES):
                 step = search.step(state, weight, self._radius)
                 if step.promise <= least and state.excess <= _EXCESS:
                     reason = InverseReason.OPTIMAL
+                    self._radius = self._options.largest_step
                     break
                 trial = search.follow(state, step.values)
                 if trial is not None and self._accepts(search, state, trial, weight):
                     self._radius = min(2.0 * self._radius, self._options.largest_step)
                     state = trial
                     break
-                self._radius *= 0.25
+                self._radius = max(0.25 * self._radius, _SMALLEST)
             else:
                 reason = InverseReason.NO_EQUILIBRIUM
         self._state = state
@@ -92,7 +94,7 @@ class Tracker:
     def _accepts(search: Search, state: State, trial: State, weight: float) -> bool:
         """Whether a trial is better, or mends a tension that is too large."""
         if state.excess > _EXCESS:
-            return trial.excess <= 0.5 * state.excess
+            return trial.excess < state.excess
         return trial.excess <= _FAR and search.objective(trial, weight) < search.objective(state, weight)
 
     def _search(self, target: Pose | None, seconds: float) -> Search:
@@ -102,6 +104,9 @@ class Tracker:
         terms = [wish.on(self._simulation) for wish in wishes(target, self._objectives)]
         return Search(self._simulation, terms, allowed, self._options, ready=True)
 
+
+_SMALLEST = 1e-4
+"""Steps do not become shorter than this share of a range; a target that moves on asks for longer ones again."""
 
 _TRIES = 3
 """Steps tried in one update before the robot stays where it is."""

@@ -89,7 +89,7 @@ class Simulation:
             NotConvergedError: the solver stopped early; its text says why.
         """
         goal = self.contractions(contractions)
-        self._check_start(start)
+        self.check_start(start)
         slips = np.zeros(0)
         if self._path is not None:
             result, slips = self._path.solve(goal, start)
@@ -103,11 +103,25 @@ class Simulation:
             )
         return self.posed(goal, result, slips)
 
-    def _check_start(self, start: SolvedPose | None) -> None:
+    def check_start(self, start: SolvedPose | None) -> None:
+        """Whether a pose can be begun from.
+
+        Raises:
+            InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
+        """
+        if start is None:
+            return
+        if not isinstance(start, SolvedPose):
+            kind = type(start).__name__
+            raise InputError(f"start must be a solved pose, from `simulation.solve` or a result's `.pose`, not {kind}")
         shape = self.robot.body.mesh.nodes.shape
-        if start is not None and not (start.nodes.shape == shape and np.isfinite(start.nodes).all()):
+        if not (start.nodes.shape == shape and np.isfinite(start.nodes).all()):
             raise InputError(f"start must be a pose of this robot with finite nodes, {shape}, not {start.nodes.shape}")
-        if start is not None and self.friction is not None and not len(start.slips):
+        if len(start.contractions) != len(self.robot.winches):
+            raise InputError(
+                f"start has {len(start.contractions)} contractions, the robot {len(self.robot.winches)} winches"
+            )
+        if self.friction is not None and not len(start.slips):
             raise InputError("start must be a pose of this robot with friction; it has no slips")
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:

@@ -22,5 +22,5 @@ def least_effort(search: Search, state: State) -> Descent:
     return found.after(spent + found.iterations)
 
 
-_WEIGHTS = (0.1, 1e-2, 1e-3)
+_WEIGHTS = (1.0, 0.1, 1e-2, 1e-3)
 """Of the effort, one after the other."""

@@ -91,27 +91,45 @@ class LinearModel:
         self.active = places.active
         self.range = bounds.span
 
-    def best(self, effort: Vector, radius: float) -> tuple[Vector, float]:
+    def best(self, effort: Vector, radius: float, curvature: np.ndarray | None = None) -> tuple[Vector, float]:
         """The step of the channels [m] of least residual and effort, and by how much it lowers half their squares.
+
+        Where no step keeps the limits on tension, it goes as far towards them as it can.
 
         Args:
             effort: residual that a tension of each cable is worth [m/N].
             radius: largest step, as a share of each channel's range.
+            curvature: what Gauss-Newton leaves out of the Hessian, (channels, channels); nothing if left out.
         """
         active = self.active
         scale = self.range[active]
         matrix, right = self._squares(effort)
-        matrix = matrix * scale
+        matrix, aim = matrix * scale, -right
+        if curvature is not None:
+            hessian = matrix.T @ matrix + curvature[np.ix_(active, active)] * scale[:, None] * scale
+            values, axes = np.linalg.eigh(hessian)
+            root = np.sqrt(np.maximum(values, _FLAT * max(values[-1], np.finfo(float).tiny)))[:, None] * axes.T
+            matrix, aim = root, np.linalg.solve(root.T, -matrix.T @ right)
         limits, room = self._limits(radius)
-        step = least_squares(matrix, -right, limits * scale, room)
-        if step is None:
-            step = least_squares(matrix, -right, limits * scale, np.maximum(room, 0.0))
+        step = None
+        for share in _SHARES:
+            step = least_squares(matrix, aim, limits * scale, np.maximum(room, share * room))
+            if step is not None:
+                break
         full = np.zeros_like(self.values)
         if step is None:
             return full, 0.0
-        after = right + matrix @ step
+        after = aim - matrix @ step
         full[active] = scale * step
-        return full, 0.5 * float(right @ right - after @ after)
+        return full, 0.5 * float(aim @ aim - after @ after)
+
+    def gradient(self, residual: Vector | None = None) -> Vector:
+        """Slope of half the squares of the residual, or of another one, along each channel [m]."""
+        return self.matrix.T @ (self.residual if residual is None else residual)
+
+    def alike(self, other: "LinearModel") -> bool:
+        """Whether the same cables are taut."""
+        return bool(((self.places.gaps > 0) == (other.places.gaps > 0)).all())
 
     def slope(self, effort: Vector) -> float:
         """The steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
@@ -168,6 +186,12 @@ class LinearModel:
         ]
         return np.vstack(rows), np.concatenate(room)
 
+
+_SHARES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0)
+"""How much of what exceeds a limit one step is asked to take back; the first that is possible within its radius."""
+
+_FLAT = 1e-12
+"""Least curvature of a model, as a share of the largest."""
 
 _HOLDS = 1e-9
 """A limit holds when less than this share of what the channels' ranges could use of it is left."""

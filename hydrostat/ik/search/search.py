@@ -9,7 +9,8 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.limits import Bounds
-from hydrostat.ik.objectives.objective import Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Posture, Rows, Slopes, Term
+from hydrostat.ik.search.least_squares import least_squares
 from hydrostat.ik.search.linear_model import LinearModel, channels, slopes
 from hydrostat.mechanics import NewtonResult
 from hydrostat.simulation import Simulation, SolvedPose
@@ -25,7 +26,7 @@ class InverseOptions:
         tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
         progress: the search ends where the linearised problem promises to lower the objective by less than this
             fraction.
-        iterations: most Gauss-Newton steps.
+        iterations: most steps from one beginning.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
         unique: where the goals leave a choice, take the contractions that pull least, whatever the start.
         restarts: how often to begin elsewhere while a goal is not reached; none where time matters more.
@@ -38,6 +39,17 @@ class InverseOptions:
     largest_step: float = 0.3
     unique: bool = True
     restarts: int = 3
+
+    def __post_init__(self) -> None:
+        for name, least in (("effort", 0.0), ("tolerance", 0.0), ("progress", 0.0), ("iterations", 0), ("restarts", 0)):
+            value = getattr(self, name)
+            whole = name in ("iterations", "restarts")
+            if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)) or not value >= least:
+                kind = "a whole number" if whole else "a number"
+                raise InputError(f"{name} of inverse kinematics must be {kind} of {least:g} or more, not {value!r}")
+        step = self.largest_step
+        if isinstance(step, bool) or not isinstance(step, (int, float)) or not 0 < step <= 1:
+            raise InputError(f"largest_step of inverse kinematics must be a share above 0, at most 1, not {step!r}")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,10 +81,11 @@ class State:
 
 
 class Step(NamedTuple):
-    """A step, and by how much it should lower the objective [m^2]."""
+    """Where a step leads, by how much it should lower the objective [m^2], and the model that says so."""
 
     values: Vector
     promise: float
+    model: LinearModel
 
 
 class Search:
@@ -117,7 +130,7 @@ class Search:
         self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
         size = robot.body.mesh.size
         self.reached = options.tolerance * size
-        self._worth = size / _full_tensions(simulation)
+        self._worth = np.full(len(robot.cables), size / _full_tension(simulation))
         self._size = size
         self._ready = ready
         self.solves = 0
@@ -129,10 +142,14 @@ class Search:
             NotConvergedError: no equilibrium is found there.
         """
         pose = start or self.simulation.rest
+        self.simulation.check_start(pose)
         values = self.bounds.channel(pose.contractions)
-        if (self.bounds.spread @ values == pose.contractions).all() and _sound(pose.result):
-            return self._state(values, self._result(pose))
-        found = self._relaxed(values, self._result(pose))
+        given = self._result(pose)
+        if (self.bounds.spread @ values == pose.contractions).all() and given.stable:
+            found = self._state(values, given)
+            if found.sharp:
+                return self._idle(found)
+        found = self._relaxed(values, given)
         if found is not None:
             return found
         solved = self.simulation.solve(self.bounds.spread @ values, start=pose, strict=False)
@@ -143,11 +160,11 @@ class Search:
             )
         return self._state(values, self._result(solved))
 
-    def step(self, state: State, weight: float, radius: float) -> Step:
+    def step(self, state: State, weight: float, radius: float, curvature: np.ndarray | None = None) -> Step:
         """Where to go from a state: contractions of the channels [m], and what that promises."""
         model = self._model(state)
-        step, promise = model.best(weight * self._worth, radius)
-        return Step(model.applied(step), promise)
+        step, promise = model.best(weight * self._worth, radius, curvature)
+        return Step(model.applied(step), promise, model)
 
     def slope(self, state: State, weight: float) -> float:
         """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
@@ -199,7 +216,7 @@ class Search:
 
     def renewed(self, state: State) -> State:
         """A state of another search of the same robot, in the eyes of this one."""
-        return self._state(state.values, state.result)
+        return self._idle(self._state(state.values, state.result))
 
     def sharpened(self, state: State) -> State | None:
         """The same contractions at equilibrium."""
@@ -210,6 +227,19 @@ class Search:
         result = self.simulation.relax(state.result.nodes, contractions, state.result.stiffness, exact=True)
         return self._state(state.values, result) if _sound(result) else None
 
+    def tidied(self, state: State) -> State:
+        """The state with channels that hardly pull let go, if the goals stay reached."""
+        law, posture = self.simulation.cables.law, state.posture
+        places = channels(law, posture, state.values, self.bounds)
+        pulls = posture.tensions[places.first]
+        hardly = (places.gaps == 0) & (pulls < _HARDLY * posture.tensions.max(initial=0.0))
+        if not hardly.any():
+            return state
+        values = state.values - np.where(hardly, posture.stretches[places.first] + places.beyond, 0.0)
+        found = self.follow(state, np.maximum(values, self.bounds.low))
+        kept = found is not None and found.error <= self.reached and found.excess <= state.excess
+        return found if found is not None and kept else state
+
     def objective(self, state: State, weight: float) -> float:
         """Half the squares of residual and effort [m^2]."""
         effort = weight * self._worth * state.posture.tensions
@@ -218,20 +248,37 @@ class Search:
     def weight(self, state: State) -> float:
         """Of the effort: a share of the error, for then it fades as fast as the search converges."""
         error = float(np.sqrt(state.residual @ state.residual)) / self._size
-        return min(self.options.effort, max(_SHARE * error, _LEAST_WEIGHT))
+        return max(min(self.options.effort, _SHARE * error), _LEAST_WEIGHT)
 
     def _result(self, pose: SolvedPose) -> NewtonResult:
-        return replace(pose.result, stiffness=self.simulation.stiffness(pose))
+        """What this simulation makes of a pose: another one may have found it."""
+        stiffness = self.simulation.stiffness(pose)
+        residual = float(np.abs(self.simulation.assembly.gradient(pose.nodes, pose.contractions)).max())
+        return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
 
     def _model(self, state: State) -> LinearModel:
         assert state.result.stiffness is not None
         places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
-        taut = places.first[places.active]
-        moves = slopes(self.simulation, state.posture, state.result.stiffness, taut)
-        rows = [np.zeros((0, len(self.bounds.channels))), *(term.slopes(state.posture, moves) for term in self.terms)]
-        matrix = np.vstack(rows) @ self.bounds.spread
+        moves = slopes(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
+        matrix = self._rows(state.posture, moves)
+        loose = places.gaps > _EDGE * self.bounds.span
+        if loose.any():  # a slack channel that follows a step stays where it is
+            matrix[:, loose] -= self._direct(state.posture)[:, loose]
         tensions = moves.tensions @ self.bounds.spread
         return LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
+
+    def _rows(self, posture: Posture, moves: Moves) -> Slopes:
+        rows = [np.zeros((0, len(self.bounds.channels))), *(term.slopes(posture, moves) for term in self.terms)]
+        return np.vstack(rows) @ self.bounds.spread
+
+    def _direct(self, posture: Posture) -> Slopes:
+        """Slopes of terms that look at contractions or slack, while no cable pulls more."""
+        winches, cables = len(self.bounds.channels), self.simulation.cables.winches
+        follows = (cables[:, None] == np.arange(winches)).astype(float)
+        still = Moves(
+            nodes=np.zeros((*posture.nodes.shape, winches)), stretches=follows, tensions=np.zeros_like(follows)
+        )
+        return self._rows(posture, still)
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> State | None:
         """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
@@ -275,12 +322,24 @@ class Search:
         )
 
     def _idle(self, state: State) -> State:
-        """Slack channels go towards rest, or to the edge of taut, as far as they stay slack: nothing moves by that."""
+        """Slack channels go where the terms want them, else towards rest or the edge of taut: nothing moves by that."""
         gaps = channels(self.simulation.cables.law, state.posture, state.values, self.bounds).gaps
         slack = (gaps > 0) & np.isfinite(gaps)
+        if not slack.any():
+            return state
         edge = state.values + np.where(slack, gaps, 0.0)
         wanted = np.clip(edge if self._ready else np.minimum(edge, 0.0), self.bounds.low, self.bounds.high)
         values = np.where(slack, np.minimum(wanted, edge), state.values)
+        direct = self._direct(state.posture)[:, slack] * self.bounds.span[slack]
+        if direct.any():
+            matrix = np.vstack([direct, _LEAST_WEIGHT * np.eye(direct.shape[1])])
+            right = np.concatenate([-state.residual, np.zeros(direct.shape[1])])
+            up = (np.minimum(edge, self.bounds.high) - state.values)[slack] / self.bounds.span[slack]
+            down = (state.values - self.bounds.low)[slack] / self.bounds.span[slack]
+            eye = np.eye(direct.shape[1])
+            step = least_squares(matrix, right, np.vstack([eye, -eye]), np.concatenate([up, down]))
+            if step is not None:
+                values[slack] = state.values[slack] + self.bounds.span[slack] * np.clip(step, -down, up)
         return state if (values == state.values).all() else self._state(values, state.result)
 
 
@@ -299,6 +358,12 @@ _LOOSE = 0.1
 _LEFT = 0.2
 """An equilibrium is near enough when what is left is this share of the last step of Newton."""
 
+_HARDLY = 1e-3
+"""A channel whose tautest cable pulls less than this share of the largest tension may as well be slack."""
+
+_EDGE = 1e-9
+"""A channel this near to taut, in shares of its range, is at the edge of it."""
+
 _IDLE = 1e-3
 """A change that moves less than this share of what the best one moves counts as none."""
 
@@ -309,12 +374,12 @@ _LEAST_WEIGHT = 1e-8
 """Of the effort; enough to keep the linearised problem well posed."""
 
 
-def _full_tensions(simulation: Simulation) -> Vector:
-    """What each cable would pull at the full travel of its winch, were the body linear [N]."""
+def _full_tension(simulation: Simulation) -> float:
+    """What the hardest cable would pull at the full travel of its winch, were the body linear [N]."""
     robot, cables = simulation.robot, simulation.cables
     travel = np.array([winch.travel for winch in robot.winches])[cables.winches]
     compliance = simulation.stiffness(simulation.rest).compliance.diagonal()
-    return travel / (1.0 / cables.law.stiffness + compliance)
+    return float((travel / (1.0 / cables.law.stiffness + compliance)).max())
 
 
 def _sound(result: NewtonResult) -> bool:
