@@ -32,6 +32,7 @@ def test_an_arch_rests_up_or_down() -> None:
     for known, pose in zip(both, found.poses, strict=True):
         assert np.abs(known.nodes - pose.pose.nodes).max() < 1e-8
     apart = np.linalg.norm(both[0].markers["top"] - both[1].markers["top"])
+    assert apart == pytest.approx(15.5e-3, abs=5e-5)  # as docs/theory/multistability.md says
     assert found.spread == {"top": pytest.approx(apart, abs=1e-8)}
     assert found.node_spread >= apart - 1e-8
     assert not found.unique
