@@ -22,6 +22,8 @@ class BranchOptions:
     A step is measured along the branch: by the share of the way, and by the root mean square displacement of the nodes
     as a share of the body's size.
 
+    Of the critical points within one step at most one is seen; shorter steps see more.
+
     Attributes:
         first_step: length of the first step.
         largest_step: no step is longer.
@@ -31,6 +33,9 @@ class BranchOptions:
             of the step: 0.1 in a step of 0.02 lets no jump of more than 0.2 % of the body pass.
         iterations: of Newton in a step; where the branch is near and no other is, a few are enough.
         turn: least cosine of the angle between the directions of the branch before and after a step.
+
+    Raises:
+        InputError: a length, a count or a distance that is not above 0, or a turn that is no cosine below 1.
     """
 
     first_step: float = 0.01
@@ -40,6 +45,17 @@ class BranchOptions:
     distance: float = 0.1
     iterations: int = 5
     turn: float = 0.8
+
+    def __post_init__(self) -> None:
+        """Refuse what no branch could be followed with."""
+        for name in ("first_step", "largest_step", "smallest_step", "steps", "distance", "iterations"):
+            value = getattr(self, name)
+            if not 0 < value < np.inf:
+                raise InputError(
+                    f"{name} must be finite and above 0, not {value:g}; {getattr(type(self), name):g} is usual"
+                )
+        if not -1.0 <= self.turn < 1.0:
+            raise InputError(f"turn must be a cosine, at least -1 and below 1, not {self.turn:g}; 0.8 is usual")
 
 
 def follow_branch(
