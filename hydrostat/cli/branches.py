@@ -59,21 +59,17 @@ def branches(
 def _follow(simulation: "Simulation", found: "PathDependence") -> "list[tuple[str, Branch]]":
     """The branch from rest, and of each pose that is not on it the branch back; none with friction."""
     from hydrostat.simulation import follow_branch
+    from hydrostat.simulation.largest_distance import largest_distance
 
     if found.friction:
         return []
     first = follow_branch(simulation, simulation.solve({}), found.contractions, around_folds=True)
     followed = [("from rest", first)]
     for number, one in enumerate(found.poses, 1):
-        if not first.arrived or _apart(first.end.nodes, one.pose.nodes) > found.near:
+        if not first.arrived or largest_distance(first.end.nodes, one.pose.nodes) > found.near:
             back = follow_branch(simulation, one.pose, {}, around_folds=True)
             followed.append((f"back from pose {number}", back))
     return followed
-
-
-def _apart(one: Any, other: Any) -> float:
-    """Largest distance of a node [m]."""
-    return float(abs(one - other).max())
 
 
 def _write(

@@ -9,6 +9,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.simulation.largest_distance import largest_distance
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 from hydrostat.simulation.ways import Way, go, ways_to
@@ -135,7 +136,7 @@ def path_dependence(
         poses=poses,
         lost=tuple(lost),
         spread=_marker_spread(simulation, poses),
-        node_spread=max((_apart(a.pose, b.pose) for a, b in combinations(poses, 2)), default=0.0),
+        node_spread=max((largest_distance(a.pose.nodes, b.pose.nodes) for a, b in combinations(poses, 2)), default=0.0),
         near=near,
         friction=simulation.friction is not None,
     )
@@ -154,15 +155,10 @@ def _sort(
         lost.append(way.name)
         return
     for known, names in groups:
-        if _apart(known, pose) <= near:
+        if largest_distance(known.nodes, pose.nodes) <= near:
             names.append(way.name)
             return
     groups.append((pose, [way.name]))
-
-
-def _apart(one: SolvedPose, other: SolvedPose) -> float:
-    """Largest distance of a node between two poses [m]."""
-    return float(np.linalg.norm(one.nodes - other.nodes, axis=1).max())
 
 
 def _marker_spread(simulation: Simulation, poses: tuple[FoundPose, ...]) -> dict[str, float]:
