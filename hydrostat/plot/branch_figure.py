@@ -42,7 +42,7 @@ def draw_branches(
     title: str | None = None,
     width: float = WIDTH,
 ) -> Figure:
-    """The poses found, one over the other; below how far markers move along the branches.
+    """The poses found, one over the other; below how far markers move along the branches, if there are any.
 
     Stable parts are solid lines, unstable ones dashed; dots mark folds, diamonds bifurcations, and numbered dots at the
     end the poses above. The share of the contractions is that of `found`, also for branches followed back from there.
@@ -69,6 +69,8 @@ def draw_branches(
         _draw_poses(sheet, pane, poses)
     if len(poses) > 1:
         _name_poses(sheet, panes[0], poses, tracked[0])
+    if not branches:
+        return sheet.figure
     columns = 1 if len(tracked) == 1 else 2
     rows = ceil(len(tracked) / columns)
     _grow(sheet.figure, rows * ROW + 0.15)

@@ -56,10 +56,16 @@ def test_one_pose_has_no_numbers(make) -> None:
 
 
 def test_without_branches_the_poses_are_drawn() -> None:
-    """As for cables with friction."""
+    """As for cables with friction: there is nothing that a chart could show."""
     simulation = Simulation(strip_robot())
     found = path_dependence(simulation, np.array([0.01, 0.0]), count=1)
-    assert draw_branches(simulation.robot, found, []).axes[-1].get_title(loc="left") == "tip moved [mm]"
+    figure = draw_branches(simulation.robot, found, [])
+    assert all(axes.get_title(loc="left") == "" for axes in figure.axes)
+    branch = follow_branch(simulation, simulation.solve({}), found.contractions)
+    charted = draw_branches(simulation.robot, found, [branch])
+    assert charted.axes[-1].get_title(loc="left") == "tip moved [mm]"
+    assert len(figure.axes) == len(charted.axes) - 1
+    assert figure.get_figheight() < charted.get_figheight()
 
 
 def test_no_contraction_is_refused() -> None:
