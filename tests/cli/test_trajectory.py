@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from PIL import Image
 
 import hydrostat as hs
+from hydrostat.ik import InverseOptions, InverseReason, TrajectoryOptions, solve_ik_trajectory
 from hydrostat.simulation import read_profile
 
 Run = Callable[..., tuple[int, str, str]]
@@ -77,6 +79,18 @@ def test_bad_options_are_one_line(
     assert code == 2
     assert words in errors
     assert not (tmp_path / "out").exists()
+
+
+def test_a_search_that_is_stuck_ends_with_1(
+    run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One step is too few to reach a pose; the files are written all the same."""
+    hasty = TrajectoryOptions(rate=5, compare=False, inverse=InverseOptions(iterations=1))
+    monkeypatch.setattr("hydrostat.ik.solve_ik_trajectory", partial(solve_ik_trajectory, options=hasty))
+    code, out, _ = run("trajectory", starfish, "--poses", "wave", "--width", "160", "--out", tmp_path / "out")
+    assert code == 1
+    assert str(InverseReason.ITERATION_LIMIT) in out
+    assert (tmp_path / "out" / "trajectory.csv").exists()
 
 
 def test_cables_with_friction_are_refused_in_one_line(run: Run, starfish: Path, tmp_path: Path) -> None:
