@@ -26,7 +26,10 @@ def told(given: object) -> str:
     if found is not None and found.ndim == 0:
         return f"{found:g}"
     words = repr(given)
-    return words if len(words) <= _LONGEST and "\n" not in words else f"a {type(given).__name__}"
+    if len(words) <= _LONGEST and "\n" not in words:
+        return words
+    kind = type(given).__name__
+    return f"{'an' if kind[0] in 'AEIOU' else 'a'} {kind}"
 
 
 def not_negative(what: str, given: object) -> float:

@@ -48,4 +48,5 @@ class _Centre(Term):
         return self._weight * np.einsum("n,ndw->dw", self._shares, moves.nodes)
 
     def errors(self, posture: Posture) -> Mapping[str, float]:
-        return {"centre of mass": float(np.linalg.norm(self._shares @ posture.nodes - self._target))}
+        distance = float(np.linalg.norm(self._shares @ posture.nodes - self._target))
+        return {"centre of mass": distance} if self._weight > 0 else {}

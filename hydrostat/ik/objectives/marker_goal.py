@@ -40,7 +40,7 @@ class MarkerGoal(Objective):
         """
         robot = simulation.robot
         mesh = robot.body.mesh
-        targets = _targets(self.targets)
+        targets = named_targets(self.targets)
         names = tuple(targets)
         weights = by_name("weights of markers", self.weights, '{"tip": 2.0}')
         free = by_name("free axes of markers", self.free, '{"tip": "x"}')
@@ -56,6 +56,22 @@ class MarkerGoal(Objective):
             [place(f"target {name}", targets[name], mesh, held=axes) for name, axes in zip(names, held, strict=True)]
         )
         return _Markers(names, anchors, goals, scales, held)
+
+
+def named_targets(given: object) -> Mapping[str, Point]:
+    """Places by the names of markers; those of a pose.
+
+    Raises:
+        InputError: something else, such as the name of a pose, or none at all.
+    """
+    if isinstance(given, Pose):
+        return given.targets
+    if isinstance(given, str):
+        raise InputError(f'targets must be places by name, not "{given}"; those of a pose are robot.pose("{given}")')
+    found = by_name("targets", given, '{"tip": (0.1, 0.02)}')
+    if not found:
+        raise InputError("targets must name at least one marker")
+    return found
 
 
 class _Markers(Term):
@@ -99,17 +115,6 @@ def _index(robot: Robot, name: str) -> int:
         known = f"its markers are: {', '.join(names)}" if names else "it has no markers"
         raise InputError(f'the robot has no marker "{name}"; {known}')
     return names.index(name)
-
-
-def _targets(given: object) -> Mapping[str, Point]:
-    if isinstance(given, Pose):
-        return given.targets
-    if isinstance(given, str):
-        raise InputError(f'targets must be places by name, not "{given}"; those of a pose are robot.pose("{given}")')
-    found = by_name("targets", given, '{"tip": (0.1, 0.02)}')
-    if not found:
-        raise InputError("targets must name at least one marker")
-    return found
 
 
 def _held(name: str, free: object, dim: int) -> list[bool]:

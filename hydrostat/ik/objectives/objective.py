@@ -1,13 +1,15 @@
 """`Objective`: the contract of every term of what inverse kinematics minimises."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
+from hydrostat.ik.checks import told
 from hydrostat.simulation import Simulation
 
 Rows = Float[np.ndarray, " rows"]
@@ -75,3 +77,19 @@ class Objective(ABC):
         Raises:
             InputError: it names what the robot does not have.
         """
+
+
+def checked_objectives(given: object) -> tuple[Objective, ...]:
+    """Objectives in a list.
+
+    Raises:
+        InputError: no list, or something in it that is no objective.
+    """
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise InputError(f"objectives must be a list, such as [Effort()], not {told(given)}")
+    for wish in given:
+        if isinstance(wish, type):
+            raise InputError(f"an objective is wanted, not its class; write {wish.__name__}(...)")
+        if not isinstance(wish, Objective):
+            raise InputError(f"an objective must be one such as MarkerGoal(...) or Effort(), not {told(wish)}")
+    return tuple(given)

@@ -115,7 +115,7 @@ class _Shape(Term):
 
     def errors(self, posture: Posture) -> Mapping[str, float]:
         """Root of the mean square distance between the body's boundary and the shape, of both ways [m]."""
-        return {self.name: float(np.linalg.norm(self._distances(posture)))}
+        return {self.name: float(np.linalg.norm(self._distances(posture)))} if self._weight > 0 else {}
 
     def _distances(self, posture: Posture) -> Rows:
         shape, body = self._nearest(posture)

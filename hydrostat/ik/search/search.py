@@ -237,6 +237,8 @@ class Search:
             return state
         values = state.values - np.where(hardly, posture.stretches[places.first] + places.beyond, 0.0)
         found = self.follow(state, np.maximum(values, self.bounds.low))
+        if found is not None and found.error > self.reached:
+            found = self.follow(found, self.step(found, self.weight(found), self.options.largest_step).values)
         kept = found is not None and found.error <= self.reached and found.excess <= state.excess
         return found if found is not None and kept else state
 

@@ -62,7 +62,7 @@ def follow(
             raise NotConvergedError(
                 f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.reason}", pose.result
             )
-        if distance > 0:
+        if distance > jump:
             snaps.append(Snap(time=float(time), distance=distance))
         poses.append(pose)
         if tell is not None:
@@ -71,7 +71,10 @@ def follow(
 
 
 def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, halvings: int) -> tuple[SolvedPose, float]:
-    """The pose at other contractions, and how far it snapped on the way [m]; 0 if it did not."""
+    """The pose at other contractions, and the largest distance from a prediction on the way [m].
+
+    It is 0 where every step was taken; else it is a snap if it is more than `jump`.
+    """
     if (pose.contractions == goal).all():
         return pose, 0.0
     predicted = _predicted(simulation, pose, goal)
