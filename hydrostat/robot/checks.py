@@ -20,7 +20,11 @@ def check_not_negative(field: str, value: float, unit: str) -> None:
 
 def check_point(field: str, point: Point) -> None:
     """Refuse what is no place in the plane or in space."""
-    if len(point) not in (2, 3):
-        raise InputError(f"{field} has {len(point)} coordinates; a point has two, or three in space")
-    if not all(map(math.isfinite, point)):
+    try:
+        count, finite = len(point), all(map(math.isfinite, point))
+    except TypeError:
+        raise InputError(f"{field} must be two or three coordinates [m], not {point!r:.60}") from None
+    if count not in (2, 3):
+        raise InputError(f"{field} has {count} coordinates; a point has two, or three in space")
+    if not finite:
         raise InputError(f"{field} must have finite coordinates, not {[float(value) for value in point]}")

@@ -2,6 +2,7 @@
 
 from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -85,6 +86,12 @@ def test_points(make, point: tuple) -> None:
     """Oracle: a place is two or three finite numbers."""
     with pytest.raises(InputError, match=r"finite coordinates, not \[|coordinates; a point has two, or three"):
         make(point)
+
+
+@pytest.mark.parametrize("point", [0.1, None, "ab", ("a", "b"), (None, 0.0), (1j, 0.0)])
+def test_what_is_no_place_is_told_in_one_line(point: Any, unchecked: None) -> None:
+    with pytest.raises(InputError, match=r"^targets\.m must be two or three coordinates \[m\], not [^\n]*$"):
+        Pose(name="p", targets={"m": point})
 
 
 @pytest.mark.parametrize(
