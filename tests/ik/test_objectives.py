@@ -1,5 +1,6 @@
 """All objectives in one conformance suite. Oracles: central differences of sharp solves, closed forms."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -15,7 +16,7 @@ from hydrostat.ik.objectives.centre_goal import CentreGoal
 from hydrostat.ik.objectives.closeness import Closeness
 from hydrostat.ik.objectives.effort import Effort
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.objectives.objective import Objective, Posture
+from hydrostat.ik.objectives.objective import Objective, Posture, checked_objectives
 from hydrostat.ik.objectives.postures import posture_at
 from hydrostat.ik.objectives.shape_goal import ShapeGoal
 from hydrostat.ik.reached_pose import InverseReason
@@ -221,6 +222,28 @@ def test_a_wrong_type_is_one_clear_line(name: str, unchecked: None) -> None:
         kind(**given).on(FLAT)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (Effort(), "objectives must be a list, such as [Effort()], not an Effort"),
+        ("effort", "objectives must be a list, such as [Effort()], not 'effort'"),
+        (None, "objectives must be a list, such as [Effort()], not None"),
+        (["effort"], "MarkerGoal(...) or Effort(), not 'effort'"),
+        ([Effort(), Effort], "an objective is wanted, not its class; write Effort(...)"),
+    ],
+)
+def test_objectives_are_a_list_of_them(given: object, message: str) -> None:
+    with pytest.raises(InputError, match=re.escape(message)):
+        checked_objectives(given)
+
+
+def test_no_weight_no_goal() -> None:
+    rest = at_rest(FLAT)
+    for goal in (CentreGoal(target=(0.0, 0.0)), ShapeGoal(outline=arc())):
+        assert goal.on(FLAT).errors(rest)
+        assert replace(goal, weight=0.0).on(FLAT).errors(rest) == {}
 
 
 def test_a_free_axis_may_hold_any_number() -> None:
