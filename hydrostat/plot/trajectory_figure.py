@@ -156,6 +156,9 @@ def _chart(axes: Axes, label: str, *, last: bool) -> None:
     axes.spines[["left", "bottom"]].set_color(MUTED)
     axes.tick_params(colors=MUTED, labelsize=7.5, labelbottom=last)
     axes.set_ylabel(label, color=INK, fontsize=8)
+    # Numbers far from 1 would be so wide that the label leaves the picture.
+    axes.ticklabel_format(axis="y", scilimits=(-1, 4), useOffset=False)
+    axes.yaxis.get_offset_text().set(fontsize=6.5, color=MUTED)
     if last:
         axes.set_xlabel("time [s]", color=INK, fontsize=8)
 
