@@ -93,7 +93,7 @@ def write_profile(path: Path, robot: Robot, profile: Profile) -> Path:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["time_s", *(winch.name for winch in robot.winches)])
     for time, row in zip(profile.times, 1e3 * profile.values, strict=True):
-        writer.writerow([f"{time:.9g}", *(f"{value:.9g}" for value in row + 0.0)])
+        writer.writerow([f"{time:.15g}", *(f"{value:.9g}" for value in row + 0.0)])
     return replace_file(path, text.getvalue().encode())
 
 
