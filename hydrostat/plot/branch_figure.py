@@ -209,9 +209,28 @@ def _draw_chart(axes: Axes, robot: Robot, name: str, found: PathDependence, bran
                 shares[point.index], moved[point.index], marker=marker, markersize=4.5, color=ERROR,
                 markeredgecolor="white", markeredgewidth=0.8, zorder=4, linestyle="none",
             )  # fmt: skip
+    heights = [MILLIMETRES * _moved(robot, one.pose, name) for one in found.poses]
+    _zoom(axes, _parting(found, branches), heights)
     if len(found.poses) > 1:
-        _number_poses(axes, [MILLIMETRES * _moved(robot, one.pose, name) for one in found.poses])
-    axes.set_xlim(min(0.0, axes.get_xlim()[0] + 5), 102)
+        _number_poses(axes, heights)
+
+
+def _parting(found: PathDependence, branches: Sequence[Branch]) -> float:
+    """Share [%] a little before the first pose that is not stable, or a fold; 0 where branches do not part."""
+    marked = [branch.points[point.index] for branch in branches for point in branch.critical]
+    lost = marked + [point for branch in branches for point in branch.points if not point.stable]
+    first = min((100 * _share(point.pose, found.contractions) for point in lost), default=0.0)
+    return min(max(0.0, first - 0.5 * (100 - first)), 90.0)
+
+
+def _zoom(axes: Axes, begin: float, heights: Sequence[float]) -> None:
+    """Show what lies between a share [%] and the end, in its own height and that of the poses there."""
+    if begin > 0:
+        lines = [np.column_stack(line.get_data()) for line in axes.lines]
+        shown = np.concatenate([heights, *(line[line[:, 0] >= begin, 1] for line in lines)])
+        edge = 0.06 * max(float(np.ptp(shown)), 1e-9)
+        axes.set_ylim(float(shown.min()) - edge, float(shown.max()) + edge)
+    axes.set_xlim(begin if begin > 0 else min(0.0, axes.get_xlim()[0] + 5), 100 + 0.02 * (100 - begin))
 
 
 def _draw_key(axes: Axes, branches: Sequence[Branch]) -> None:

@@ -44,6 +44,22 @@ def test_lines_are_the_branches(tmp_path: Path) -> None:
     assert save_png(figure, tmp_path / "branches.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_charts_begin_a_little_before_branches_part() -> None:
+    """Half as far before the first fold as that is before the end; and the whole way where nothing folds."""
+    simulation = Simulation(arch())
+    found = path_dependence(simulation, {"down": 0.145}, count=3)
+    down = next(one.pose for one in found.poses if one.pose.markers["top"][1] < 0)
+    back = follow_branch(simulation, down, {})
+    chart = draw_branches(simulation.robot, found, [back]).axes[-1]
+    fold = 100 * (1 - back.folds[0])
+    assert chart.get_xlim()[0] == pytest.approx(min(fold - 0.5 * (100 - fold), 90.0))
+    heights = [line.get_ydata()[np.asarray(line.get_xdata()) >= chart.get_xlim()[0]] for line in chart.lines]
+    assert chart.get_ylim()[0] < min(map(np.min, heights))
+    assert chart.get_ylim()[1] > max(map(np.max, heights))
+    there = follow_branch(simulation, simulation.solve({}), found.contractions)
+    assert draw_branches(simulation.robot, found, [there]).axes[-1].get_xlim()[0] <= 0
+
+
 @pytest.mark.parametrize("make", [strip_robot, box_robot])
 def test_one_pose_has_no_numbers(make) -> None:
     simulation = Simulation(make())
