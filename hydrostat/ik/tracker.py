@@ -63,7 +63,7 @@ class Tracker:
         state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
         weight = search.weight(state)
         reason = InverseReason.ITERATION_LIMIT
-        if state.error <= search.reached:
+        if _reached(search, state):
             reason = InverseReason.REACHED
         else:
             shorter = min(self._radius / self._options.largest_step, 1.0)
@@ -83,8 +83,10 @@ class Tracker:
             else:
                 reason = InverseReason.NO_EQUILIBRIUM
         self._state = state
-        if state.error <= search.reached:
+        if _reached(search, state):
             reason = InverseReason.REACHED
+        elif state.excess > _FAR:
+            reason = InverseReason.TOO_TIGHT
         found = Descent(state=state, reason=reason, iterations=1, weight=weight)
         reached = answer(search, found, target)
         self.pose = reached.pose
@@ -103,6 +105,10 @@ class Tracker:
         allowed = allowed.near(allowed.channel(self.pose.contractions))
         terms = [wish.on(self._simulation) for wish in wishes(target, self._objectives)]
         return Search(self._simulation, terms, allowed, self._options, ready=True)
+
+
+def _reached(search: Search, state: State) -> bool:
+    return state.error <= search.reached and state.excess <= _EXCESS
 
 
 _SMALLEST = 1e-4

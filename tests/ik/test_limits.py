@@ -11,7 +11,7 @@ from builders import box_robot, strip_robot
 from scipy.optimize import minimize, minimize_scalar
 
 from hydrostat.errors import InputError
-from hydrostat.ik import InverseReason, Limits, solve_ik
+from hydrostat.ik import InverseOptions, InverseReason, Limits, solve_ik
 from hydrostat.ik.limits import bounds
 from hydrostat.robot import Winch
 from hydrostat.simulation import Simulation
@@ -157,3 +157,21 @@ def test_a_winch_without_cables_keeps_out_of_it() -> None:
     reached = solve_ik(simulation, {"tip": tuple(hidden.markers["tip"].tolist())})
     assert reached.reason is InverseReason.REACHED
     assert reached.pose.contractions[0] == 0.0
+
+
+def test_a_start_above_the_limit_of_tension_is_brought_below_it() -> None:
+    simulation = Simulation(strip_robot())
+    start = simulation.solve(np.array([0.05, 0.0]))
+    options = InverseOptions(restarts=0, unique=False)
+    for most in (0.3, 2.0):
+        reached = solve_ik(simulation, FAR, limits=Limits(tension=most), start=start, options=options)
+        assert reached.pose.tensions.max() <= most * (1 + 1e-6)
+        assert reached.reason is InverseReason.OPTIMAL
+
+
+def test_limits_that_cannot_be_kept_together_are_told() -> None:
+    """At 30 mm the cable pulls more than it may."""
+    simulation = Simulation(strip_robot())
+    reached = solve_ik(simulation, FAR, limits=Limits(tension=0.3, contraction={"up": (0.03, 0.06)}))
+    assert reached.reason is InverseReason.TOO_TIGHT
+    assert reached.pose.result.converged

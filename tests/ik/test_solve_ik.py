@@ -234,3 +234,55 @@ def test_an_unknown_marker_and_a_robot_without_cables() -> None:
         solve_ik(Simulation(replace(robot, winches=(), cables=())), {"tip": (0.2, 0.0)})
     with pytest.raises(InputError, match="nothing to reach"):
         solve_ik(Simulation(robot))
+
+
+def test_targets_far_out_of_reach_take_few_steps() -> None:
+    """Where much is left over Gauss-Newton alone creeps; the curvature of the residual is learnt."""
+    simulation = Simulation(load_robot(next(folder for folder in example_folders() if folder.name == "starfish")))
+    draw = np.random.default_rng(0)
+    for _ in range(4):
+        goals = {m.name: tuple((np.array(m.at) + draw.normal(0, 0.05, 2)).tolist()) for m in simulation.robot.markers}
+        reached = solve_ik(simulation, goals, options=InverseOptions(restarts=0))
+        assert reached.reason is InverseReason.OPTIMAL
+        assert reached.optimality < 1e-4
+        assert reached.iterations < 40
+
+
+def test_a_start_of_another_material_is_relaxed_first(unchecked: None) -> None:
+    """It rests there, but not here: a pose of twice the modulus under a weight."""
+    robot = replace(two_markers(strip_robot()), gravity=(0.0, -9.81))
+    stiffer = replace(robot, body=replace(robot.body, material=replace(robot.body.material, young=60e3)))
+    start = Simulation(stiffer).solve(np.array([0.02, 0.0]))
+    simulation = Simulation(robot)
+    goals = {name: tuple(place.tolist()) for name, place in start.markers.items()}
+    reached = solve_ik(simulation, goals, start=start)
+    force = np.abs(simulation.assembly.gradient(reached.pose.nodes, reached.pose.contractions)).max()
+    assert force <= simulation.allowed(reached.pose.nodes, reached.pose.contractions)
+    with pytest.raises(InputError, match="pose of this robot"):
+        solve_ik(simulation, goals, start=Simulation(strip_robot(columns=8)).solve(np.zeros(2)))
+    with pytest.raises(InputError, match="a result's"):
+        solve_ik(simulation, goals, start=reached)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"restarts": -1}, {"iterations": 1.5}, {"largest_step": 0}, {"largest_step": float("nan")}, {"effort": -1.0},
+     {"tolerance": "1e-3"}, {"tolerance": float("nan")}],
+    ids=str,
+)  # fmt: skip
+def test_wrong_options_are_told_in_one_line(wrong: dict, unchecked: None) -> None:
+    with pytest.raises(InputError, match=next(iter(wrong))):
+        InverseOptions(**wrong)
+
+
+def test_every_answer_rests_within_its_limits() -> None:
+    """Residual, stability and bounds of answers that are reached, not reached, and stopped early."""
+    simulation = Simulation(two_markers(strip_robot(slack=0.003)))
+    draw = np.random.default_rng(1)
+    for steps in (0, 1, 2, 3, 100):
+        goals = {"tip": tuple(draw.uniform(0.05, 0.2, 2).tolist())}
+        reached = solve_ik(simulation, goals, options=InverseOptions(iterations=steps, restarts=0))
+        force = np.abs(simulation.assembly.gradient(reached.pose.nodes, reached.pose.contractions)).max()
+        assert force <= simulation.allowed(reached.pose.nodes, reached.pose.contractions)
+        assert simulation.assembly.stiffness(reached.pose.nodes, reached.pose.contractions).definite
+        assert kept(simulation, reached)

@@ -7,7 +7,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.ik import InverseReason, Limits, Tracker, solve_ik
+from hydrostat.ik import InverseOptions, InverseReason, Limits, Tracker, solve_ik
 from hydrostat.simulation import Simulation
 
 INTERVAL = 1 / 30
@@ -72,3 +72,36 @@ def test_idle_updates_change_nothing() -> None:
 def test_time_must_pass() -> None:
     with pytest.raises(InputError, match="above 0"):
         Tracker(Simulation(strip_robot())).update({"tip": (0.2, 0.0)}, seconds=0.0)
+
+
+def test_slack_cables_join_from_rest() -> None:
+    """A gap wider than the rate allows in one update is closed in several."""
+    simulation = Simulation(strip_robot(slack=0.004))
+    goal = {"tip": tuple(simulation.solve(np.array([0.025, 0.0])).markers["tip"].tolist())}
+    tracker = Tracker(simulation, limits=Limits(rate=0.05))
+    for _ in range(60):
+        reached = tracker.update(goal, seconds=INTERVAL)
+    assert max(reached.errors.values()) < 1e-6
+
+
+def test_a_start_above_the_limit_of_tension_is_brought_below_it() -> None:
+    simulation = Simulation(strip_robot())
+    start = simulation.solve(np.array([0.05, 0.0]))
+    tracker = Tracker(simulation, limits=Limits(tension=1.0, rate=0.1), start=start)
+    goal = {"tip": tuple(start.markers["tip"].tolist())}
+    for _ in range(40):
+        reached = tracker.update(goal, seconds=INTERVAL)
+    assert reached.pose.tensions.max() <= 1.0 * (1 + 2e-3)
+
+
+def test_a_target_that_moves_on_after_long_rest_is_followed() -> None:
+    simulation = Simulation(strip_robot())
+    tracker = Tracker(simulation, options=InverseOptions(tolerance=1e-15))
+    here, there = (
+        {"tip": tuple(simulation.solve(np.array(a)).markers["tip"].tolist())} for a in ([0.01, 0.0], [0.03, 0.0])
+    )
+    for _ in range(40):
+        tracker.update(here, seconds=INTERVAL)
+    for _ in range(15):
+        reached = tracker.update(there, seconds=INTERVAL)
+    assert max(reached.errors.values()) < 1e-6
