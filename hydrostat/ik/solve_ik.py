@@ -7,8 +7,8 @@ from hydrostat.errors import InputError
 from hydrostat.ik.answer import answer
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.effort import keeps_taut
-from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.objectives.objective import Objective
+from hydrostat.ik.objectives.marker_goal import MarkerGoal, named_targets
+from hydrostat.ik.objectives.objective import Objective, checked_objectives
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.descend import Descent, descend
 from hydrostat.ik.search.least_effort import least_effort
@@ -71,7 +71,7 @@ def as_pose(targets: Targets | None) -> Pose | None:
     """Targets as a pose; None if there are none."""
     if targets is None or isinstance(targets, Pose):
         return targets
-    return Pose(name="target", targets=dict(targets)) if targets else None
+    return Pose(name="target", targets=dict(named_targets(targets))) if targets else None
 
 
 def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objective]:
@@ -80,7 +80,7 @@ def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objecti
     Raises:
         InputError: nothing.
     """
-    found = [*([MarkerGoal(targets=target.targets)] if target else []), *objectives]
+    found = [*([MarkerGoal(targets=target.targets)] if target else []), *checked_objectives(objectives)]
     if not found:
         raise InputError("there is nothing to reach: give targets for markers, or objectives")
     return found

@@ -124,6 +124,8 @@ def path_dependence(
     groups: list[tuple[SolvedPose, list[str]]] = []
     lost: list[str] = []
     near = tolerance * simulation.robot.body.mesh.size
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError(f"seed must be a whole number of 0 or more, not {seed!r}")
     ways = ways_to(simulation.robot, goal, count, seed)
     for done, way in enumerate(ways, 1):
         _sort(go(simulation, way), way, goal, groups, lost, near)

@@ -337,3 +337,11 @@ def test_bad_input(simulation: Simulation, words: str) -> None:
     arguments = {"keyframes": [Keyframe(target={"tip": (0.19, 0.01)})], **BAD[words]}
     with pytest.raises(InputError, match=words):
         solve_ik_trajectory(simulation, **arguments)
+
+
+def test_a_course_without_end_is_refused_before_memory_is_asked_for() -> None:
+    simulation = Simulation(strip_robot())
+    target = {"tip": tuple(simulation.solve(np.array([0.01, 0.0])).markers["tip"].tolist())}
+    for slow in ({"hold": 1e9}, {"speed": 1e-12}):
+        with pytest.raises(InputError, match="samples, more than 100,000"):
+            solve_ik_trajectory(simulation, [target, target], **slow)

@@ -130,3 +130,10 @@ def test_progress_is_told() -> None:
 def test_bad_options_are_refused(count: int, tolerance: float, words: str) -> None:
     with pytest.raises(InputError, match=words):
         path_dependence(Simulation(arch()), {}, count=count, tolerance=tolerance)
+
+
+def test_a_seed_below_zero_is_refused(unchecked: None) -> None:
+    simulation = Simulation(strip_robot())
+    for seed in (-1, 0.5, "a"):
+        with pytest.raises(InputError, match="seed must be a whole number"):
+            path_dependence(simulation, np.zeros(2), seed=seed)  # type: ignore[arg-type]

@@ -108,8 +108,10 @@ class LinearModel:
         if curvature is not None:
             hessian = matrix.T @ matrix + curvature[np.ix_(active, active)] * scale[:, None] * scale
             values, axes = np.linalg.eigh(hessian)
-            root = np.sqrt(np.maximum(values, _FLAT * max(values[-1], np.finfo(float).tiny)))[:, None] * axes.T
-            matrix, aim = root, np.linalg.solve(root.T, -matrix.T @ right)
+            bends = np.abs(values)  # downhill of a crest too, as far as the radius allows
+            root = np.sqrt(np.maximum(bends, _FLAT * bends.max(initial=0.0)))[:, None] * axes.T
+            if bends.any():
+                matrix, aim = root, np.linalg.solve(root.T, -matrix.T @ right)
         limits, room = self._limits(radius)
         step = None
         for share in _SHARES:

@@ -215,6 +215,12 @@ def _check_times(course: Course | StraightCourse, pace: Pace, timed: list[Found]
 
 def _sampled(times: Vector, rate: float) -> tuple[Vector, np.ndarray]:
     """Even steps in each leg, its ends among them; and where these are."""
+    seconds = float(times[-1] - times[0])
+    if not seconds * rate <= _MOST_SAMPLES:
+        raise InputError(
+            f"the course would take {seconds:.3g} s and {seconds * rate:.3g} samples, more than {_MOST_SAMPLES:,}; "
+            "allow a larger speed, or hold for less long"
+        )
     counts = np.maximum(np.ceil(np.diff(times) * rate - 1e-9).astype(int), 1)
     parts = [
         np.linspace(begin, end, count, endpoint=False)
@@ -265,3 +271,6 @@ _ACCELERATION = 0.2
 
 _HAIR = 1e-9
 """Limits hold to this share of them."""
+
+_MOST_SAMPLES = 100_000
+"""A trajectory of more samples is a slip: each is an equilibrium."""
