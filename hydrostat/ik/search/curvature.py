@@ -12,7 +12,7 @@ class Curvature:
     """An estimate of sum r_i d2r_i, which counts where a target is out of reach (Dennis, Gay and Welsch 1981).
 
     It follows from how the slopes of the residual change along a step. It is used only while it tells the objective
-    better than Gauss-Newton alone does, and forgotten when a cable becomes taut or slack.
+    better than Gauss-Newton alone does and that falls slowly, and forgotten when a cable becomes taut or slack.
     """
 
     def __init__(self) -> None:
@@ -44,6 +44,8 @@ class Curvature:
             self._trusted = abs(missed) > _POOR * fallen
         else:
             self._trusted = abs(missed - 0.5 * float(step @ known @ step)) < abs(missed)
+        if new.residual @ new.residual < _FALLS * (old.residual @ old.residual):
+            self._trusted = False
         self._matrix = _updated(
             known, step, new.gradient() - old.gradient(new.residual), new.gradient() - old.gradient()
         )
@@ -68,6 +70,9 @@ def _updated(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndar
     outer = np.outer(miss, total)
     return known + (outer + outer.T) / along - float(step @ miss) / along**2 * np.outer(total, total)
 
+
+_FALLS = 0.25
+"""Where squares fall to less than this share in a step, Gauss-Newton is on its way to a target in reach."""
 
 _POOR = 0.1
 """Gauss-Newton is poor if it misses the fall of the objective by this share."""
