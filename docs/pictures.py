@@ -53,7 +53,7 @@ def draw_dance() -> None:
     """The starfish of the gallery through its poses and back to rest."""
     robot = hs.load_robot(gallery_folder("starfish"))
     trajectory = hs.solve_ik_trajectory(hs.Simulation(robot), list(robot.poses.values()), loop=True)
-    save_png(draw_trajectory(robot, trajectory, title=""), HERE / "trajectory.png", dpi=80)
+    save_png(draw_trajectory(robot, trajectory, title=""), HERE / "trajectory.png", dpi=140)
 
 
 def draw_hand() -> None:
