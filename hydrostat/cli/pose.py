@@ -144,10 +144,10 @@ def _tell(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -
 
 def _warn(simulation: "Simulation", reached: "ReachedPose") -> None:
     """Say it if the contractions alone do not decide the pose (E20): at once from rest they may lead to another."""
-    import numpy as np
+    from hydrostat.simulation.largest_distance import largest_distance
 
     pose = simulation.solve(reached.pose.contractions, strict=False)
-    away = float(np.linalg.norm(pose.nodes - reached.pose.nodes, axis=1).max())
+    away = largest_distance(pose.nodes, reached.pose.nodes)
     if pose.result.converged and away > _APART * simulation.robot.body.mesh.size:
         print(f"  note: at once from rest these contractions lead to another pose, up to {1e3 * away:.1f} mm away;")
         print("  take them in step by step, or see `hydrostat branches`")

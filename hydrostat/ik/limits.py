@@ -84,8 +84,8 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
     spread = np.zeros((len(channels), count))
     spread[np.arange(len(channels)), channels] = 1.0
     low, high = _ranges(robot, limits.contraction)
-    largest = _by_winch(robot, limits.tension, "tension", "N")
-    reach = _by_winch(robot, limits.rate, "rate", "m/s")
+    largest = limit_by_winch(robot, limits.tension, "tension", "N")
+    reach = limit_by_winch(robot, limits.rate, "rate", "m/s")
     if limits.rate is not None:
         if limits.interval is None:
             raise InputError("a limit on the rate needs an interval above 0 s, the time since the start")
@@ -146,8 +146,12 @@ def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vec
     return values[:, 0], values[:, 1]
 
 
-def _by_winch(robot: Robot, given: float | Mapping[str, float] | None, what: str, unit: str) -> Vector:
-    """A number for each winch, infinite where none is given."""
+def limit_by_winch(robot: Robot, given: float | Mapping[str, float] | None, what: str, unit: str) -> Vector:
+    """A limit for each winch, infinite where none is given.
+
+    Raises:
+        InputError: a winch that the robot does not have, or a limit not above 0.
+    """
     if given is None:
         return np.full(len(robot.winches), np.inf)
     if isinstance(given, Mapping):

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.kernel import KERNEL
+from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 
@@ -127,33 +127,34 @@ the kink, no gradient vanishes there, and Newton stops without a descent.
 """
 
 
+@njit(**INNER)
+@no_type_check
+def _segment(term, nodes, stencils, weights, offsets, roundings, span):
+    """Length of a segment, and its span."""
+    square = roundings[term] * roundings[term]
+    for axis in range(nodes.shape[1]):
+        span[axis] = offsets[term, axis]
+        for corner in range(stencils.shape[1]):
+            span[axis] += weights[term, corner] * nodes[stencils[term, corner], axis]
+        square += span[axis] * span[axis]
+    return math.sqrt(square)
+
+
 @njit(**KERNEL)
 @no_type_check
 def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
     """Span and length of every segment."""
     for term in range(stencils.shape[0]):
-        square = roundings[term] * roundings[term]
-        for axis in range(nodes.shape[1]):
-            span = offsets[term, axis]
-            for corner in range(stencils.shape[1]):
-                span += weights[term, corner] * nodes[stencils[term, corner], axis]
-            spans[term, axis] = span
-            square += span * span
-        lengths[term] = math.sqrt(square)
+        lengths[term] = _segment(term, nodes, stencils, weights, offsets, roundings, spans[term])
 
 
 @njit(**KERNEL)
 @no_type_check
 def _lengths(nodes, stencils, weights, offsets, roundings, cables, lengths):
     """Add up the lengths of the segments of each cable."""
+    span = np.empty(nodes.shape[1])
     for term in range(stencils.shape[0]):
-        square = roundings[term] * roundings[term]
-        for axis in range(nodes.shape[1]):
-            span = offsets[term, axis]
-            for corner in range(stencils.shape[1]):
-                span += weights[term, corner] * nodes[stencils[term, corner], axis]
-            square += span * span
-        lengths[cables[term]] += math.sqrt(square)
+        lengths[cables[term]] += _segment(term, nodes, stencils, weights, offsets, roundings, span)
 
 
 @njit(**KERNEL)

@@ -167,7 +167,7 @@ def test_limits_by_winch_and_wrong_ones() -> None:
     found = Pace.of(robot, {"down": 0.02}, None)
     assert found.speed.tolist() == [np.inf, 0.02]
     assert np.isinf(found.acceleration).all()
-    with pytest.raises(InputError, match=r"a limit on the speed must be above 0 m/s, not 0"):
+    with pytest.raises(InputError, match=r"a limit on the speed must be a number above 0 m/s, not 0"):
         Pace.of(robot, 0.0, None)
     with pytest.raises(InputError, match="tail"):
         Pace.of(robot, None, {"tail": 1.0})

@@ -9,6 +9,7 @@ from scipy.optimize import nnls
 from hydrostat.arrays import Vector
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import Moves, Posture
+from hydrostat.ik.objectives.postures import follows
 from hydrostat.ik.search.least_squares import least_squares
 from hydrostat.mechanics import Stiffness, TensionLaw
 from hydrostat.simulation import Simulation
@@ -55,10 +56,9 @@ def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut:
     loose = np.zeros(len(cables.winches), dtype=bool)
     loose[taut] = posture.stretches[taut] <= 0
     tangents = cables.law.tangent(np.where(loose, 0.5 * cables.law.smoothing, posture.stretches))
-    follows = np.zeros((len(cables.winches), len(simulation.robot.winches)))
-    follows[np.arange(len(cables.winches)), cables.winches] = 1.0
-    moves = stiffness.response(np.diag(tangents)) @ follows
-    stretches = follows + stiffness.columns.T @ moves
+    own = follows(simulation)
+    moves = stiffness.response(np.diag(tangents)) @ own
+    stretches = own + stiffness.columns.T @ moves
     return Moves(
         nodes=moves.reshape(*posture.nodes.shape, -1), stretches=stretches, tensions=tangents[:, None] * stretches
     )

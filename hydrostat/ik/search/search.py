@@ -10,6 +10,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import Moves, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.postures import follows, posture_of
 from hydrostat.ik.search.least_squares import least_squares
 from hydrostat.ik.search.linear_model import LinearModel, channels, slopes
 from hydrostat.mechanics import NewtonResult
@@ -275,11 +276,8 @@ class Search:
 
     def _direct(self, posture: Posture) -> Slopes:
         """Slopes of terms that look at contractions or slack, while no cable pulls more."""
-        winches, cables = len(self.bounds.channels), self.simulation.cables.winches
-        follows = (cables[:, None] == np.arange(winches)).astype(float)
-        still = Moves(
-            nodes=np.zeros((*posture.nodes.shape, winches)), stretches=follows, tensions=np.zeros_like(follows)
-        )
+        own = follows(self.simulation)
+        still = Moves(nodes=np.zeros((*posture.nodes.shape, own.shape[1])), stretches=own, tensions=np.zeros_like(own))
         return self._rows(posture, still)
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> State | None:
@@ -293,7 +291,8 @@ class Search:
         """What the terms see, where the nodes come to rest to first order."""
         contractions = self.bounds.spread @ values
         sharp = result.residual <= self.simulation.allowed(result.nodes, contractions)
-        posture = self._posture(result.nodes if sharp else self._resting(result, contractions), contractions)
+        nodes = result.nodes if sharp else self._resting(result, contractions)
+        posture = posture_of(self.simulation, nodes, contractions)
         errors: dict[str, float] = {}
         for term in self.terms:
             errors.update(term.errors(posture))
@@ -315,13 +314,6 @@ class Search:
             return result.nodes
         gradient = self.simulation.assembly.gradient(result.nodes, contractions)
         return result.nodes - result.stiffness.solve(gradient).reshape(result.nodes.shape)
-
-    def _posture(self, nodes: Nodes, contractions: Vector) -> Posture:
-        cables = self.simulation.cables
-        stretches = cables.stretches(nodes, contractions)
-        return Posture(
-            nodes=nodes, contractions=contractions, stretches=stretches, tensions=cables.law.tension(stretches)
-        )
 
     def _idle(self, state: State) -> State:
         """Slack channels go where the terms want them, else towards rest or the edge of taut: nothing moves by that."""

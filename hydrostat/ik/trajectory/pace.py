@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.errors import InputError
+from hydrostat.ik.limits import limit_by_winch
 from hydrostat.ik.trajectory.course import ACCELERATION_OF_REST, SPEED_OF_REST, Course, Keys, Peaks
 from hydrostat.robot import Robot
 
@@ -35,8 +35,8 @@ class Pace:
             InputError: a winch that it does not have, or a limit not above 0.
         """
         return cls(
-            speed=_by_winch(robot, speed, "speed", "m/s"),
-            acceleration=_by_winch(robot, acceleration, "acceleration", "m/s^2"),
+            speed=limit_by_winch(robot, speed, "speed", "m/s"),
+            acceleration=limit_by_winch(robot, acceleration, "acceleration", "m/s^2"),
         )
 
     def share(self, speeds: Peaks, accelerations: Peaks) -> Vector:
@@ -86,21 +86,6 @@ def linear(keys: Keys, lengths: Vector, pace: Pace, *, least: float) -> Course:
 
 def _times(lengths: Vector) -> Vector:
     return np.concatenate([[0.0], np.cumsum(lengths)])
-
-
-def _by_winch(robot: Robot, given: ByWinch | None, what: str, unit: str) -> Vector:
-    if given is None:
-        return np.full(len(robot.winches), np.inf)
-    if isinstance(given, Mapping):
-        for name in given:
-            robot.winch(name)
-        values = [given.get(winch.name, np.inf) for winch in robot.winches]
-    else:
-        values = [given] * len(robot.winches)
-    for value in values:
-        if not value > 0:
-            raise InputError(f"a limit on the {what} must be above 0 {unit}, not {value:g}")
-    return np.array(values, dtype=float)
 
 
 _ROUNDS = 60

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.ik.trajectory.course import Samples
 from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation.largest_distance import largest_distance
 
 Tell = Callable[[str, int, int], None]
 """Is told the stage, how much of it is done, and how much there is."""
@@ -79,7 +78,7 @@ def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, hal
         return pose, 0.0
     predicted = _predicted(simulation, pose, goal)
     result = simulation.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
-    distance = _apart(result.nodes, predicted)
+    distance = largest_distance(result.nodes, predicted)
     if result.converged and result.stable and distance <= jump:
         return simulation.posed(goal, result), 0.0
     if halvings:
@@ -89,7 +88,7 @@ def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, hal
         end, second = _go(simulation, middle, goal, jump, halvings - 1)
         return end, max(first, second)
     found = simulation.solve(goal, start=pose, strict=False)
-    return found, _apart(found.nodes, predicted)
+    return found, largest_distance(found.nodes, predicted)
 
 
 def _predicted(simulation: Simulation, pose: SolvedPose, goal: Vector) -> Nodes:
@@ -98,11 +97,6 @@ def _predicted(simulation: Simulation, pose: SolvedPose, goal: Vector) -> Nodes:
         return pose.nodes + simulation.jacobian(pose) @ (goal - pose.contractions)
     except NotConvergedError:
         return pose.nodes
-
-
-def _apart(one: Nodes, other: Nodes) -> float:
-    """Largest distance of a node [m]."""
-    return float(np.linalg.norm(one - other, axis=1).max())
 
 
 _HALVINGS = 10
