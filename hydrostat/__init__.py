@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hydrostat.design import DesignOptions, Network, design_cables
+    from hydrostat.design import Constraints, Network, RouteOptions, TreeOptions, Zone, design_cables
     from hydrostat.errors import HydrostatError, InputError, NotConvergedError
     from hydrostat.fabrication import PatternOptions, export_kit
     from hydrostat.ik import (
@@ -59,7 +59,7 @@ __all__ = [
     "Cable",
     "CentreGoal",
     "Closeness",
-    "DesignOptions",
+    "Constraints",
     "Effort",
     "HydrostatError",
     "InputError",
@@ -84,6 +84,7 @@ __all__ = [
     "Profile",
     "ReachedPose",
     "Robot",
+    "RouteOptions",
     "ShapeGoal",
     "Simulation",
     "SolvedPose",
@@ -92,7 +93,9 @@ __all__ = [
     "Tracker",
     "Trajectory",
     "TrajectoryOptions",
+    "TreeOptions",
     "Winch",
+    "Zone",
     "__version__",
     "design_cables",
     "drawn_pose",
@@ -110,7 +113,7 @@ _HOMES = {
     "Cable": "robot",
     "CentreGoal": "ik",
     "Closeness": "ik",
-    "DesignOptions": "design",
+    "Constraints": "design",
     "Effort": "ik",
     "HydrostatError": "errors",
     "InputError": "errors",
@@ -135,6 +138,7 @@ _HOMES = {
     "Profile": "simulation",
     "ReachedPose": "ik",
     "Robot": "robot",
+    "RouteOptions": "design",
     "ShapeGoal": "ik",
     "Simulation": "simulation",
     "SolvedPose": "simulation",
@@ -143,7 +147,9 @@ _HOMES = {
     "Tracker": "ik",
     "Trajectory": "ik",
     "TrajectoryOptions": "ik",
+    "TreeOptions": "design",
     "Winch": "robot",
+    "Zone": "design",
     "design_cables": "design",
     "drawn_pose": "ik",
     "export_kit": "fabrication",

@@ -1,18 +1,29 @@
 """Which winches and cables reach given poses."""
 
-from hydrostat.design.activation import activate
+from hydrostat.design.constraints import Constraints
 from hydrostat.design.design_cables import design_cables
-from hydrostat.design.fibres import Fibres, edge_fibres, element_fibres
-from hydrostat.design.network import Activation, Network
-from hydrostat.design.options import DesignOptions, FibreKind
+from hydrostat.design.muscles.activation import Activation, activate
+from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
+from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, Stage, TreeTrace
+from hydrostat.design.route_options import RouteOptions
 from hydrostat.design.score_card import rest_error, score_card
+from hydrostat.design.tree_options import TreeOptions
+from hydrostat.design.zone import Zone
 
 __all__ = [
     "Activation",
-    "DesignOptions",
+    "Alternative",
+    "Certificate",
+    "Constraints",
     "FibreKind",
     "Fibres",
     "Network",
+    "RouteOptions",
+    "RouteTrace",
+    "Stage",
+    "TreeOptions",
+    "TreeTrace",
+    "Zone",
     "activate",
     "design_cables",
     "edge_fibres",

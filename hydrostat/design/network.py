@@ -1,41 +1,96 @@
 """`Network`: a designed robot with everything that tells how good it is and how it came about."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Int
 
-from hydrostat.arrays import Nodes, Vector
-from hydrostat.design.fibres import Fibres
-from hydrostat.design.judge import rms_error
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.error import rms_error
+from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.region import Route
+from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.tree_options import TreeOptions
 from hydrostat.ik import ReachedPose
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import Robot
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Activation:
-    """The muscle fibres that bring a body into a pose (R36, R38).
+class TreeTrace:
+    """How winch trees led to a network.
 
     Attributes:
-        target: the pose asked for.
-        fibres: all candidate muscles.
-        tensions: of each fibre [N], not negative.
-        nodes: positions of the nodes in the activated pose [m].
-        errors: distance of each targeted marker from its target [m].
+        activations: one for each pose (Fig 3.9a).
+        candidates: for each pose, the fibres that passed the threshold, strongest first (Fig 3.9b).
+        trees: routes that were grown from them [m] (Fig 3.9c).
+        score: the thesis's score of the network, between 0 and 1 (R43).
     """
 
-    target: Pose
-    fibres: Fibres
-    tensions: Vector
-    nodes: Nodes
-    errors: Mapping[str, float]
+    activations: tuple[Activation, ...]
+    candidates: tuple[Int[np.ndarray, " candidates"], ...]
+    trees: tuple[Route, ...]
+    score: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stage:
+    """A network on the way.
+
+    Attributes:
+        words: what was done, such as "a cable added to winch_1".
+        robot: with the network as it was then.
+        error: root of the mean squared marker error over all poses [m].
+    """
+
+    words: str
+    robot: Robot
+    error: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Certificate:
+    """What first-order optimality says of the network: what no small change, and no further cable, would gain.
+
+    Attributes:
+        further: rms error [m] that one more cable, with a winch of its own along the best path of all, promises.
+        paths: paths that were priced for it.
+        slope: the steepest fall of the error along an allowed move of a via point [m/m].
+    """
+
+    further: float
+    paths: int
+    slope: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RouteTrace:
+    """How priced routes led to a network.
+
+    Attributes:
+        stages: networks on the way, in order.
+        certificate: of the one that was returned; None where the work was interrupted.
+    """
+
+    stages: tuple[Stage, ...]
+    certificate: Certificate | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Alternative:
+    """Another network that was found, with other routes or other counts.
+
+    Attributes:
+        robot: with that network.
+        reached: what it reaches of each pose.
+    """
+
+    robot: Robot
+    reached: tuple[ReachedPose, ...]
 
     @property
     def rms_error(self) -> float:
-        """Root of the mean squared distance over the targeted markers [m]."""
-        return float(np.sqrt(np.mean(np.square(list(self.errors.values())))))
+        """Root of the mean squared marker error over all poses [m]."""
+        return rms_error(self.reached)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,23 +99,29 @@ class Network:
 
     Attributes:
         robot: the robot with the new network.
-        activations: one for each pose (Fig 3.9a).
-        candidates: for each pose, the fibres that passed the threshold, strongest first (Fig 3.9b).
-        trees: routes that were grown from them [m] (Fig 3.9c).
+        source: the robot that it was designed for.
+        method: "routes" or "trees".
         reached: what the new network reaches of each pose by its own winches; the true score (E24).
-        score: the thesis's score of the network, between 0 and 1 (R43).
-        tried: networks that were judged by their poses before this one was chosen.
+        alternatives: other networks, the best first; by counts where the number of winches was found.
+        trace: what led to it.
+        constraints: that it keeps.
+        options: of the method.
+        tried: networks whose poses were solved.
         seconds: CPU time of the design [s].
+        complete: whether the search came to its end; False where it was interrupted.
     """
 
     robot: Robot
-    activations: tuple[Activation, ...]
-    candidates: tuple[Int[np.ndarray, " candidates"], ...]
-    trees: tuple[Route, ...]
+    source: Robot
+    method: str
     reached: tuple[ReachedPose, ...]
-    score: float
+    alternatives: tuple[Alternative, ...] = ()
+    trace: TreeTrace | RouteTrace
+    constraints: Constraints
+    options: TreeOptions | RouteOptions
     tried: int
     seconds: float
+    complete: bool = True
 
     @property
     def rms_error(self) -> float:

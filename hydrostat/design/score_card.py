@@ -5,26 +5,22 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design.network import Network
-from hydrostat.design.options import DesignOptions
+from hydrostat.design.network import Network, RouteTrace, TreeTrace
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot, robot_hash
 
 
-def score_card(network: Network, source: Robot, options: DesignOptions, *, version: str) -> dict[str, Any]:
+def score_card(network: Network, *, version: str) -> dict[str, Any]:
     """Errors per pose and marker, tensions, contractions, lengths and time; SI units throughout.
 
     Args:
         network: what was designed.
-        source: the robot that it was designed for.
-        options: of the design.
         version: of hydrostat.
     """
     robot = network.robot
     return {
         "rms_error": network.rms_error,
         "rms_error_at_rest": rest_error(network),
-        "rms_error_with_all_fibres": float(np.sqrt(np.mean([a.rms_error**2 for a in network.activations]))),
         "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
         "winches": [{"name": winch.name, "at": list(winch.at)} for winch in robot.winches],
         "cables": [
@@ -32,15 +28,31 @@ def score_card(network: Network, source: Robot, options: DesignOptions, *, versi
             for cable in robot.cables
             for bare in [float(cable.segments[cable.bare].sum())]
         ],
-        "tree_score": network.score,
+        **_trace(network.trace),
+        "alternatives": [
+            {"winches": len(other.robot.winches), "cables": len(other.robot.cables), "rms_error": other.rms_error}
+            for other in network.alternatives
+        ],
         "networks_tried": network.tried,
         "cpu_seconds": network.seconds,
-        "method": "trees",
-        "seed": None,
-        "options": asdict(options),
+        "complete": network.complete,
+        "method": network.method,
+        "constraints": asdict(network.constraints),
+        "options": asdict(network.options),
         "version": version,
-        "source_robot": robot_hash(source),
+        "source_robot": robot_hash(network.source),
         "robot": robot_hash(robot),
+    }
+
+
+def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
+    """What the method says of itself."""
+    if isinstance(trace, TreeTrace):
+        fibres = float(np.sqrt(np.mean([activation.rms_error**2 for activation in trace.activations])))
+        return {"tree_score": trace.score, "rms_error_with_all_fibres": fibres}
+    return {
+        "stages": [{"what": stage.words, "rms_error": stage.error} for stage in trace.stages],
+        "certificate": None if trace.certificate is None else asdict(trace.certificate),
     }
 
 

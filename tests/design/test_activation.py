@@ -6,8 +6,8 @@ from builders import strip_robot
 from scipy.optimize import nnls
 
 from hydrostat.design import DesignOptions, activate, edge_fibres, element_fibres
-from hydrostat.design.activation import _Activation, least_effort
-from hydrostat.design.orientation import wanted_directions
+from hydrostat.design.muscles.activation import _Activation, least_effort
+from hydrostat.design.muscles.orientation import wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
 from hydrostat.robot import Pose
 from hydrostat.simulation import round_off

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design.judge import cost, judge, rms_error
+from hydrostat.design.trees.judge import cost, judge, rms_error
 from hydrostat.ik import solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation

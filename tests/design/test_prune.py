@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from builders import strip_robot
 
-from hydrostat.design.judge import cost, rms_error
-from hydrostat.design.prune import prune
+from hydrostat.design.trees.judge import cost, rms_error
+from hydrostat.design.trees.prune import prune
 from hydrostat.ik import ReachedPose, solve_ik
 from hydrostat.robot import Cable, Pose, Robot
 from hydrostat.simulation import Simulation

@@ -6,7 +6,7 @@ import shapely
 from builders import strip_robot
 
 from hydrostat.design.region import body_region
-from hydrostat.design.routes import GrowthLimits, grow_routes, lay_route, length, resample, strongest
+from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, length, resample, strongest
 
 LIMITS = GrowthLimits(distance=0.5, steps=20, turn=60.0, spacing=1.0)
 

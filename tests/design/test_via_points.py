@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from hydrostat.design.via_points import keep_apart
+from hydrostat.design.trees.via_points import keep_apart
 
 GAP = 0.004
 

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from builders import box_robot, strip_robot
 
-from hydrostat.design.fibres import edge_fibres
+from hydrostat.design.muscles.fibres import edge_fibres
 from hydrostat.design.network import Activation, Network
 from hydrostat.ik import InverseReason, ReachedPose
 from hydrostat.robot import Cable, Marker, Mount, Pin, Pose, Robot, Winch

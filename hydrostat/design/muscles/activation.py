@@ -1,34 +1,67 @@
 """`activate`: which muscle fibres, pulled how hard, bring a body into a pose (R36 to R38)."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.design.fibres import Fibres
-from hydrostat.design.network import Activation
-from hydrostat.design.options import DesignOptions
+from hydrostat.design.muscles.fibres import Fibres
 from hydrostat.geometry.anchors import locate
 from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import body_energies, round_off
 
 
-def activate(robot: Robot, target: Pose, fibres: Fibres, options: DesignOptions) -> Activation:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Activation:
+    """The muscle fibres that bring a body into a pose (R36, R38).
+
+    Attributes:
+        target: the pose asked for.
+        fibres: all candidate muscles.
+        tensions: of each fibre [N], not negative.
+        nodes: positions of the nodes in the activated pose [m].
+        errors: distance of each targeted marker from its target [m].
+    """
+
+    target: Pose
+    fibres: Fibres
+    tensions: Vector
+    nodes: Nodes
+    errors: Mapping[str, float]
+
+    @property
+    def rms_error(self) -> float:
+        """Root of the mean squared distance over the targeted markers [m]."""
+        return float(np.sqrt(np.mean(np.square(list(self.errors.values())))))
+
+
+def activate(robot: Robot, target: Pose, fibres: Fibres, *, effort: float = 1e-4, stages: int = 5) -> Activation:
     """Tensions t >= 0 of least effort that bring the markers near their targets.
 
     Minimises 1/2 |markers - targets|^2 + rho/2 |t|^2 by Gauss-Newton while the target moves from rest to where it
     should be. The thesis leaves the regulariser open (E26, M8): squared tensions make the answer unique and spread it
     over many fibres; a sum of tensions instead would be sparse, but folds a limb at one hinge and misses the pose.
+
+    Args:
+        robot: whose body it is.
+        target: where its markers should go.
+        fibres: the muscles.
+        effort: weight of squared tensions: the larger, the weaker the muscles and the error left.
+        stages: steps in which the target is approached.
     """
-    return _Activation(robot, target, fibres, options).run()
+    return _Activation(robot, target, fibres, effort, stages).run()
 
 
 class _Activation:
     """One run: body and fibres assembled, markers located."""
 
-    def __init__(self, robot: Robot, target: Pose, fibres: Fibres, options: DesignOptions) -> None:
+    def __init__(self, robot: Robot, target: Pose, fibres: Fibres, effort: float, stages: int) -> None:
         mesh = robot.body.mesh
-        self.robot, self.target, self.fibres, self.options = robot, target, fibres, options
+        self.robot, self.target, self.fibres = robot, target, fibres
+        self.effort, self.stages = effort, stages
         self.assembly = Assembly(
             [*body_energies(robot), fibres.energy()],
             rest=mesh.nodes,
@@ -45,9 +78,9 @@ class _Activation:
         tensions = np.zeros(len(self.fibres))
         start = self.anchors.positions(nodes)
         rho = self._weight(nodes, tensions)
-        for stage in range(1, self.options.stages + 1):
-            goals = start + (self.goals - start) * stage / self.options.stages
-            for _ in range(2 if stage < self.options.stages else 6):
+        for stage in range(1, self.stages + 1):
+            goals = start + (self.goals - start) * stage / self.stages
+            for _ in range(2 if stage < self.stages else 6):
                 nodes, tensions, moved = self._step(nodes, tensions, goals, rho)
                 if not moved:
                     break
@@ -62,7 +95,7 @@ class _Activation:
 
     def _weight(self, nodes: Nodes, tensions: Vector) -> float:
         """Rho [m^2/N^2], measured by what the strongest fibre can do at rest."""
-        return self.options.effort * float((self._jacobian(nodes, tensions) ** 2).sum(axis=0).max())
+        return self.effort * float((self._jacobian(nodes, tensions) ** 2).sum(axis=0).max())
 
     def _jacobian(self, nodes: Nodes, tensions: Vector) -> Float[np.ndarray, "rows fibres"]:
         """D markers / d tensions by the adjoint: one solve for each marker coordinate, none for each fibre."""

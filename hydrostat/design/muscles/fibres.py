@@ -1,6 +1,7 @@
 """`Fibres`: candidate muscles of a mesh, on its edges or one in each element (R37, E21)."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -8,6 +9,13 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Nodes
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics import FibreEnergy
+
+
+class FibreKind(StrEnum):
+    """Where the candidate muscles are (E21)."""
+
+    EDGES = "edges"
+    ELEMENTS = "elements"
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,10 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design.options import DesignOptions
+from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region, Route
-from hydrostat.design.routes import length
+from hydrostat.design.tree_options import TreeOptions
+from hydrostat.design.trees.grow_routes import length
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
@@ -36,14 +37,21 @@ class WinchTrees:
     """All routes of one body with the lead from every winch place to each of them."""
 
     def __init__(
-        self, mesh: Mesh, routes: list[Route], posed: list[Nodes], region: Region, options: DesignOptions
+        self,
+        mesh: Mesh,
+        routes: list[Route],
+        posed: list[Nodes],
+        region: Region,
+        constraints: Constraints,
+        options: TreeOptions,
     ) -> None:
         """Routes at rest, and the node positions of each activated pose `posed` [m]."""
-        self.mesh, self.routes, self.region, self.options = mesh, routes, region, options
-        self.places = np.flatnonzero(region.depths(mesh.nodes) >= options.winch_clearance)
+        self.mesh, self.routes, self.region = mesh, routes, region
+        self.constraints, self.options = constraints, options
+        self.places = np.flatnonzero(region.depths(mesh.nodes) >= constraints.winch_clearance)
         if not len(self.places):
             raise InputError(
-                f"no place of the body is {1e3 * options.winch_clearance:g} mm from its edge: no winch fits; "
+                f"no place of the body is {1e3 * constraints.winch_clearance:g} mm from its edge: no winch fits; "
                 "lower the winch clearance"
             )
         self.graph = _graph(mesh, region)
@@ -55,7 +63,7 @@ class WinchTrees:
         nodes = self.mesh.nodes
         rows = np.arange(len(self.places))
         for other in taken:
-            apart = np.linalg.norm(nodes[self.places[rows]] - nodes[other], axis=1) >= self.options.winch_gap
+            apart = np.linalg.norm(nodes[self.places[rows]] - nodes[other], axis=1) >= self.constraints.winch_gap
             rows = rows[apart]
         order = np.argsort(self.shortenings.mean(axis=1), kind="stable")
         order = order[~np.isin(order, list(used))]
@@ -90,7 +98,7 @@ class WinchTrees:
         row = int(np.flatnonzero(self.places == place)[0])
         points = self.routes[route][:: -1 if self.reversed[row, route] else 1]
         winch = self.mesh.nodes[place]
-        if np.linalg.norm(points[0] - winch) < 2 * self.options.spool_radius:
+        if np.linalg.norm(points[0] - winch) < 2 * self.constraints.spool_radius:
             return np.vstack([winch, points[1:]]), 0
         lead = self._lead_path(place, points[0])
         return np.vstack([lead, points]), len(lead)
@@ -108,7 +116,7 @@ class WinchTrees:
         onward = np.array([[route[1] - route[0], route[-2] - route[-1]] for route in self.routes]).reshape(ends.shape)
         arriving = ends - self.mesh.nodes[self.places][:, None]
         lengths = np.linalg.norm(arriving, axis=2) * np.linalg.norm(onward, axis=1)
-        back = (arriving * onward).sum(axis=2) < np.cos(np.radians(self.options.bend)) * lengths
+        back = (arriving * onward).sum(axis=2) < np.cos(np.radians(self.constraints.turn)) * lengths
         away += np.where(back, self.mesh.size, 0.0)
         pairs = away.reshape(len(self.places), len(self.routes), 2)
         return pairs.min(axis=2), pairs[:, :, 1] < pairs[:, :, 0]

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from hydrostat.design.judge import cost
+from hydrostat.design.trees.judge import cost
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation

@@ -1,15 +1,12 @@
 """`judge`: which of several robots reaches some poses best by its own winches (E24)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
-import numpy as np
-
+from hydrostat.design.error import rms_error
+from hydrostat.design.progress import Progress
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
-
-Progress = Callable[[str, int, int], None]
-"""Told the stage, how much of it is done, and how much there is."""
 
 _ROUNDS = tuple(InverseOptions(iterations=steps, restarts=0, unique=False) for steps in (3, 4, 100))
 """Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
@@ -57,8 +54,3 @@ def cost(reached: Sequence[ReachedPose], tension: float) -> float:
     """Pose error [m], times how often the largest tension exceeds `tension` [N] if it does."""
     largest = max(float(pose.pose.tensions.max(initial=0.0)) for pose in reached)
     return rms_error(reached) * max(largest / tension, 1.0)
-
-
-def rms_error(reached: Sequence[ReachedPose]) -> float:
-    """Root of the mean squared marker error over poses [m]."""
-    return float(np.sqrt(np.mean([pose.rms_error**2 for pose in reached])))

@@ -1,19 +1,13 @@
-"""`DesignOptions`: every number that steers the design of a network."""
+"""`TreeOptions`: every number that steers the thesis's way to a network."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 
-
-class FibreKind(StrEnum):
-    """Where the candidate muscles are (E21)."""
-
-    EDGES = "edges"
-    ELEMENTS = "elements"
+from hydrostat.design.muscles.fibres import FibreKind
 
 
 @dataclass(frozen=True, kw_only=True)
-class DesignOptions:
-    """How a network is designed; lengths in units of the mean mesh edge unless said otherwise (M8 to M10).
+class TreeOptions:
+    """How winch trees are grown; lengths in units of the mean mesh edge unless said otherwise (M8 to M10).
 
     Attributes:
         fibres: a muscle on every mesh edge, or one in every element.
@@ -27,18 +21,8 @@ class DesignOptions:
         phis: weights of the mean against the spread in the score to try (R43, E23).
         shares: most ways to share the cables among the winches to try, the evenest first.
         trials: most networks whose poses are solved (E24).
-        tension: largest tension [N] that a cable should bear: on a spool of 6 mm that asks a motor for 0.12 N m.
         loss: how much of the pose error leaving out cables may add, as a fraction.
         lead_penalty: how much the score loses for a lead as long as the body.
-        sheathed_leads: whether leads from a winch to where its cables begin to pull run in sheaths (R14).
-        clearance: least distance of a cable from the edge of the body [m].
-        winch_clearance: least distance of a winch from the edge of the body [m].
-        winch_gap: least distance between two winches [m].
-        hole_gap: least distance between two holes through which cables pass the cloth [m].
-        bend: sharpest turn of a finished cable, where its lead joins its route included [degrees].
-        travel: travel of the winches [m].
-        release: release of the winches [m].
-        spool_radius: of the winches [m].
     """
 
     fibres: FibreKind = FibreKind.EDGES
@@ -52,15 +36,5 @@ class DesignOptions:
     phis: tuple[float, ...] = (0.2, 0.5, 0.8)
     shares: int = 12
     trials: int = 64
-    tension: float = 20.0
     loss: float = 0.02
     lead_penalty: float = 0.1
-    sheathed_leads: bool = True
-    clearance: float = 0.005
-    winch_clearance: float = 0.012
-    winch_gap: float = 0.025
-    hole_gap: float = 0.004
-    bend: float = 90.0
-    travel: float = 0.06
-    release: float = 0.0
-    spool_radius: float = 0.006

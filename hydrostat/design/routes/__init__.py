@@ -1,0 +1,1 @@
+"""Cables priced by the adjoint field of the pose error, and moved to where it is least."""

@@ -1,0 +1,269 @@
+"""`design_trees`: from poses to winches and cables, as the thesis has it, judged by the pose error (R35 to R46)."""
+
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import combinations, islice, product
+from math import comb
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.muscles.activation import Activation, activate
+from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
+from hydrostat.design.muscles.orientation import wanted_directions
+from hydrostat.design.network import Network, TreeTrace
+from hydrostat.design.progress import Progress
+from hydrostat.design.region import Route, body_region
+from hydrostat.design.tree_options import TreeOptions
+from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, length, sharpest_turn, strongest
+from hydrostat.design.trees.judge import judge
+from hydrostat.design.trees.prune import prune
+from hydrostat.design.trees.via_points import keep_apart
+from hydrostat.design.trees.winch_tree import Tree, WinchTrees
+from hydrostat.errors import HydrostatError
+from hydrostat.robot import Cable, Pose, Robot, Winch
+
+
+def design_trees(
+    robot: Robot,
+    poses: list[Pose],
+    *,
+    winches: int,
+    cables: int,
+    constraints: Constraints,
+    options: TreeOptions,
+    progress: Progress,
+) -> Network:
+    """Winch trees: the network of the thesis's method that reaches the poses best.
+
+    Muscle fibres reach each pose; the strongest are joined to routes; a winch is put where the routes it pulls score
+    best; what it uses is removed and the next winch is placed (E25). This is done for every combination of thresholds,
+    distances, weights and shares of the options, and of all these networks the one is returned that reaches the poses
+    best by its own winches (E24) without pulling too hard, less the cables that it does as well without. Nothing is
+    drawn at random.
+
+    Raises:
+        InputError: a body that is not flat or too thin.
+        HydrostatError: no network can be built from the muscles that were found.
+    """
+    return _Design(robot, poses, winches, cables, constraints, options, progress).run()
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """Winch trees that were chosen from all that one set of candidates allows."""
+
+    candidates: tuple[np.ndarray, ...]
+    trees: WinchTrees
+    chosen: list[Tree]
+
+    @property
+    def score(self) -> float:
+        """Mean score of its winches (R43)."""
+        return float(np.mean([tree.score for tree in self.chosen]))
+
+    @property
+    def key(self) -> object:
+        """The same for two plans of the same network."""
+        return tuple(
+            (tree.place, tuple(self.trees.routes[index].tobytes() for index in tree.routes)) for tree in self.chosen
+        )
+
+
+class _Design:
+    """One run."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        poses: list[Pose],
+        winches: int,
+        cables: int,
+        constraints: Constraints,
+        options: TreeOptions,
+        progress: Progress,
+    ) -> None:
+        self.robot, self.poses, self.options, self.progress = robot, poses, options, progress
+        self.constraints = constraints
+        self.winches, self.cables = winches, cables
+        self.mesh = robot.body.mesh
+        self.region = body_region(robot.body, constraints.clearance)
+        spans = np.diff(self.mesh.nodes[self.mesh.edges], axis=1)[:, 0]
+        self.spacing = float(np.linalg.norm(spans, axis=1).mean())
+
+    def run(self) -> Network:
+        began = time.process_time()
+        activations = self._activations()
+        built = self._build_all(_shortlist(self._plans(activations)))
+        if not built:
+            raise HydrostatError(
+                f"no network of {self.winches} winches and up to {self.cables} cables could be built: too few "
+                "routes of strong muscles keep clear of one another and of the edge of the body; ask for fewer "
+                "winches, lower the clearance, or choose a pose that bends the body more"
+            )
+        best, reached = judge(
+            [robot for _, robot in built], self.poses, tension=self.constraints.tension, progress=self.progress
+        )
+        plan, designed = built[best]
+        designed, reached = prune(
+            designed, self.poses, reached, tension=self.constraints.tension, loss=self.options.loss
+        )
+        return Network(
+            robot=designed,
+            source=self.robot,
+            method="trees",
+            reached=reached,
+            trace=TreeTrace(
+                activations=activations,
+                candidates=plan.candidates,
+                trees=tuple(plan.trees.routes),
+                score=plan.score,
+            ),
+            constraints=self.constraints,
+            options=self.options,
+            tried=len(built),
+            seconds=time.process_time() - began,
+        )
+
+    def _build_all(self, plans: Iterable["_Plan"]) -> list[tuple["_Plan", Robot]]:
+        """The first of the plans that can be built, with their robots."""
+        robots = ((plan, self._build(plan.trees, plan.chosen)) for plan in plans)
+        return list(islice(((plan, robot) for plan, robot in robots if robot), self.options.trials))
+
+    def _plans(self, activations: tuple[Activation, ...]) -> list[list["_Plan"]]:
+        """For each threshold, distance and phi, a plan for every share of cables among winches."""
+        groups = []
+        shares = list(islice(_shares(self.cables, self.winches), self.options.shares))
+        variants = list(product(self.options.thresholds, self.options.distances))
+        for done, (threshold, distance) in enumerate(variants):
+            self.progress("Growing winch trees", done, len(variants))
+            candidates, routes = self._routes(activations, threshold, distance)
+            if not routes:
+                continue
+            posed = [activation.nodes for activation in activations]
+            trees = WinchTrees(self.mesh, routes, posed, self.region, self.constraints, self.options)
+            for phi in self.options.phis:
+                plans = (_Plan(candidates, trees, self._plant(trees, share, phi)) for share in shares)
+                groups.append([plan for plan in plans if len(plan.chosen) == self.winches])
+        self.progress("Growing winch trees", len(variants), len(variants))
+        return groups
+
+    def _activations(self) -> tuple[Activation, ...]:
+        found = []
+        for index, pose in enumerate(self.poses):
+            self.progress("Activating muscles", index, len(self.poses))
+            found.append(self._activation(pose))
+        self.progress("Activating muscles", len(self.poses), len(self.poses))
+        return tuple(found)
+
+    def _activation(self, pose: Pose) -> Activation:
+        return activate(self.robot, pose, self._fibres(pose), effort=self.options.effort, stages=self.options.stages)
+
+    def _fibres(self, pose: Pose) -> Fibres:
+        if self.options.fibres is FibreKind.EDGES:
+            return edge_fibres(self.mesh)
+        return element_fibres(self.mesh, wanted_directions(self.robot, pose))
+
+    def _routes(
+        self, activations: tuple[Activation, ...], threshold: int, distance: float
+    ) -> tuple[tuple[np.ndarray, ...], list[Route]]:
+        """Candidate fibres of each pose, and the routes laid through them."""
+        limits = GrowthLimits(
+            distance=distance * self.spacing,
+            steps=self.options.growth_steps,
+            turn=self.options.turn,
+            spacing=self.spacing,
+        )
+        candidates, laid = [], []
+        for activation in activations:
+            kept = strongest(activation.tensions, threshold)
+            ends = activation.fibres.ends(self.mesh.nodes)[kept]
+            grown = grow_routes(ends, activation.tensions[kept], limits)
+            laid += [lay_route(route, self.region, 2 * self.spacing) for route in grown]
+            candidates.append(kept)
+        shortest = self.options.shortest * self.spacing
+        routes = [route for route in laid if route is not None and length(route) >= shortest]
+        return tuple(candidates), _apart(routes, self.spacing)
+
+    def _plant(self, trees: WinchTrees, share: tuple[int, ...], phi: float) -> list[Tree]:
+        """Winch after winch, each with the routes that are left (E25)."""
+        used, taken, chosen = set(), [], []
+        for count in share:
+            tree = trees.best(count, used, taken, phi)
+            if tree is None:
+                break
+            used |= set(tree.routes)
+            taken.append(tree.place)
+            chosen.append(tree)
+        return chosen
+
+    def _build(self, trees: WinchTrees, chosen: list[Tree]) -> Robot | None:
+        """The network as a robot; None if a cable leaves the body, turns too sharply, or cannot be kept apart."""
+        pulled = [
+            (index, *trees.cable_points(tree.place, route))
+            for index, tree in enumerate(chosen)
+            for route in tree.routes
+        ]
+        laid = keep_apart(
+            [points for _, points, _ in pulled],
+            gap=self.constraints.hole_gap,
+            winch_gap=2 * self.constraints.spool_radius,
+        )
+        if laid is None or not all(self.region.holds(points) for points in laid):
+            return None
+        if max(map(sharpest_turn, laid)) > self.constraints.turn:
+            return None
+        winches = [self._winch(index, tree) for index, tree in enumerate(chosen)]
+        cables = []
+        for (index, _, lead), points in zip(pulled, laid, strict=True):
+            sheathed = ((0, lead),) if lead and self.constraints.leads else ()
+            cables.append(Cable(winch=winches[index].name, points=tuple(map(_point, points)), sheathed=sheathed))
+        return self.robot.with_network(winches, cables)
+
+    def _winch(self, index: int, tree: Tree) -> Winch:
+        return Winch(
+            name=f"winch_{index + 1}",
+            at=_point(self.mesh.nodes[tree.place]),
+            spool_radius=self.constraints.spool_radius,
+            travel=self.constraints.travel,
+            release=self.constraints.release,
+        )
+
+
+def _point(coordinates: Vector) -> tuple[float, ...]:
+    """Coordinates to a hundredth of a millimetre, as nobody places a cable finer."""
+    return tuple(round(float(value), 5) for value in coordinates)
+
+
+def _shares(cables: int, winches: int) -> Iterator[tuple[int, ...]]:
+    """Ways to share cables among winches, at least one each; the evenest first."""
+    ways = combinations(range(1, cables), winches - 1) if comb(cables - 1, winches - 1) <= 5000 else ()
+    shares = [tuple(np.diff([0, *cuts, cables]).tolist()) for cuts in ways]
+    even = tuple(cables // winches + (index < cables % winches) for index in range(winches))
+    yield from sorted({*shares, even}, key=lambda share: (max(share) - min(share), [-count for count in share]))
+
+
+def _shortlist(groups: list[list["_Plan"]]) -> list["_Plan"]:
+    """The best plan of every group, then every second best, and so on; each network once.
+
+    Scores of one group compare, those of different phi do not.
+    """
+    ranked = [sorted(group, key=lambda plan: -plan.score) for group in groups]
+    plans: dict[object, _Plan] = {}
+    for rank in range(max(map(len, ranked), default=0)):
+        for group in ranked:
+            if rank < len(group):
+                plans.setdefault(group[rank].key, group[rank])
+    return list(plans.values())
+
+
+def _apart(routes: list[Route], spacing: float) -> list[Route]:
+    """Routes without those that run along an earlier one."""
+    kept: list[Route] = []
+    for route in routes:
+        near = [np.linalg.norm(route[:, None] - other[None], axis=2).min(axis=1) < 0.6 * spacing for other in kept]
+        if not any(close.mean() > 0.6 for close in near):
+            kept.append(route)
+    return kept
