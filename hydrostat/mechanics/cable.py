@@ -14,7 +14,7 @@ from hydrostat.mechanics.tension_law import TensionLaw
 
 
 class CableEnergy(Energy):
-    """Sum of U(s) over frictionless cables, s = l(x) - l(X) + a - slack [m] (R23 to R27, E1, E11, E12).
+    """Sum of U(s) over frictionless cables, s = l(x) - l(X) + ratio a - slack [m] (R23 to R27, E1, E11, E12).
 
     A term is a segment of a cable that is not sheathed: a sheathed one keeps its rest length, so it is left out of l.
     The span of a segment is d = sum of weights x nodes + offset: between two anchors in the body, or from a point fixed
@@ -36,6 +36,7 @@ class CableEnergy(Energy):
         law: TensionLaw,
         winches: Int[np.ndarray, " cables"],
         slack: Vector,
+        ratios: Vector | None = None,
     ) -> None:
         """Cables on the rest shape `nodes`.
 
@@ -48,12 +49,14 @@ class CableEnergy(Energy):
             law: tension against stretch, of each cable.
             winches: whose contraction each cable follows.
             slack: of each cable, taken in before it begins to be taut [m].
+            ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
         """
         self.stencils = np.ascontiguousarray(stencils)
         self.weights, self.offsets = np.ascontiguousarray(weights), np.ascontiguousarray(offsets)
         self.cables, self.winches = cables, winches
         self.controls = winches[cables]
         self.law, self.slack = law, slack
+        self.ratios = np.ones(len(winches)) if ratios is None else ratios
         self.roundings = np.zeros(len(cables))
         self.roundings = np.maximum(_ROUNDING * self._spans(nodes)[1], np.finfo(float).tiny ** 0.5)
         self.rest_lengths = self.lengths(nodes)
@@ -64,9 +67,13 @@ class CableEnergy(Energy):
         _lengths(nodes, self.stencils, self.weights, self.offsets, self.roundings, self.cables, lengths)
         return lengths
 
+    def taken(self, controls: Vector) -> Vector:
+        """What each cable takes in [m]."""
+        return self.ratios * controls[self.winches]
+
     def stretches(self, nodes: Nodes, controls: Vector) -> Vector:
         """S [m]: how much longer each cable is than it should be; negative when slack."""
-        return self.lengths(nodes) - self.rest_lengths + controls[self.winches] - self.slack
+        return self.lengths(nodes) - self.rest_lengths + self.taken(controls) - self.slack
 
     def tensions(self, nodes: Nodes, controls: Vector) -> Vector:
         """T of each cable [N]."""
@@ -82,7 +89,7 @@ class CableEnergy(Energy):
         return self.bends(nodes, self.tensions(nodes, controls))
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self._pull(nodes, self.law.tangent(self.stretches(nodes, controls)))
+        return self._pull(nodes, self.ratios * self.law.tangent(self.stretches(nodes, controls)))
 
     def low_rank(
         self, nodes: Nodes, controls: Vector

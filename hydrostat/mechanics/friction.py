@@ -43,6 +43,7 @@ class FrictionCableEnergy(Energy):
         slack: Vector,
         friction: Vector,
         turns: Turns,
+        ratios: Vector | None = None,
     ) -> None:
         """Cables at rest on the rest shape `nodes`, which have not yet slipped.
 
@@ -57,6 +58,7 @@ class FrictionCableEnergy(Energy):
             slack: of each cable, taken in before it begins to be taut [m]; at the winch.
             friction: coefficient mu of each cable.
             turns: where they turn; their points are the segments after them.
+            ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
         """
         first = np.append(True, np.diff(cables) != 0)[: len(cables)]
         heads = first | (friction[cables] > 0)
@@ -71,6 +73,7 @@ class FrictionCableEnergy(Energy):
             law=law,
             winches=winches[owners],
             slack=np.where(firsts, slack[owners], 0.0),
+            ratios=None if ratios is None else ratios[owners],
         )
         self.stencils, self.controls = self._spans.stencils, self._spans.controls
         lengths = self._spans.rest_lengths
@@ -91,7 +94,7 @@ class FrictionCableEnergy(Energy):
     def stretches(self, nodes: Nodes, controls: Vector) -> Vector:
         """S of each span [m] if nothing slips."""
         spans = self._spans
-        moved = np.where(self._firsts, controls[spans.winches] - spans.slack, self.slips)
+        moved = np.where(self._firsts, spans.taken(controls) - spans.slack, self.slips)
         passed = np.append(np.where(self._firsts, 0.0, self.slips)[1:], 0.0)
         return spans.lengths(nodes) - spans.rest_lengths + moved - passed
 
@@ -195,7 +198,7 @@ class FrictionCableEnergy(Energy):
 
     def _by_control(self, tangents: Small) -> Vector:
         """Slope of the tension of each span along the contraction of its winch [N/m]."""
-        return tangents[np.arange(len(tangents)), self.law.starts[self._owners]]
+        return self._spans.ratios * tangents[np.arange(len(tangents)), self.law.starts[self._owners]]
 
     def _with(self, limits: Vector, slips: Vector) -> "FrictionCableEnergy":
         other = copy(self)

@@ -25,6 +25,8 @@ class Cable:
         sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length (R14, E11).
         friction: coefficient mu at the via points: where it bends by an angle, its tension differs between the two
             sides by at most a factor exp(mu * angle) (capstan).
+        spool_radius: of its own step on the shaft of its winch [m]; None: that of the winch. It takes in as much more
+            than the winch's contraction as this radius is larger.
 
     Raises:
         InputError: fewer than two points, coincident points, or a number out of its range.
@@ -37,6 +39,7 @@ class Cable:
     slack: float = 0.0
     sheathed: tuple[tuple[int, int], ...] = ()
     friction: float = 0.0
+    spool_radius: float | None = None
 
     def __post_init__(self) -> None:
         count = len(self.points)
@@ -51,6 +54,8 @@ class Cable:
         check_positive("stiffness", self.stiffness, "N/m")
         check_positive("smoothing", self.smoothing, "m")
         check_not_negative("slack", self.slack, "m")
+        if self.spool_radius is not None:
+            check_positive("spool_radius", self.spool_radius, "m")
         if not 0 <= self.friction <= LARGEST_FRICTION:
             raise InputError(f"friction must be at least 0 and at most {LARGEST_FRICTION:g}, not {self.friction:g}")
         for start, end in self.sheathed:

@@ -6,6 +6,7 @@ from typing import Self
 
 import numpy as np
 
+from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
@@ -15,6 +16,9 @@ from hydrostat.robot.pin import Pin
 from hydrostat.robot.point import Point
 from hydrostat.robot.pose import Pose
 from hydrostat.robot.winch import Mount, Winch
+
+LARGEST_STEP = 4.0
+"""The spool of a cable is at most so many times larger or smaller than its winch's: more is no step on one shaft."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,6 +86,19 @@ class Robot:
             raise InputError(f'there is no pose "{name}"; {_choices("poses", list(self.poses))}')
         return self.poses[name]
 
+    @property
+    def spool_ratios(self) -> Vector:
+        """What each cable takes in when its winch takes in 1 m, by the radii of their spools, (cables,)."""
+        radii = {winch.name: winch.spool_radius for winch in self.winches}
+        own = [(cable.spool_radius or radii[cable.winch]) / radii[cable.winch] for cable in self.cables]
+        return np.array(own, dtype=float)
+
+    def largest_spool(self, winch: Winch) -> float:
+        """Radius of the largest step on the shaft of a winch [m]."""
+        return max(
+            [winch.spool_radius, *(cable.spool_radius or 0 for cable in self.cables if cable.winch == winch.name)]
+        )
+
     def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
         """The same robot with other winches and cables."""
         return replace(self, winches=tuple(winches), cables=tuple(cables))
@@ -140,13 +157,23 @@ class Robot:
                 winch = self.winch(cable.winch)
             except InputError as error:
                 raise InputError(f"cable[{index}].winch: {error}") from None
+            self._check_spool(index, cable, winch)
             gap = float(np.linalg.norm(np.subtract(cable.points[0], winch.at)))
-            if gap > (0.0 if winch.mount is Mount.WORLD else 2 * winch.spool_radius):
+            if gap > (0.0 if winch.mount is Mount.WORLD else 2 * max(winch.spool_radius, cable.spool_radius or 0.0)):
                 raise InputError(
                     f"cable[{index}].points[0]: a cable begins at its winch, "
                     f'but this is {self._text(gap)} from winch "{winch.name}" at {self._text(winch.at)}'
                 )
             self._check_inside(f"cable[{index}].points", cable.points, skip_first=winch.mount is Mount.WORLD)
+
+    def _check_spool(self, index: int, cable: Cable, winch: Winch) -> None:
+        radius, usual = cable.spool_radius or winch.spool_radius, winch.spool_radius
+        if max(radius, usual) > (1 + 1e-9) * LARGEST_STEP * min(radius, usual):
+            raise InputError(
+                f"cable[{index}].spool_radius must be from {self._text(usual / LARGEST_STEP)} to "
+                f"{self._text(usual * LARGEST_STEP)}, at most {LARGEST_STEP:g} times smaller or larger than that of "
+                f'winch "{winch.name}", not {self._text(radius)}'
+            )
 
     def _check_inside(self, key: str, points: Iterable[Point], *, skip_first: bool = False) -> None:
         points = list(points)

@@ -177,6 +177,7 @@ class CableTable(Table):
     slack: Length | None = None
     sheathed: list[Pair] | None = None
     friction: Number | None = None
+    spool_radius: Length | None = None
 
 
 class MarkerTable(Table):

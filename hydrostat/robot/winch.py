@@ -17,12 +17,12 @@ class Mount(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Winch:
-    """All cables of a winch share its contraction (R12, R27).
+    """All cables of a winch share its contraction, on the spool of the winch or on steps of their own (R12, R27).
 
     Attributes:
         name: unique in the robot.
         at: place in the rest pose [m].
-        spool_radius: [m].
+        spool_radius: at which contraction, travel and release are measured [m].
         travel: the most cable it can take in [m].
         release: the most cable it can let out beyond the rest length [m].
         mount: `Mount.WORLD` fixes `at` in space: there its cables begin.

@@ -194,7 +194,8 @@ class _Writer:
     def cable(self, cable: Cable) -> dict[str, Any]:
         entry: dict[str, Any] = {"winch": cable.winch, "points": self.points(cable.points)}
         entry["stiffness"] = units.format_quantity(cable.stiffness, units.STIFFNESS)
-        entry.update(_lengths({"smoothing": cable.smoothing, "slack": cable.slack or None}))
+        lengths = {"smoothing": cable.smoothing, "slack": cable.slack or None, "spool_radius": cable.spool_radius}
+        entry.update(_lengths(lengths))
         if cable.sheathed:
             entry["sheathed"] = [list(pair) for pair in cable.sheathed]
         if cable.friction:

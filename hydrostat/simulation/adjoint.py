@@ -60,8 +60,8 @@ def sensitivity(
 ) -> Sensitivity:
     """Slopes of L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, for all theta with one solve.
 
-    A tension is T(s) with s = l(x) - l(X) + a - slack: what is given by tensions adds dL/dT T' dl/dx to dL/dx, and
-    dL/dT dT/dtheta to the slopes.
+    A tension is T(s) with s = l(x) - l(X) + ratio a - slack: what is given by tensions adds dL/dT T' dl/dx to dL/dx,
+    and dL/dT dT/dtheta to the slopes.
 
     Args:
         robot: whose pose it is.
@@ -92,7 +92,7 @@ def sensitivity(
     field = field.reshape(assembly.shape)
     young, poisson, density, thickness = _by_body(robot, assembly, pose, field)
     return Sensitivity(
-        contractions=np.bincount(cables.winches, by_stretch, len(robot.winches)).astype(float),
+        contractions=np.bincount(cables.winches, cables.ratios * by_stretch, len(robot.winches)).astype(float),
         slack=-by_stretch,
         routes=points.by_cable(_by_routes(points, cables, pose.nodes, field, by_stretch, pulls)),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,

@@ -141,4 +141,5 @@ def _runs(robot: Robot) -> dict[str, Any]:
         ),
         "winches": np.array([order[cable.winch] for cable in cables], dtype=np.int64),
         "slack": np.array([cable.slack for cable in cables]),
+        "ratios": robot.spool_ratios,
     }

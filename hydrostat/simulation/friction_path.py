@@ -15,7 +15,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation.solved_pose import SolvedPose
 
 _INCREMENT = 0.05
-"""Largest increment of a contraction, as a share of the length of the winch's shortest cable."""
+"""Largest increment of a contraction, as a share of that which would take in a whole cable of the winch."""
 
 _HALVINGS = 4
 """So often is an increment halved that finds no equilibrium."""
@@ -63,9 +63,11 @@ class FrictionPath:
         """The physics of a robot at rest; `cables` is one of the energies of `assembly`."""
         self._rest = _State(robot.body.mesh.nodes, np.zeros(len(robot.winches)), cables)
         self._assembly, self._options, self._round_off, self._warp = assembly, options, round_off, warp
+        wholes = [
+            (cable.winch, cable.length / ratio) for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
+        ]
         lengths = [
-            min((cable.length for cable in robot.cables if cable.winch == winch.name), default=np.inf)
-            for winch in robot.winches
+            min((whole for own, whole in wholes if own == winch.name), default=np.inf) for winch in robot.winches
         ]
         self._increment = _INCREMENT * np.array(lengths)
 

@@ -90,7 +90,7 @@ def cable(
 
 
 def cables(dim: int, random: np.random.Generator) -> State:
-    """Four cables of different laws: slack, in the cubic zone, and two taut ones on the same winch."""
+    """Four cables of different laws: slack, in the cubic zone, and two taut ones on two steps of the same winch."""
     mesh = rough_mesh(dim, random)
     owners = np.array([0, 0, 1, 2, 2, 2, 3])
     ends = [locate(mesh, random.uniform(0.1, 0.9, (len(owners), dim)) * SIZE[dim]) for _ in range(2)]
@@ -102,6 +102,7 @@ def cables(dim: int, random: np.random.Generator) -> State:
         "cables": owners,
         "law": law,
         "winches": np.array([0, 2, 1, 1]),
+        "ratios": np.array([0.7, 1.6, 1.0, 2.3]),
     }
     nodes, controls = deform(mesh, random), random.uniform(0, 0.02, CONTROLS)
     stretches = CableEnergy(mesh.nodes, slack=np.zeros(4), **arguments).stretches(nodes, controls)

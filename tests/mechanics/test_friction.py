@@ -13,6 +13,7 @@ from hydrostat.testing.differences import central_differences
 
 LAW = TensionLaw(stiffness=np.array([4e3, 2e3]), smoothing=np.array([0.5e-3, 0.2e-3]))
 MU = np.array([0.3, 0.0])
+RATIOS = np.array([1.7, 0.6])
 POINTS = 5
 
 
@@ -104,6 +105,7 @@ def rubbing(dim: int, random: np.random.Generator, *, stretch: float, slipping: 
         winches=np.array([1, 0]),
         slack=np.array([0.002, 0.001]),
         friction=MU,
+        ratios=RATIOS,
         turns=Turns(
             **{name: np.stack([rough[before], rough[after]]) for name, (rough, _) in parts.items()},
             points=np.array([1, 2, 2]),
@@ -111,7 +113,7 @@ def rubbing(dim: int, random: np.random.Generator, *, stretch: float, slipping: 
     )
     nodes, controls = deform(mesh, random), random.uniform(0, 0.02, 3)
     stretches = energy.stretches(nodes, controls)
-    controls[[1, 0]] += stretch - np.array([stretches[:3].sum(), stretches[3]])
+    controls[[1, 0]] += (stretch - np.array([stretches[:3].sum(), stretches[3]])) / RATIOS
     limits = np.append(0.0, random.uniform(0.1, 0.3, 2)) * (1.0 if slipping else 1e5)
     return Rubbing(energy.with_limits(np.append(limits, 0.0)), nodes, controls)
 
@@ -157,6 +159,7 @@ def test_without_limits_it_is_a_cable_without_friction(dim: int) -> None:
         law=LAW,
         winches=np.array([1, 0]),
         slack=np.array([0.002, 0.001]),
+        ratios=RATIOS,
     )
     assert energy.tensions(nodes, controls) == pytest.approx(plain.tensions(nodes, controls), rel=1e-12)
     assert energy.value(nodes, controls) == pytest.approx(plain.value(nodes, controls), rel=1e-12)

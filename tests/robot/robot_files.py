@@ -113,6 +113,7 @@ smoothing = "0.7 mm"
 slack = "2 mm"
 sheathed = [[0, 1], [2, 3]]
 friction = 0.15
+spool_radius = "4.5 mm"
 
 [[cable]]
 winch = "世界"

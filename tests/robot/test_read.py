@@ -144,6 +144,27 @@ LINES = [
         'winch = "left"\nsheathed = [[0, 2]]',
         "line 29: cable[0].sheathed: the whole cable is sheathed",
     ),
+    (
+        'winch = "left"',
+        'winch = "left"\nspool_radius = "0 mm"',
+        "line 29: cable[0].spool_radius must be finite and above 0, not 0 m",
+    ),
+    (
+        'winch = "left"',
+        'winch = "left"\nspool_radius = 4',
+        "line 29: cable[0].spool_radius: 4 has no unit",
+    ),
+    (
+        'winch = "left"',
+        'winch = "left"\nspool_radius = "12.1 mm"',
+        "line 29: cable[0].spool_radius must be from 0.75 mm to 12 mm, at most 4 times smaller or larger than that of "
+        'winch "left", not 12.1 mm',
+    ),
+    (
+        'winch = "left"',
+        'winch = "left"\nspool_radius = "0.74 mm"',
+        "line 29: cable[0].spool_radius must be from 0.75 mm to 12 mm",
+    ),
     # gravity, viscosity, relaxation, volume, friction
     (
         "format = 1",

@@ -103,6 +103,8 @@ def test_every_key(unit: str, tmp_path: Path) -> None:
     cable = robot.cables[0]
     assert (cable.stiffness, cable.smoothing, cable.slack, cable.sheathed) == (4400, 0.0007, 0.002, ((0, 1), (2, 3)))
     assert [cable.friction for cable in robot.cables] == [0.15, 0.0]
+    assert [cable.spool_radius for cable in robot.cables] == [0.0045, None]
+    assert robot.spool_ratios == pytest.approx([1.5, 1.0], rel=1e-15)
     assert robot.pose("wave").targets["हाथ"] == pytest.approx((-1e-3 * factor, 1e3 * factor))
     assert list(robot.poses) == ["wave", "rest"]
     check_round_trip(robot, tmp_path / "there")
@@ -174,6 +176,7 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
         smoothing=draw(LENGTH),
         slack=draw(LENGTH | st.just(0.0)),
         friction=draw(st.floats(0, 2)),
+        spool_radius=draw(st.none() | st.floats(0.25, 4).map(lambda ratio: ratio * winch.spool_radius)),
     )
     numbers = {"young": LENGTH, "poisson": st.floats(0, 0.499), "density": LENGTH}
     name = draw(st.sampled_from(["", *MATERIALS]))

@@ -63,12 +63,22 @@ def heavy_patches(robot: Robot) -> Robot:
     return replace(robot, body=replace(robot.body, material=RUBBER, volume=Volume.PATCH), gravity=down)
 
 
+def stepped(robot: Robot) -> Robot:
+    """Its cables on spools of 1.5 and 0.7 times the radius of their winches."""
+    radii = [
+        factor * robot.winch(cable.winch).spool_radius for factor, cable in zip((1.5, 0.7), robot.cables, strict=True)
+    ]
+    cables = (replace(cable, spool_radius=radius) for cable, radius in zip(robot.cables, radii, strict=True))
+    return robot.with_network(robot.winches, cables)
+
+
 CASES = {
     "taut": (strip(), [0.02, 0.009]),
     "large": (strip(), [0.05, 0.0095]),
     "cubic zone": (strip(), [0.004, 0.0098]),
     "one slack": (strip(), [0.02, -0.01]),
     "shared winch": (strip(shared=True), [0.01]),
+    "steps of one shaft": (stepped(strip(shared=True)), [0.01]),
     "sheathed": (strip(sheathed=((1, 2),)), [0.02, 0.011]),
     "world": (strip(mount=Mount.WORLD), [0.015, 0.013]),
     "patches with weight": (heavy_patches(strip(sheathed=((0, 1),))), [0.02, 0.009]),
