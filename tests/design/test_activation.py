@@ -5,7 +5,7 @@ import pytest
 from builders import strip_robot
 from scipy.optimize import nnls
 
-from hydrostat.design import DesignOptions, activate, edge_fibres, element_fibres
+from hydrostat.design import activate, edge_fibres, element_fibres
 from hydrostat.design.muscles.activation import _Activation, least_effort
 from hydrostat.design.muscles.orientation import wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
@@ -51,7 +51,7 @@ def test_a_reachable_pose_is_reached_by_muscles_that_pull(kind: str) -> None:
     robot = strip_robot()
     mesh = robot.body.mesh
     fibres = edge_fibres(mesh) if kind == "edges" else element_fibres(mesh, wanted_directions(robot, BENT))
-    found = activate(robot, BENT, fibres, DesignOptions())
+    found = activate(robot, BENT, fibres)
     assert found.rms_error < 2e-3 * mesh.size
     assert found.tensions.min() >= 0
     assert found.errors == {"tip": pytest.approx(found.rms_error)}
@@ -60,7 +60,7 @@ def test_a_reachable_pose_is_reached_by_muscles_that_pull(kind: str) -> None:
 def test_more_effort_leaves_more_error_and_weaker_muscles() -> None:
     robot = strip_robot(columns=8, rows=2)
     fibres = edge_fibres(robot.body.mesh)
-    free, dear = (activate(robot, BENT, fibres, DesignOptions(effort=effort)) for effort in (1e-5, 1e-1))
+    free, dear = (activate(robot, BENT, fibres, effort=effort) for effort in (1e-5, 1e-1))
     assert free.rms_error < dear.rms_error
     assert np.linalg.norm(free.tensions) > np.linalg.norm(dear.tensions)
 
@@ -68,7 +68,7 @@ def test_more_effort_leaves_more_error_and_weaker_muscles() -> None:
 def test_the_jacobian_by_the_adjoint() -> None:
     robot = strip_robot(columns=6, rows=2)
     fibres = edge_fibres(robot.body.mesh)
-    run = _Activation(robot, BENT, fibres, DesignOptions())
+    run = _Activation(robot, BENT, fibres, 1e-4, 5)
     random = np.random.default_rng(0)
     tensions = np.where(random.random(len(fibres)) < 0.4, random.uniform(0, 1.0, len(fibres)), 0.0)
 

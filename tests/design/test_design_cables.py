@@ -9,7 +9,7 @@ import shapely
 from builders import box_robot, mesh_body, strip_mesh, strip_robot
 from robustness import EXAMPLES
 
-from hydrostat.design import DesignOptions, FibreKind, Network, design_cables
+from hydrostat.design import Constraints, FibreKind, Network, TreeOptions, TreeTrace, design_cables
 from hydrostat.design.region import body_region
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import plush_pattern
@@ -35,7 +35,8 @@ def body() -> Robot:
 @cache
 def designed(case: str) -> Network:
     poses, winches, cables, kind = CASES[case]
-    return design_cables(body(), poses, winches=winches, cables=cables, options=DesignOptions(fibres=kind, trials=12))
+    options = TreeOptions(fibres=kind, trials=12)
+    return design_cables(body(), poses, winches=winches, cables=cables, method="trees", options=options)
 
 
 def rest_error(robot: Robot, poses: tuple[Pose, ...]) -> float:
@@ -53,7 +54,8 @@ def test_a_design_has_what_was_asked_for(case: str, unchecked: None) -> None:
     assert winches <= len(robot.cables) <= cables
     assert {cable.winch for cable in robot.cables} == {winch.name for winch in robot.winches}
     assert [reached.target for reached in network.reached] == list(poses)
-    assert len(network.activations) == len(network.candidates) == len(poses)
+    assert isinstance(network.trace, TreeTrace)
+    assert len(network.trace.activations) == len(network.trace.candidates) == len(poses)
     assert 1 <= network.tried <= 12
     assert network.seconds > 0
 
@@ -75,22 +77,22 @@ def test_the_errors_told_are_those_of_the_robot(case: str, unchecked: None) -> N
 
 @pytest.mark.parametrize("case", CASES)
 def test_cables_and_winches_keep_their_distances(case: str, unchecked: None) -> None:
-    network, options = designed(case), DesignOptions()
+    network, limits = designed(case), Constraints()
     robot = network.robot
-    region = body_region(robot.body, options.clearance)
+    region = body_region(robot.body, limits.clearance)
     rim = region.body.boundary
     for cable in robot.cables:
         assert region.body.contains(shapely.LineString(cable.points))
-        assert rim.distance(shapely.LineString(cable.points)) >= 0.5 * options.clearance - 1e-5
+        assert rim.distance(shapely.LineString(cable.points)) >= 0.5 * limits.clearance - 1e-5
     at = np.array([winch.at for winch in robot.winches])
-    assert region.depths(at).min() >= options.winch_clearance - 1e-5
+    assert region.depths(at).min() >= limits.winch_clearance - 1e-5
     for index, place in enumerate(at):
-        assert np.linalg.norm(at[:index] - place, axis=1).min(initial=np.inf) >= options.winch_gap - 2e-5
+        assert np.linalg.norm(at[:index] - place, axis=1).min(initial=np.inf) >= limits.winch_gap - 2e-5
     points = [(index, np.array(point)) for index, cable in enumerate(robot.cables) for point in cable.points[1:]]
     for index, (cable, point) in enumerate(points):
         for other, neighbour in points[:index]:
             gap = float(np.linalg.norm(point - neighbour))
-            assert gap >= options.hole_gap - 2e-5 or (gap < 1e-5 and other != cable)
+            assert gap >= limits.hole_gap - 2e-5 or (gap < 1e-5 and other != cable)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -104,23 +106,25 @@ def test_cables_are_no_stubs(case: str, unchecked: None) -> None:
 
 def test_the_same_twice(unchecked: None) -> None:
     poses, winches, cables, kind = CASES["two poses"]
-    options = DesignOptions(fibres=kind, trials=12)
-    again = design_cables(body(), poses, winches=winches, cables=cables, options=options)
+    options = TreeOptions(fibres=kind, trials=12)
+    again = design_cables(body(), poses, winches=winches, cables=cables, method="trees", options=options)
     assert robot_hash(again.robot) == robot_hash(designed("two poses").robot)
     assert again.rms_error == designed("two poses").rms_error
 
 
 def test_the_robots_own_network_does_not_matter(unchecked: None) -> None:
     poses, winches, cables, kind = CASES["one winch"]
-    options = DesignOptions(fibres=kind, trials=12)
-    other = design_cables(strip_robot(), poses, winches=winches, cables=cables, options=options)
+    options = TreeOptions(fibres=kind, trials=12)
+    other = design_cables(strip_robot(), poses, winches=winches, cables=cables, method="trees", options=options)
     assert robot_hash(other.robot) == robot_hash(designed("one winch").robot)
 
 
 def test_progress_is_told() -> None:
     calls: list[tuple[str, int, int]] = []
-    options = DesignOptions(trials=3, thresholds=(40,), distances=(1.5,))
-    design_cables(body(), [UP], winches=1, cables=2, options=options, progress=lambda *call: calls.append(call))
+    options = TreeOptions(trials=3, thresholds=(40,), distances=(1.5,))
+    design_cables(
+        body(), [UP], winches=1, cables=2, method="trees", options=options, progress=lambda *call: calls.append(call)
+    )
     assert {stage for stage, _, _ in calls} == {"Activating muscles", "Growing winch trees", "Judging networks"}
     for stage in {stage for stage, _, _ in calls}:
         counts = [(done, total) for name, done, total in calls if name == stage]
@@ -137,8 +141,8 @@ def test_the_kit_accepts_designs_of_the_examples(
 ) -> None:
     """Every hole can be cut as drawn; and the design is of some use."""
     robot = load_robot(EXAMPLES / example)
-    options = DesignOptions(trials=12)
-    network = design_cables(robot, [robot.pose(pose)], winches=winches, cables=cables, options=options)
+    options = TreeOptions(trials=12)
+    network = design_cables(robot, [robot.pose(pose)], winches=winches, cables=cables, method="trees", options=options)
     assert plush_pattern(network.robot).panels
     assert network.rms_error < 0.6 * rest_error(robot, (robot.pose(pose),))
 
@@ -165,23 +169,23 @@ def thin_robot() -> Robot:
 )
 def test_what_cannot_be_designed(robot: Robot, poses: list[Pose], winches: int, cables: int, text: str) -> None:
     with pytest.raises(InputError, match=text) as caught:
-        design_cables(robot, poses, winches=winches, cables=cables)
+        design_cables(robot, poses, winches=winches, cables=cables, method="trees")
     assert "\n" not in str(caught.value)
 
 
 def test_a_body_without_room_for_a_winch() -> None:
     with pytest.raises(InputError, match="no winch fits"):
-        design_cables(body(), [UP], winches=1, cables=1, options=DesignOptions(winch_clearance=0.026))
+        design_cables(body(), [UP], winches=1, cables=1, method="trees", constraints=Constraints(winch_clearance=0.026))
 
 
 def test_more_winches_than_the_muscles_can_feed() -> None:
     with pytest.raises(HydrostatError, match=r"no network of 30 winches.*fewer winches"):
-        design_cables(body(), [UP], winches=30, cables=30, options=DesignOptions(thresholds=(20,)))
+        design_cables(body(), [UP], winches=30, cables=30, method="trees", options=TreeOptions(thresholds=(20,)))
 
 
 def test_a_pose_that_is_there_already() -> None:
     with pytest.raises(HydrostatError, match="bends the body more"):
-        design_cables(body(), [Pose(name="rest", targets={"tip": (0.2, 0.0)})], winches=1, cables=1)
+        design_cables(body(), [Pose(name="rest", targets={"tip": (0.2, 0.0)})], winches=1, cables=1, method="trees")
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -190,4 +194,4 @@ def test_no_cable_turns_sharply(case: str, unchecked: None) -> None:
     for cable in designed(case).robot.cables:
         spans = np.diff(np.array(cable.points), axis=0)
         turns = np.diff(np.unwrap(np.arctan2(spans[:, 1], spans[:, 0])))
-        assert np.abs(turns).max(initial=0.0) <= np.radians(DesignOptions().bend) + 1e-3
+        assert np.abs(turns).max(initial=0.0) <= np.radians(Constraints().turn) + 1e-3

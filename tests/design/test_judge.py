@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design.trees.judge import cost, judge, rms_error
+from hydrostat.design.error import rms_error
+from hydrostat.design.trees.judge import cost, judge
 from hydrostat.ik import solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation

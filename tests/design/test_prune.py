@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 from builders import strip_robot
 
-from hydrostat.design.trees.judge import cost, rms_error
+from hydrostat.design.error import rms_error
+from hydrostat.design.trees.judge import cost
 from hydrostat.design.trees.prune import prune
 from hydrostat.ik import ReachedPose, solve_ik
 from hydrostat.robot import Cable, Pose, Robot

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from builders import mesh_body, strip_mesh
 
-from hydrostat.design import DesignOptions
-from hydrostat.design.trees.design_trees import _apart, _shares
+from hydrostat.design import Constraints, TreeOptions
 from hydrostat.design.region import body_region
+from hydrostat.design.trees.design_trees import _apart, _shares
 from hydrostat.design.trees.winch_tree import WinchTrees, tree_score
 from hydrostat.geometry.mesh import Mesh
 
-OPTIONS = DesignOptions()
+OPTIONS, LIMITS = TreeOptions(), Constraints()
 
 
 def _used(nodes: np.ndarray, elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -35,7 +35,7 @@ def strip_trees(seed: int, *, poses: int = 1, **options: float) -> WinchTrees:
         share = np.interp(mesh.nodes[:, 1], np.linspace(-0.025, 0.025, 7), random.uniform(0.0, 0.4, 7))
         posed.append(np.column_stack([mesh.nodes[:, 0] * (1 - share), mesh.nodes[:, 1]]))
     routes = [row(y) for y in (-0.015, -0.01, -0.004, 0.003, 0.009, 0.015)]
-    return WinchTrees(mesh, routes, posed, body_region(mesh_body(mesh), 0.005), DesignOptions(**options))
+    return WinchTrees(mesh, routes, posed, body_region(mesh_body(mesh), 0.005), LIMITS, TreeOptions(**options))
 
 
 def test_the_score_by_hand() -> None:
@@ -91,7 +91,7 @@ def test_used_routes_and_taken_places_are_left_out() -> None:
     assert second is not None
     assert not set(first.routes) & set(second.routes)
     apart = np.linalg.norm(trees.mesh.nodes[first.place] - trees.mesh.nodes[second.place])
-    assert apart >= OPTIONS.winch_gap
+    assert apart >= LIMITS.winch_gap
     few = trees.best(5, {0, 1, 2, 3}, [], 0.5)
     assert few is not None
     assert few.routes == (4, 5)
@@ -108,7 +108,7 @@ def test_leads_stay_inside_and_begin_at_the_winch() -> None:
     region = body_region(body, 0.005)
     assert region.body.area == pytest.approx(0.1**2 - 0.04**2)
     route = np.array([[0.085, -0.03], [0.085, 0.0], [0.085, 0.03]])
-    trees = WinchTrees(body.mesh, [route], [body.mesh.nodes], region, OPTIONS)
+    trees = WinchTrees(body.mesh, [route], [body.mesh.nodes], region, LIMITS, OPTIONS)
     assert len(trees.places)
     for place in trees.places:
         points, lead = trees.cable_points(int(place), 0)
@@ -118,7 +118,7 @@ def test_leads_stay_inside_and_begin_at_the_winch() -> None:
         if lead:
             assert np.array_equal(points[lead:], route) or np.array_equal(points[lead:], route[::-1])
         else:
-            assert np.linalg.norm(points[0] - route, axis=1).min() < 2 * OPTIONS.spool_radius
+            assert np.linalg.norm(points[0] - route, axis=1).min() < 2 * LIMITS.spool_radius
 
 
 def test_a_route_is_pulled_from_its_nearer_end() -> None:
