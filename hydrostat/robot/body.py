@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -101,11 +102,16 @@ class Body:
             )
         raise InputError("a ready mesh has its own elements, their number cannot be chosen")
 
+    @cached_property
+    def solid(self) -> Solid | None:
+        """What the closed surface of a body in space encloses; None for other bodies."""
+        return None if self.healing is None else Solid(self.healing.surface)
+
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
         """How far points lie outside the body [m], 0 inside its drawing, its surface or its mesh."""
         distances = locate(self.mesh, points).distances
-        if self.healing is not None:
-            return np.where(distances > 0, np.maximum(Solid(self.healing.surface).distances(points), 0.0), 0.0)
+        if self.solid is not None:
+            return np.where(distances > 0, np.maximum(self.solid.distances(points), 0.0), 0.0)
         if self.outline is None:
             return distances
         from shapely import distance

@@ -10,6 +10,7 @@ from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
 from hydrostat.simulation.pose_file import pose_facts, write_pose
 from hydrostat.simulation.profile import Profile, read_profile, write_profile
+from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
@@ -28,6 +29,7 @@ __all__ = [
     "PathDependence",
     "PinShifts",
     "Profile",
+    "RigSlopes",
     "Sensitivity",
     "Simulation",
     "SolvedPose",
@@ -38,6 +40,7 @@ __all__ = [
     "path_dependence",
     "pose_facts",
     "read_profile",
+    "rig_slopes",
     "round_off",
     "write_motion",
     "write_pose",

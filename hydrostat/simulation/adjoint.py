@@ -94,7 +94,7 @@ def sensitivity(
     return Sensitivity(
         contractions=np.bincount(cables.winches, cables.ratios * by_stretch, len(robot.winches)).astype(float),
         slack=-by_stretch,
-        routes=points.by_cable(_by_routes(points, cables, pose.nodes, field, by_stretch, pulls)),
+        routes=points.by_cable(by_routes(points, cables, pose.nodes, field, by_stretch, pulls)),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
         pin_stiffness=_by_pins(robot, assembly, pose.nodes, field),
         young=young,
@@ -170,7 +170,7 @@ def _by_pins(robot: Robot, assembly: Assembly, nodes: Nodes, field: Nodes) -> Ve
     return -np.bincount(owners, works, len(counts)) / np.array([pin.stiffness for pin in robot.pins])
 
 
-def _by_routes(
+def by_routes(
     points: RoutePoints, cables: CableEnergy, nodes: Nodes, field: Nodes, by_stretch: Vector, pulls: Vector
 ) -> Points:
     """By the rest position of every point of every cable.

@@ -156,7 +156,7 @@ class Simulation:
             pose,
             nodes=nodes,
             tensions=tensions,
-            points=self._route_points,
+            points=self.route_points,
             response=partial(self.response, pose),
         )
 
@@ -300,7 +300,7 @@ class Simulation:
         return self.assembly.stiffness(self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches)))
 
     @cached_property
-    def _route_points(self) -> RoutePoints:
+    def route_points(self) -> RoutePoints:
         """What holds the points of the cables."""
         return route_points(self.robot)
 

@@ -1,0 +1,71 @@
+"""`rig_slopes`: how markers and tensions of a pose change with all that a cable is made of."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.simulation.adjoint import by_routes
+from hydrostat.simulation.simulation import Simulation
+from hydrostat.simulation.solved_pose import SolvedPose
+
+
+@dataclass(frozen=True, eq=False)
+class RigSlopes:
+    """Slopes of some numbers; a row for each coordinate of each marker asked for, then one for the tension of each cable.
+
+    Attributes:
+        contractions: by the contraction of each winch [m/m, N/m].
+        slack: by the slack of each cable [m/m, N/m].
+        ratios: by the spool ratio of each cable [m, N].
+        points: by the rest place of each point of each cable, cable after cable; as for `Sensitivity.routes`.
+        fields: the adjoint field of each row, H^-1 of its slope by the nodes, (rows, nodes, dim).
+    """
+
+    contractions: Float[np.ndarray, "rows winches"]
+    slack: Float[np.ndarray, "rows cables"]
+    ratios: Float[np.ndarray, "rows cables"]
+    points: Float[np.ndarray, "rows points dim"]
+    fields: Float[np.ndarray, "rows nodes dim"]
+
+
+def rig_slopes(simulation: Simulation, pose: SolvedPose, markers: list[int]) -> RigSlopes:
+    """Slopes of some markers and of all tensions at an equilibrium, by one adjoint solve for all rows.
+
+    Args:
+        simulation: of a robot whose cables have no friction.
+        pose: an equilibrium of it.
+        markers: numbers of the markers asked for.
+
+    Raises:
+        NotConvergedError: the Hessian is singular there: the pose is about to snap.
+    """
+    robot, cables = simulation.robot, simulation.cables
+    nodes, dim = pose.nodes, robot.body.mesh.dim
+    stretches = cables.stretches(nodes, pose.contractions)
+    tangents, pulls = cables.law.tangent(stretches), cables.law.tension(stretches)
+    columns = cables.columns(nodes)
+    rows = np.zeros((len(markers) * dim + len(tangents), nodes.size))
+    anchors = simulation.marker_anchors
+    for count, marker in enumerate(markers):
+        for axis in range(dim):
+            rows[count * dim + axis, anchors.stencils[marker] * dim + axis] = anchors.weights[marker]
+    own = np.zeros((len(rows), len(tangents)))
+    own[len(markers) * dim :] = np.eye(len(tangents))
+    rows += (own * tangents) @ columns.T
+    fields = simulation.response(pose, rows.T).T
+    by_stretch = tangents * (own - fields @ columns)
+    by_winch = np.zeros((len(tangents), len(robot.winches)))
+    by_winch[np.arange(len(tangents)), cables.winches] = cables.ratios
+    shaped = fields.reshape(len(rows), *nodes.shape)
+    by_point = [
+        by_routes(simulation.route_points, cables, nodes, field, lever, pulls)
+        for field, lever in zip(shaped, by_stretch, strict=True)
+    ]
+    return RigSlopes(
+        contractions=by_stretch @ by_winch,
+        slack=-by_stretch,
+        ratios=by_stretch * pose.contractions[cables.winches],
+        points=np.array(by_point).reshape(len(rows), -1, dim),
+        fields=shaped,
+    )
