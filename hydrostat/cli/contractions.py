@@ -38,6 +38,8 @@ def check_contraction(robot: "Robot", name: str, value: float, *, option: str = 
             f"note: winch {name} can take in from {0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
             f"{1e3 * value:g} mm is beyond it"
         )
-    shortest = min((cable.length for cable in robot.cables if cable.winch == name), default=float("inf"))
-    if value >= shortest:
-        raise InputError(f"{option} {name}: {1e3 * value:g} mm is all of a cable that is {1e3 * shortest:.3g} mm long")
+    for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
+        if cable.winch == name and ratio * value >= cable.length:
+            step = "" if ratio == 1 else f", by a spool {ratio:.3g} times that of the winch"
+            long = f"all of a cable that is {1e3 * cable.length:.3g} mm long"
+            raise InputError(f"{option} {name}: {1e3 * value:g} mm is {long}{step}")

@@ -55,7 +55,7 @@ class PanelLabels:
         """The name of each winch beside it."""
         for winch in robot.winches:
             if self._seam.contains(Point(place(winch.at))):
-                self._beside(winch.name, place(winch.at), gap=1e3 * winch.spool_radius + 1.5)
+                self._beside(winch.name, place(winch.at), gap=1e3 * robot.largest_spool(winch) + 1.5)
 
     def marker_names(self, robot: Robot, options: PatternOptions) -> None:
         """The name of each marker beside it, if asked for."""

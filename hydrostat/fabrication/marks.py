@@ -65,9 +65,9 @@ def cable_marks(robot: Robot, seam: Polygon, pinholes: Iterable[Pinhole]) -> tup
 
 
 def winch_marks(robot: Robot, seam: Polygon) -> tuple[Shape, ...]:
-    """A circle as large as the spool where each winch sits in the body."""
+    """A circle as large as the largest spool where each winch sits in the body."""
     return tuple(
-        Circle(layer=Layer.MARK, part=Part.WINCH, centre=place(winch.at), radius=1e3 * winch.spool_radius)
+        Circle(layer=Layer.MARK, part=Part.WINCH, centre=place(winch.at), radius=1e3 * robot.largest_spool(winch))
         for winch in robot.winches
         if seam.contains(shapely.Point(place(winch.at)))
     )

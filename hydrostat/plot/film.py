@@ -74,7 +74,8 @@ def winch_stops(robot: Robot) -> list[Stop]:
     """Each winch in turn taken in by half its travel; less where its cables are too short for that."""
     stops = []
     for index, winch in enumerate(robot.winches):
-        lengths = [cable.length for cable in robot.cables if cable.winch == winch.name]
+        pairs = zip(robot.cables, robot.spool_ratios, strict=True)
+        lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name]
         taken = np.zeros(len(robot.winches))
         taken[index] = min([winch.travel / 2, *((1 - LEAST_LEFT) * length for length in lengths)])
         words = f"{shorten(winch.name)} {MILLIMETRES * taken[index]:.0f} mm"

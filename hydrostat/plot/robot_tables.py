@@ -39,12 +39,14 @@ def winch_table(robot: Robot) -> Html:
 
 
 def cable_table(robot: Robot) -> Html:
-    """Length, via points and stopper of each cable."""
-    colours = winch_colours(robot)
+    """Length, via points and stopper of each cable; its spool's radius if that of one is not its winch's."""
+    colours, steps = winch_colours(robot), any(cable.spool_radius is not None for cable in robot.cables)
     rows = [
         (str(count), [swatch(colours[cable.winch]), cable.winch], number(MILLIMETRES * cable.length, 1),
-         str(len(cable.points) - 2), place(cable.points[-1]), f"{cable.stiffness / 1e3:.3g}")
+         str(len(cable.points) - 2), place(cable.points[-1]), f"{cable.stiffness / 1e3:.3g}",
+         *([number(MILLIMETRES * (cable.spool_radius or robot.winch(cable.winch).spool_radius), 1)] if steps else []))
         for count, cable in enumerate(robot.cables, 1)
     ]  # fmt: skip
-    heads = ("cable", "winch", "length [mm]", "via points", "stopper [mm]", "stiffness [N/mm]")
-    return table(heads, rows, numbers=(2, 3, 4, 5))
+    heads = ("cable", "winch", "length [mm]", "via points", "stopper [mm]", "stiffness [N/mm]",
+             *(["spool radius [mm]"] if steps else []))  # fmt: skip
+    return table(heads, rows, numbers=range(2, len(heads)))

@@ -170,7 +170,7 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
         ways[cable.winch] = ends[1] - ends[0]
     colours, winches = winch_colours(robot), _carried(film, rigging.winches)
     for index, winch in enumerate(robot.winches):
-        radius = min(max(winch.spool_radius, SPOOL[0] * size), SPOOL[1] * size)
+        radius = min(max(robot.largest_spool(winch), SPOOL[0] * size), SPOOL[1] * size)
         shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colours[winch.name])
         glb.add_copies(shape, winches[:, [index]], [shape.name])
     if robot.cables:

@@ -103,6 +103,32 @@ def test_travel_longer_than_cable(good: Robot) -> None:
     assert find_risks(replace(good, winches=released)) == [line]
 
 
+def test_travel_on_a_larger_step(good: Robot) -> None:
+    """Oracle: 20 mm at a winch of 3 mm are 60 mm on a step of 9 mm, of a cable of 42.6 mm."""
+    cables = (replace(good.cables[0], spool_radius=0.009), good.cables[1])
+    assert find_risks(replace(good, cables=cables)) == [
+        "winch[0] left: the travel of 20 mm, 60 mm at its spool, is longer than a cable that it pulls (42.6 mm outside "
+        "sheaths)",
+        "winch[1] right: only 10 mm from winch left, the spools collide",
+    ]
+
+
+def test_squeeze_on_a_larger_step(good: Robot) -> None:
+    """Oracle: the same cable on a winch whose travel is as much longer."""
+    tight = replace(good, body=with_range(good, squeeze=0.2))
+    whole, part = (
+        replace(tight, winches=(replace(good.winches[0], travel=travel), replace(good.winches[1], travel=0.001)))
+        for travel in (0.02, 0.01)
+    )
+    (expected,) = find_risks(whole)
+    (found,) = find_risks(replace(part, cables=(replace(part.cables[0], spool_radius=0.006), part.cables[1])))
+    amount = re.compile(r"by \d+ % on average")
+    assert amount.findall(found) == amount.findall(expected) != []
+    assert "full travel of 10 mm" in found
+    stays = re.compile(r"a travel of ([\d.]+) mm")
+    assert 2 * float(stays.findall(found)[0]) == pytest.approx(float(stays.findall(expected)[0]), rel=3e-3)
+
+
 def test_spools_collide(good: Robot) -> None:
     """Oracle: two spools of radius 6 mm, 10 mm apart."""
     winches = tuple(replace(winch, spool_radius=0.006) for winch in good.winches)

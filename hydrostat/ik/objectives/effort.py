@@ -26,7 +26,8 @@ class Effort(Objective):
     Attributes:
         of: what is kept small.
         weight: error, as a fraction of the body's size, that `scale` is worth.
-        scale: contraction or slack [m], or tension [N]; if left out, the travel of each winch, or 10 N.
+        scale: contraction or slack [m], or tension [N]; if left out, what each winch or cable takes in at full travel,
+            or 10 N.
     """
 
     of: EffortKind | str = EffortKind.CONTRACTION
@@ -50,7 +51,7 @@ class Effort(Objective):
         if kind is EffortKind.TENSION:
             return _Tension(weight / (scale or _TENSION))
         if kind is EffortKind.SLACK:
-            return _Slack(weight / (scale or travel[simulation.cables.winches]))
+            return _Slack(weight / (scale or simulation.cables.taken(travel)))
         return _Contraction(weight / (scale or travel))
 
 

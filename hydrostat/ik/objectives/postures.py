@@ -21,9 +21,9 @@ def posture_of(simulation: Simulation, nodes: Nodes, contractions: Vector) -> Po
 
 
 def follows(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
-    """B: 1 where a cable belongs to a winch."""
-    winches = np.arange(len(simulation.robot.winches))
-    return (simulation.cables.winches[:, None] == winches).astype(float)
+    """B: what a cable takes in when its winch takes in 1 m; 0 for other winches."""
+    cables, winches = simulation.cables, np.arange(len(simulation.robot.winches))
+    return np.where(cables.winches[:, None] == winches, cables.ratios[:, None], 0.0)
 
 
 def moves_at(simulation: Simulation, pose: SolvedPose) -> Moves:

@@ -11,7 +11,7 @@ from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import Moves, Posture
 from hydrostat.ik.objectives.postures import follows
 from hydrostat.ik.search.least_squares import least_squares
-from hydrostat.mechanics import Stiffness, TensionLaw
+from hydrostat.mechanics import CableEnergy, Stiffness
 from hydrostat.simulation import Simulation
 
 
@@ -22,7 +22,7 @@ class Channels:
     Attributes:
         gaps: what a slack channel takes in, without any effect, before its first cable is taut [m].
         beyond: what a channel whose tension falls to 0 to first order lets out further, to be slack indeed [m].
-        first: that cable, of each channel; the tautest one where it pulls already.
+        first: that cable, of each channel; where it pulls already, the one that the most letting out leaves taut.
         active: whether it has a cable that can become taut within the limits.
     """
 
@@ -32,18 +32,21 @@ class Channels:
     active: np.ndarray
 
 
-def channels(law: TensionLaw, posture: Posture, values: Vector, bounds: Bounds) -> Channels:
+def channels(cables: CableEnergy, posture: Posture, values: Vector, bounds: Bounds) -> Channels:
     """How far each channel is from pulling, or from not pulling, at contractions `values` of the channels [m]."""
     count = len(values)
     first = np.zeros(count, dtype=np.int64)
     gaps, beyond = np.full(count, np.inf), np.zeros(count)
+    law = cables.law
     fall = posture.tensions / np.maximum(law.tangent(posture.stretches), np.finfo(float).tiny)
+    pulled = posture.stretches / cables.ratios
     for channel in range(count):
         own = np.flatnonzero(bounds.cables == channel)
         if own.size:
-            first[channel] = cable = own[np.argmax(posture.stretches[own])]
-            gaps[channel] = max(-posture.stretches[cable], 0.0)
-            beyond[channel] = max(posture.stretches[cable] - fall[cable], 0.0) + 0.01 * law.smoothing[cable]
+            first[channel] = cable = own[np.argmax(pulled[own])]
+            gaps[channel] = max(-pulled[cable], 0.0)
+            left = max(posture.stretches[cable] - fall[cable], 0.0) + 0.01 * law.smoothing[cable]
+            beyond[channel] = left / cables.ratios[cable]
     return Channels(gaps, beyond, first, gaps <= bounds.high - values)
 
 

@@ -230,13 +230,14 @@ class Search:
 
     def tidied(self, state: State) -> State:
         """The state with channels that hardly pull let go, if the goals stay reached."""
-        law, posture = self.simulation.cables.law, state.posture
-        places = channels(law, posture, state.values, self.bounds)
+        cables, posture = self.simulation.cables, state.posture
+        places = channels(cables, posture, state.values, self.bounds)
         pulls = posture.tensions[places.first]
         hardly = (places.gaps == 0) & (pulls < _HARDLY * posture.tensions.max(initial=0.0))
         if not hardly.any():
             return state
-        values = state.values - np.where(hardly, posture.stretches[places.first] + places.beyond, 0.0)
+        pulled = (posture.stretches / cables.ratios)[places.first]
+        values = state.values - np.where(hardly, pulled + places.beyond, 0.0)
         found = self.follow(state, np.maximum(values, self.bounds.low))
         if found is not None and found.error > self.reached:
             found = self.follow(found, self.step(found, self.weight(found), self.options.largest_step).values)
@@ -261,7 +262,7 @@ class Search:
 
     def _model(self, state: State) -> LinearModel:
         assert state.result.stiffness is not None
-        places = channels(self.simulation.cables.law, state.posture, state.values, self.bounds)
+        places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
         moves = slopes(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
         matrix = self._rows(state.posture, moves)
         loose = places.gaps > _EDGE * self.bounds.span
@@ -317,7 +318,7 @@ class Search:
 
     def _idle(self, state: State) -> State:
         """Slack channels go where the terms want them, else towards rest or the edge of taut: nothing moves by that."""
-        gaps = channels(self.simulation.cables.law, state.posture, state.values, self.bounds).gaps
+        gaps = channels(self.simulation.cables, state.posture, state.values, self.bounds).gaps
         slack = (gaps > 0) & np.isfinite(gaps)
         if not slack.any():
             return state
@@ -371,7 +372,7 @@ _LEAST_WEIGHT = 1e-8
 def _full_tension(simulation: Simulation) -> float:
     """What the hardest cable would pull at the full travel of its winch, were the body linear [N]."""
     robot, cables = simulation.robot, simulation.cables
-    travel = np.array([winch.travel for winch in robot.winches])[cables.winches]
+    travel = cables.taken(np.array([winch.travel for winch in robot.winches]))
     compliance = simulation.stiffness(simulation.rest).compliance.diagonal()
     return float((travel / (1.0 / cables.law.stiffness + compliance)).max())
 

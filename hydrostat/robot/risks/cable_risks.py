@@ -104,12 +104,12 @@ def _squeezing(robot: Robot) -> Iterator[Found]:
     material = robot.body.material
     if material.largest_squeeze is None:
         return
-    for index, cable in enumerate(robot.cables):
+    for index, (cable, ratio) in enumerate(zip(robot.cables, robot.spool_ratios, strict=True)):
         winch = robot.winch(cable.winch)
         length = _length_inside(robot, cable)
-        squeeze = (winch.travel - cable.slack) / length
-        if winch.travel <= length and squeeze > material.largest_squeeze:
-            most = material.largest_squeeze * length + cable.slack
+        squeeze = (ratio * winch.travel - cable.slack) / length
+        if ratio * winch.travel <= length and squeeze > material.largest_squeeze:
+            most = (material.largest_squeeze * length + cable.slack) / ratio
             limit = known_up_to(material, f"{100 * material.largest_squeeze:.0f} %")
             text = (
                 f"the full travel of {mm(winch.travel)} would squeeze the body along the cable by "

@@ -44,22 +44,28 @@ def _idle(robot: Robot) -> Iterator[Found]:
 def _too_far(robot: Robot) -> Iterator[Found]:
     """Travel or release longer than a cable is."""
     for index, winch in enumerate(robot.winches):
-        lengths = [float(cable.segments[cable.bare].sum()) for cable in robot.cables if cable.winch == winch.name]
-        if not lengths:
+        pulled = [
+            (ratio, float(cable.segments[cable.bare].sum()))
+            for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
+            if cable.winch == winch.name
+        ]
+        if not pulled:
             continue
+        ratio, length = min(pulled, key=lambda one: one[1] / one[0])
         for key, far in (("travel", winch.travel), ("release", winch.release)):
-            if far > min(lengths):
+            if ratio * far > length:
+                step = "" if ratio == 1 else f", {mm(ratio * far)} at its spool,"
                 text = (
-                    f"the {key} of {mm(far)} is longer than a cable that it pulls ({mm(min(lengths))} outside sheaths)"
+                    f"the {key} of {mm(far)}{step} is longer than a cable that it pulls ({mm(length)} outside sheaths)"
                 )
-                yield Found(_name(robot, index), far / min(lengths), text)
+                yield Found(_name(robot, index), ratio * far / length, text)
 
 
 def _collisions(robot: Robot) -> Iterator[Found]:
     for index, winch in enumerate(robot.winches):
         for other in robot.winches[:index]:
             gap = float(np.linalg.norm(np.subtract(winch.at, other.at)))
-            if gap < winch.spool_radius + other.spool_radius:
+            if gap < robot.largest_spool(winch) + robot.largest_spool(other):
                 text = f"only {mm(gap)} from winch {other.name}, the spools collide"
                 yield Found(_name(robot, index), -gap, text)
 
@@ -70,7 +76,7 @@ def _sticking_out(robot: Robot) -> Iterator[Found]:
         return
     depths = cover(robot.body, np.array([robot.winches[index].at for index in inside], dtype=float))
     for index, depth in zip(inside, depths, strict=True):
-        radius = robot.winches[index].spool_radius
+        radius = robot.largest_spool(robot.winches[index])
         if depth < radius:
             edge = "edge" if robot.body.mesh.dim == 2 else "surface"
             text = f"a spool of radius {mm(radius)} sticks out, the {edge} is {mm(float(depth))} away; move it inward"
