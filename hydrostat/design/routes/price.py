@@ -1,0 +1,333 @@
+"""`price_paths`: the paths through a route graph along which one more cable lowers the pose error most."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Vector
+from hydrostat.design.routes.path_kernels import (
+    count_turns,
+    edge_products,
+    first_labels,
+    grow_additive,
+    grow_labels,
+    share_edges,
+    spread_leads,
+    walk_back,
+)
+from hydrostat.design.routes.route_graph import RouteGraph
+
+Moves = Float[np.ndarray, "edges rows"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathLimits:
+    """What a path may be.
+
+    Attributes:
+        hops: most edges of its bare part.
+        turn: sharpest turn at a via point, lead included, in the rest shape [degrees].
+        longest: greatest rest length, lead included [m]; None: any.
+    """
+
+    hops: int
+    turn: float
+    longest: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PricedPath:
+    """A cable that would help.
+
+    Attributes:
+        nodes: graph points of its bare part, from where the lead ends.
+        lead: graph points from its winch to the first of `nodes`; just that one where the winch stands there.
+        gain: decrease of half the squares of the residual that it promises, less what its lead costs.
+        moves: of the rows, by a tension of 1 N.
+        tensions: that promise it in each pose [N].
+    """
+
+    nodes: tuple[int, ...]
+    lead: tuple[int, ...]
+    gain: float
+    moves: Vector
+    tensions: Vector
+
+    @property
+    def winch(self) -> int:
+        """The graph point at which its winch stands."""
+        return self.lead[0]
+
+
+def steepest_path(
+    graph: RouteGraph, gains: Vector, *, hops: int, turn: float, starts: Sequence[int]
+) -> list[tuple[tuple[int, ...], float]]:
+    """For each start, the path with the largest sum of gains, and that sum.
+
+    A dynamic program over directed edges and numbers of hops, for all starts at once: for each directed edge the best
+    path that ends with it; paths have no direction, so the starts are where they end. Each keeps one way there and
+    refuses to visit a point twice. Where the best walk has no loop that is exact, and its sum an upper bound of all
+    paths; else it is a heuristic, as the longest simple path is hard.
+
+    Args:
+        graph: of via points.
+        gains: of each undirected edge.
+        hops: most edges of a path.
+        turn: sharpest turn at a via point, in the rest shape [degrees].
+        starts: graph points; one that no edge leaves has an empty path of gain 0.
+    """
+    turns, before = _turns(graph, turn)
+    best = np.empty((hops, len(graph.sources)))
+    parents = np.empty((hops, len(graph.sources)), dtype=np.int64)
+    grow_additive(turns, before, graph.sources, graph.targets, gains[graph.edge_of], best, parents)
+    found = []
+    for start in starts:
+        arriving = graph.reverses[graph.offsets[start] : graph.offsets[start + 1]]
+        if not len(arriving):
+            found.append(((), 0.0))
+            continue
+        hop, which = np.unravel_index(np.argmax(best[:, arriving]), (hops, len(arriving)))
+        label = arriving[which]
+        path = np.empty((1, hops + 1), dtype=np.int64)
+        walk_back(parents, graph.sources, graph.targets, 1, np.array([hop]), np.array([label]), path)
+        found.append((tuple(path[0, : hop + 2].tolist()), float(best[hop, label])))
+    return found
+
+
+def price_paths(
+    graph: RouteGraph,
+    moves: Moves,
+    residual: Float[np.ndarray, " rows"],
+    pose_of_row: Int[np.ndarray, " rows"],
+    *,
+    ridge: Float[np.ndarray, " poses"],
+    most: float,
+    limits: PathLimits,
+    count: int,
+    lead_penalty: float,
+    leads: bool,
+    winches: Sequence[int] | None = None,
+    slots: int = 4,
+) -> list[PricedPath]:
+    """Paths along which a cable lowers the residual most, the best first, unlike one another.
+
+    A path moves the rows by J, the sum over its edges. By Gauss and Newton it lowers half the squares of the residual
+    r (target less marker) by
+
+        D(J) = sum over poses of max over t in [0, most] of t r.J - t^2 (|J|^2 + ridge) / 2.
+
+    That is not additive, so that a dynamic program over directed edges and hops keeps a few paths for each: those of the
+    largest D, and those of the largest r.J, which D of something longer needs. Two passes, one from the winches and one
+    towards them, see different paths; the better ones of both are returned. Exact for one and two edges, else a
+    heuristic: how near it comes to the best of all paths is tested.
+
+    Args:
+        graph: of via points.
+        moves: what 1 N along each edge adds to each row.
+        residual: of each row.
+        pose_of_row: 0, 1, ...
+        ridge: added to |J|^2 of each pose, above 0.
+        most: largest tension [N].
+        limits: hops, turn and length.
+        count: of paths wanted.
+        lead_penalty: share of the gain that a lead as long as the body costs.
+        leads: whether a path may begin with a sheathed lead from its winch, which moves nothing.
+        winches: graph points where a winch may stand; all winch places of the graph if left out.
+        slots: paths that each directed edge keeps for each number of hops.
+    """
+    places = graph.winch_places if winches is None else np.asarray(winches, dtype=np.int64)
+    search = _Search(graph, moves, residual, pose_of_row, ridge, most, limits, slots)
+    starts = _Starts(graph, places, limits, lead_penalty, leads)
+    candidates = [*search.from_winches(starts), *search.to_winches(starts)]
+    gains = np.concatenate([gain for gain, _ in candidates])
+    paths = np.concatenate([path for _, path in candidates])
+    order = np.argsort(-gains, kind="stable")
+    order = order[gains[order] > 0.0]
+    picked = _pick(graph, starts, paths[order], count)
+    return [search.priced(paths[order[index]], lead, float(gains[order[index]])) for index, lead in picked]
+
+
+_ALIKE = 0.7
+"""Two paths that share more than this part of their edges are variants of one."""
+
+_SOME = 4
+"""At most one path in so many, and at least two, stand in one region of winches while there are others."""
+
+
+class _Starts:
+    """Where bare parts may begin: for each directed edge the shortest lead to its start."""
+
+    def __init__(
+        self, graph: RouteGraph, places: Int[np.ndarray, " places"], limits: PathLimits, penalty: float, leads: bool
+    ) -> None:
+        self.graph = graph
+        self.longest = math.inf if limits.longest is None else limits.longest
+        self.leads = np.where(np.isin(graph.sources, places), 0.0, np.inf)
+        self.origins = np.full(len(graph.sources), -1, dtype=np.int64)
+        if leads:
+            turns, before = _turns(graph, limits.turn)
+            reach = min(self.longest, graph.size / penalty if penalty > 0 else math.inf)
+            spread_leads(turns, before, graph.lengths[graph.edge_of], self.leads, self.origins, reach)
+        reached = np.isfinite(self.leads)
+        lengths = np.where(reached, self.leads, 0.0)
+        self.rooms = np.where(reached, self.longest - lengths, -1.0)
+        self.factors = np.where(reached, np.maximum(0.0, 1.0 - penalty * lengths / graph.size), 0.0)
+
+    def lead(self, path: Int[np.ndarray, " points"]) -> tuple[int, ...]:
+        """Graph points of the lead to a bare part."""
+        first = self.graph.offsets[path[0]]
+        edge = first + int(np.flatnonzero(self.graph.targets[first : self.graph.offsets[path[0] + 1]] == path[1])[0])
+        points = [int(path[0])]
+        while (edge := int(self.origins[edge])) >= 0:
+            points.append(int(self.graph.sources[edge]))
+        return tuple(reversed(points))
+
+
+class _Search:
+    """The two passes over one residual."""
+
+    def __init__(
+        self,
+        graph: RouteGraph,
+        moves: Moves,
+        residual: Float[np.ndarray, " rows"],
+        pose_of_row: Int[np.ndarray, " rows"],
+        ridge: Float[np.ndarray, " poses"],
+        most: float,
+        limits: PathLimits,
+        slots: int,
+    ) -> None:
+        self.graph, self.ridge, self.most = graph, ridge, float(most)
+        self.hops, self.slots = limits.hops, slots
+        self.turns, self.before = _turns(graph, limits.turn)
+        self.order = np.argsort(pose_of_row, kind="stable")
+        self.moves = np.ascontiguousarray(moves[:, self.order], dtype=float)
+        self.residual = np.ascontiguousarray(residual[self.order], dtype=float)
+        self.starts = np.searchsorted(pose_of_row[self.order], np.arange(len(ridge) + 1))
+        self.pulls, self.squares = np.empty((2, len(moves), len(ridge)))
+        edge_products(self.moves, self.residual, self.starts, self.pulls, self.squares)
+
+    def from_winches(self, starts: _Starts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
+        """Gains and points of the best path that ends with each directed edge."""
+        blocked = self.graph.world[self.graph.targets]
+        begins = np.where(blocked, 0.0, starts.factors)
+        none = np.zeros(len(begins))
+        for gains, paths in self._grow(begins, starts.rooms, blocked, none + 1.0, none):
+            yield gains, _turned(paths)
+
+    def to_winches(self, starts: _Starts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
+        """Gains and points of the best path that begins with each directed edge."""
+        graph = self.graph
+        blocked = graph.world[graph.sources]
+        begins = np.where(blocked, 0.0, 1.0)
+        rooms = np.full(len(begins), starts.longest)
+        yield from self._grow(begins, rooms, blocked, starts.factors[graph.reverses], starts.leads[graph.reverses])
+
+    def _grow(
+        self, begins: Vector, rooms: Vector, blocked: Bool[np.ndarray, " directed"], factors: Vector, left: Vector
+    ) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
+        """Labels of all hops; then for each directed edge the best that ends with it and has some length left."""
+        graph, size = self.graph, len(self.graph.sources) * self.slots
+        labels, longer = np.empty((2, size, self.moves.shape[1]))
+        sums, longer_sums = np.empty((2, size, 2 * len(self.ridge) + 2))
+        values, parents = np.empty((self.hops, size)), np.empty((self.hops, size), dtype=np.int64)
+        lengths, edge_of = graph.lengths, graph.edge_of
+        best, ranked = np.empty((2, self.slots))
+        chosen = np.empty(self.slots, dtype=np.int64)
+        gains = np.full((self.hops, size), -np.inf)
+        given = (self.moves, self.starts, self.pulls, self.squares, self.ridge, self.most)
+        for hop in range(self.hops):
+            if hop == 0:
+                first_labels(
+                    edge_of, lengths, begins, rooms, self.moves, self.pulls, self.squares, self.ridge, self.most,
+                    longer, longer_sums, values[0], parents[0],
+                )  # fmt: skip
+            else:
+                grow_labels(
+                    self.turns, self.before, graph.sources, graph.targets, edge_of, blocked, lengths, *given, hop,
+                    labels, sums, values, parents, longer, longer_sums, best, ranked, chosen,
+                )  # fmt: skip
+            good = np.isfinite(values[hop]) & (longer_sums[:, -2] >= np.repeat(left, self.slots))
+            gains[hop, good] = values[hop, good] * np.repeat(factors, self.slots)[good]
+            labels, longer, sums, longer_sums = longer, labels, longer_sums, sums
+        flat = gains.reshape(self.hops, -1, self.slots).transpose(1, 0, 2).reshape(len(edge_of), -1)
+        which = flat.argmax(axis=1)
+        hops, slots = np.divmod(which, self.slots)
+        paths = np.empty((len(which), self.hops + 1), dtype=np.int64)
+        ends = np.arange(len(which)) * self.slots + slots
+        walk_back(parents, graph.sources, graph.targets, self.slots, hops, ends, paths)
+        yield flat[np.arange(len(which)), which], paths
+
+    def priced(self, path: Int[np.ndarray, " points"], lead: tuple[int, ...], gain: float) -> PricedPath:
+        """All that there is to know of a path."""
+        points = path[path >= 0]
+        moves = self.moves[_edges(self.graph, points)].sum(axis=0)
+        tensions = np.zeros(len(self.ridge))
+        for pose, ridge in enumerate(self.ridge):
+            rows = slice(self.starts[pose], self.starts[pose + 1])
+            pull = self.residual[rows] @ moves[rows]
+            tensions[pose] = np.clip(pull / (moves[rows] @ moves[rows] + ridge), 0.0, self.most)
+        back = np.empty_like(moves)
+        back[self.order] = moves
+        return PricedPath(nodes=tuple(points.tolist()), lead=lead, gain=gain, moves=back, tensions=tensions)
+
+
+def _pick(
+    graph: RouteGraph, starts: _Starts, paths: Int[np.ndarray, "paths points"], count: int
+) -> list[tuple[int, tuple[int, ...]]]:
+    """Numbers and leads of the first paths that are unlike one another; of like ones only if there are not enough."""
+    reach = 2.0 * float(np.median(graph.lengths))
+    quota = max(2, -(-count // _SOME))
+    picked: dict[int, tuple[int, ...]] = {}
+    for alike, crowd in ((_ALIKE, quota), (_ALIKE, count), (1.0 - 1e-9, count)):
+        for index, path in enumerate(paths):
+            if len(picked) == count:
+                break
+            if index in picked or _likeness(path, paths[list(picked)]) > alike:
+                continue
+            lead = starts.lead(path)
+            if len({*lead, *path[path >= 0].tolist()}) < len(lead) - 1 + (path >= 0).sum():
+                continue
+            others = graph.points[[other[0] for other in picked.values()]]
+            near = np.linalg.norm(others - graph.points[lead[0]], axis=1) < reach
+            if near.sum() < crowd:
+                picked[index] = lead
+    return sorted(picked.items())
+
+
+def _likeness(path: Int[np.ndarray, " points"], others: Int[np.ndarray, "paths points"]) -> float:
+    """Largest share of edges in common with one of some paths."""
+    share = np.zeros(1)
+    share_edges(path, others, share)
+    return float(share[0])
+
+
+def _turned(paths: Int[np.ndarray, "paths points"]) -> Int[np.ndarray, "paths points"]:
+    """Each path the other way round, with what lies beyond it still at the end."""
+    counts = (paths >= 0).sum(axis=1)
+    places = counts[:, None] - 1 - np.arange(paths.shape[1])
+    return np.where(places >= 0, np.take_along_axis(paths, np.maximum(places, 0), axis=1), -1)
+
+
+def _edges(graph: RouteGraph, points: Int[np.ndarray, " points"]) -> Int[np.ndarray, " edges"]:
+    """Undirected edges along a path."""
+    count = len(graph.points)
+    keys = graph.edges[:, 0] * count + graph.edges[:, 1]
+    ends = np.sort(np.column_stack([points[:-1], points[1:]]), axis=1)
+    return np.searchsorted(keys, ends[:, 0] * count + ends[:, 1])
+
+
+@lru_cache(maxsize=4)
+def _turns(graph: RouteGraph, turn: float) -> tuple[Int[np.ndarray, " directed+1"], Int[np.ndarray, " turns"]]:
+    """Which directed edges each one may follow, as a compressed list; no path runs through a point in the world."""
+    counts = np.empty(len(graph.sources) + 1, dtype=np.int64)
+    least = math.cos(math.radians(min(turn, 180.0))) - 1e-9
+    given = (graph.points, graph.offsets, graph.sources, graph.targets, graph.reverses, graph.world, least, counts)
+    total = count_turns(*given, np.empty(0, dtype=np.int64))
+    before = np.empty(total, dtype=np.int64)
+    count_turns(*given, before)
+    return counts, before

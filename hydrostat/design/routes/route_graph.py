@@ -1,0 +1,268 @@
+"""`RouteGraph`: the via points that cables may have, and the straight runs between them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Nodes, Points
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import Region
+from hydrostat.design.zone import Zone
+from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.robot import Mount, Robot
+
+Pairs = Int[np.ndarray, "edges 2"]
+
+
+@dataclass(frozen=True, eq=False)
+class RouteGraph:
+    """Places where cables may turn, joined where a straight run between them keeps all constraints.
+
+    Directed edges are numbered by their start, then by their end: those from point p are `offsets[p]` to
+    `offsets[p + 1]`.
+
+    Attributes:
+        points: rest places [m]: those in the body, then winches fixed in the world.
+        anchors: what holds the points in the body.
+        edges: undirected, lower point first, sorted.
+        still: which edges lie in a still zone: a cable runs there in a sheath and moves nothing (R14).
+        winch_places: points where a winch may stand.
+        size: of the body, the longest side of its bounding box [m].
+        region: that the edges keep to.
+    """
+
+    points: Points
+    anchors: Anchors
+    edges: Pairs
+    still: Bool[np.ndarray, " edges"]
+    winch_places: Int[np.ndarray, " places"]
+    size: float
+    region: Region
+
+    @property
+    def world(self) -> Bool[np.ndarray, " points"]:
+        """Which points are fixed in the world."""
+        return np.arange(len(self.points)) >= len(self.anchors.stencils)
+
+    @cached_property
+    def lengths(self) -> Float[np.ndarray, " edges"]:
+        """Rest length of each edge [m]."""
+        return np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1)
+
+    @cached_property
+    def offsets(self) -> Int[np.ndarray, " points+1"]:
+        """Where the directed edges from each point begin; their number at the end."""
+        counts = np.bincount(self.edges.ravel(), minlength=len(self.points))
+        return np.concatenate([[0], np.cumsum(counts)])
+
+    @cached_property
+    def sources(self) -> Int[np.ndarray, " directed"]:
+        """Start of each directed edge."""
+        return np.concatenate([self.edges[:, 0], self.edges[:, 1]])[self._order]
+
+    @cached_property
+    def targets(self) -> Int[np.ndarray, " directed"]:
+        """End of each directed edge."""
+        return np.concatenate([self.edges[:, 1], self.edges[:, 0]])[self._order]
+
+    @cached_property
+    def edge_of(self) -> Int[np.ndarray, " directed"]:
+        """The undirected edge of each directed one."""
+        return self._order % max(len(self.edges), 1)
+
+    @cached_property
+    def reverses(self) -> Int[np.ndarray, " directed"]:
+        """The same edge the other way."""
+        count = len(self.edges)
+        place = np.argsort(self._order)
+        return place[(self._order + count) % max(2 * count, 1)]
+
+    @cached_property
+    def _order(self) -> Int[np.ndarray, " directed"]:
+        """Edges, then the same reversed, sorted by start and end."""
+        starts = np.concatenate([self.edges[:, 0], self.edges[:, 1]])
+        ends = np.concatenate([self.edges[:, 1], self.edges[:, 0]])
+        return np.lexsort((ends, starts))
+
+    def edge_moves(self, posed: Nodes, fields: Float[np.ndarray, "nodes dim rows"]) -> Float[np.ndarray, "edges rows"]:
+        """What a tension of 1 N along each edge adds to each row, at an equilibrium [m/N].
+
+        The ends of the edge are pulled together, so it is (field at the first - field at the second) . direction, and a
+        cable moves the rows by the sum over its edges. Still edges move nothing; a point in the world neither moves nor
+        has a field.
+
+        Args:
+            posed: nodes at the equilibrium [m].
+            fields: H^-1 of each row's slope by the nodes, H being the full Hessian there [m/N].
+        """
+        held = len(self.anchors.stencils)
+        places, priced = self.points.copy(), np.zeros((len(self.points), *fields.shape[1:]))
+        places[:held] = self.anchors.positions(posed)
+        for corner, weights in zip(self.anchors.stencils.T, self.anchors.weights.T, strict=True):
+            priced[:held] += weights[:, None, None] * fields[corner]
+        first, second = self.edges.T
+        spans = places[second] - places[first]
+        directions = spans / np.maximum(np.linalg.norm(spans, axis=1), np.finfo(float).tiny)[:, None]
+        directions[self.still] = 0.0
+        return np.einsum("edr,ed->er", priced[first] - priced[second], directions)
+
+
+def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spacing: float) -> RouteGraph:
+    """The graph of a body: mesh nodes moved inside the clearance, each joined to those around it that it sees.
+
+    Args:
+        robot: whose body it is; its winches matter only where they stand in the world.
+        region: where cables may be.
+        constraints: zones, clearances, and where winches are mounted.
+        spacing: rough distance between via points, such as the element size [m].
+
+    Raises:
+        InputError: no place for a via point or for a winch.
+    """
+    mesh = robot.body.mesh
+    nodes, points = _via_points(mesh.nodes, region, constraints, spacing)
+    if len(points) < 2:
+        raise InputError(
+            f"there is no room for cables {1e3 * constraints.clearance:g} mm inside the edge; lower the clearance or "
+            f"make the keep-out zones smaller"
+        )
+    edges = _joined(points, _near(points, nodes, mesh.edges, spacing), region, constraints)
+    anchors = locate(mesh, points)
+    if _in_world(robot, constraints):
+        winches = np.array([winch.at for winch in robot.winches], dtype=float)
+        entries = _entries(robot, points, winches, constraints, spacing)
+        places = np.arange(len(points), len(points) + len(winches))
+        points, edges = np.concatenate([points, winches]), np.concatenate([edges, entries])
+    else:
+        places = _winch_places(points, region, constraints)
+    return RouteGraph(
+        points=points,
+        anchors=anchors,
+        edges=edges[np.lexsort((edges[:, 1], edges[:, 0]))],
+        still=_meets(points, edges[np.lexsort((edges[:, 1], edges[:, 0]))], constraints.still),
+        winch_places=places,
+        size=mesh.size,
+        region=region,
+    )
+
+
+_CROWDED = 0.35
+"""Points nearer than this share of the spacing are one."""
+
+_REACH = 2.0
+"""Points are joined up to so many spacings away."""
+
+_NEIGHBOURS = {2: 12, 3: 18}
+"""So many of the nearest points is each joined to, by dimension: enough directions for a cable to follow the field."""
+
+_SAMPLES = 17
+"""Points along an edge at which zones are asked for."""
+
+
+def _via_points(
+    nodes: Nodes, region: Region, constraints: Constraints, spacing: float
+) -> tuple[Int[np.ndarray, " points"], Points]:
+    """Mesh nodes that cables may turn at, and their places inside the clearance.
+
+    Those that lie inside already come first; of what is moved there, only what is not crowded. A node that no place
+    near it can hold, as in a thin part, is left out.
+    """
+    moved = region.push_inside(nodes)
+    shifts = np.linalg.norm(moved - nodes, axis=1)
+    good = (region.depths(moved) >= 0.9 * constraints.clearance) & (shifts <= 2 * constraints.clearance + spacing)
+    good &= _outside(moved, constraints.keep_out)
+    order = np.flatnonzero(good)
+    order = order[np.argsort(shifts[order] > 1e-12, kind="stable")]
+    kept: list[int] = []
+    for node in order:
+        if not kept or np.linalg.norm(moved[kept] - moved[node], axis=1).min() >= _CROWDED * spacing:
+            kept.append(int(node))
+    chosen = np.array(sorted(kept), dtype=np.int64)
+    return chosen, moved[chosen]
+
+
+def _near(points: Points, nodes: Int[np.ndarray, " points"], mesh_edges: Pairs, spacing: float) -> Pairs:
+    """Pairs of points that are close by, or were joined in the mesh."""
+    # Imported here: those who do not design start sooner.
+    from scipy.spatial import KDTree
+
+    count = min(_NEIGHBOURS[points.shape[1]] + 1, len(points))
+    away, near = KDTree(points).query(points, k=count, distance_upper_bound=_REACH * spacing)
+    rows, columns = np.nonzero(np.isfinite(away))
+    pairs = np.column_stack([rows, near[rows, columns]])
+    number = np.full(max(int(mesh_edges.max(initial=0)), int(nodes.max())) + 1, -1)
+    number[nodes] = np.arange(len(nodes))
+    meshed = number[mesh_edges]
+    pairs = np.concatenate([pairs, meshed[(meshed >= 0).all(axis=1)]])
+    return np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0).astype(np.int64)
+
+
+def _joined(points: Points, pairs: Pairs, region: Region, constraints: Constraints) -> Pairs:
+    """The pairs between which a cable may run."""
+    pairs = pairs[~_meets(points, pairs, constraints.keep_out)]
+    return pairs[region.sees(points[pairs[:, 0]], points[pairs[:, 1]])]
+
+
+def _in_world(robot: Robot, constraints: Constraints) -> bool:
+    """Whether winches stand in the world.
+
+    Raises:
+        InputError: they should, but the robot has none that says where.
+    """
+    if constraints.mount is None:
+        return bool(robot.winches) and all(winch.mount is Mount.WORLD for winch in robot.winches)
+    if constraints.mount is Mount.WORLD and not robot.winches:
+        raise InputError("winches in the world stand where the robot's own do, but it has none; give it [[winch]]")
+    return constraints.mount is Mount.WORLD
+
+
+def _winch_places(points: Points, region: Region, constraints: Constraints) -> Int[np.ndarray, " places"]:
+    """Points that are deep enough for a winch, and in one of its zones."""
+    allowed = region.depths(points) >= constraints.winch_clearance - 1e-9
+    if constraints.winch_zones:
+        allowed &= ~_outside(points, constraints.winch_zones)
+    if not allowed.any():
+        where = " in its zones" if constraints.winch_zones else ""
+        raise InputError(
+            f"no place{where} holds a winch {1e3 * constraints.winch_clearance:g} mm inside the edge; lower "
+            f"winch_clearance or widen winch_zones"
+        )
+    return np.flatnonzero(allowed)
+
+
+def _entries(robot: Robot, points: Points, winches: Points, constraints: Constraints, spacing: float) -> Pairs:
+    """From each winch in the world to the via points in the part that is held: there a cable enters the body."""
+    mesh = robot.body.mesh
+    held = np.concatenate([pin.anchors(mesh).positions(mesh.nodes) for pin in robot.pins])
+    away = np.linalg.norm(points[:, None] - held[None], axis=2).min(axis=1)
+    near = np.flatnonzero(away <= max(spacing, float(away.min())) * (1 + 1e-9))
+    numbers = np.arange(len(points), len(points) + len(winches))
+    pairs = np.column_stack([np.tile(near, len(winches)), np.repeat(numbers, len(near))])
+    return pairs[~_meets(np.concatenate([points, winches]), pairs, constraints.keep_out)]
+
+
+def _outside(points: Points, zones: Sequence[Zone]) -> Bool[np.ndarray, " points"]:
+    """Which points lie in none of the zones."""
+    outside = np.ones(len(points), dtype=bool)
+    for zone in zones:
+        outside &= zone.distances(points) > 0
+    return outside
+
+
+def _meets(points: Points, pairs: Pairs, zones: Sequence[Zone]) -> Bool[np.ndarray, " edges"]:
+    """Which segments pass through a zone, or so near that samples along them cannot rule it out."""
+    meets = np.zeros(len(pairs), dtype=bool)
+    if not len(pairs):
+        return meets
+    start, end = points[pairs[:, 0]], points[pairs[:, 1]]
+    shares = np.linspace(0.0, 1.0, _SAMPLES)[:, None]
+    samples = (start[:, None] + shares * (end - start)[:, None]).reshape(-1, points.shape[1])
+    gaps = np.linalg.norm(end - start, axis=1) / (_SAMPLES - 1)
+    for zone in zones:
+        nearest = zone.distances(samples).reshape(len(pairs), _SAMPLES).min(axis=1)
+        meets |= nearest < 0.5 * gaps
+    return meets
