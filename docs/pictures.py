@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import hydrostat as hs
+from hydrostat.design import activate, edge_fibres
 from hydrostat.geometry.contour import contour
 from hydrostat.geometry.healing.heal import heal
 from hydrostat.geometry.surface import Surface
@@ -38,8 +39,10 @@ PORTRAIT = 3.2
 def main() -> None:
     """Design the starfish and draw its stages, then all of the gallery and the hand."""
     robot = hs.load_robot(gallery_folder("starfish"))
-    network = hs.design_cables(robot, [robot.poses["wave"]], winches=2, cables=6)
-    save_png(draw_activation(robot, network.activations[0], title=""), HERE / "activation.png", dpi=110)
+    wave = robot.poses["wave"]
+    activation = activate(robot, wave, edge_fibres(robot.body.mesh))
+    save_png(draw_activation(robot, activation, title=""), HERE / "activation.png", dpi=110)
+    network = hs.design_cables(robot, [wave], winches=2, cables=6)
     save_png(draw_network(network.robot, title=""), HERE / "network.png", dpi=110)
     save_png(draw_reached(network.robot, network.reached[0], title=""), HERE / "reached.png", dpi=110)
     draw_dance()

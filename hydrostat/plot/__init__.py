@@ -5,9 +5,11 @@ from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
 from hydrostat.plot.branch_figure import draw_branches
 from hydrostat.plot.film import Film, Stop, film, pose_stops, winch_stops
 from hydrostat.plot.frame import Frame
+from hydrostat.plot.growth_figure import draw_growth
 from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion
+from hydrostat.plot.pareto_figure import draw_front
 from hydrostat.plot.picture_file import inline_svg, save_png
 from hydrostat.plot.pose_figures import draw_portrait, draw_pose, draw_reached
 from hydrostat.plot.report import report_text, write_report
@@ -23,6 +25,8 @@ __all__ = [
     "draw_activation",
     "draw_branches",
     "draw_candidates",
+    "draw_front",
+    "draw_growth",
     "draw_healing",
     "draw_motion",
     "draw_network",

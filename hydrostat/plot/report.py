@@ -24,7 +24,7 @@ def write_report(
         facts: more lines for the end of the page, such as options and seed, in their order.
 
     Raises:
-        InputError: a body in space, or a network of which no pose was tried.
+        InputError: a network of which no pose was tried.
     """
     from hydrostat.robot.write import replace_file
 

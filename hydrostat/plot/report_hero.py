@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes
-from hydrostat.design.network import Network
+from hydrostat.design.network import Network, TreeTrace
 from hydrostat.design.score_card import rest_error
 from hydrostat.plot.html import Html, tag
 from hydrostat.plot.motion import motion_frames, motion_svg
@@ -44,9 +44,10 @@ def hero(network: Network, title: str) -> Html:
 def _path(network: Network, words: str) -> Html:
     """Error at rest, with all muscles, with the network."""
     steps = [_step(rest_error(network), "at rest, nothing pulls")]
-    if network.activations:
-        bound = _rms(np.array([activation.rms_error for activation in network.activations]))
-        fibres = len(network.activations[0].fibres)
+    activations = network.trace.activations if isinstance(network.trace, TreeTrace) else ()
+    if activations:
+        bound = _rms(np.array([activation.rms_error for activation in activations]))
+        fibres = len(activations[0].fibres)
         steps.append(_step(bound, f"if each of {fibres} muscle fibres could pull by itself"))
     share = 100 * network.rms_error / network.robot.body.mesh.size
     steps.append(_step(network.rms_error, f"{words}: {share:.1f} % of the body's size", best=True))

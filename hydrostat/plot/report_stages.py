@@ -1,46 +1,33 @@
 """The stages of a design as chapters of the report, each with its pictures."""
 
-from typing import NamedTuple
-
-from matplotlib.figure import Figure
-
-from hydrostat.design.network import Network
+from hydrostat.design.network import Network, TreeTrace
 from hydrostat.ik import ReachedPose
-from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.html import Html, tag
-from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.pose_figures import draw_reached
+from hydrostat.plot.report_growth import alternative_chapters, growth_chapters
+from hydrostat.plot.report_muscles import muscle_chapters
+from hydrostat.plot.report_parts import NARROW, Chapter, grid, picture, section
 from hydrostat.plot.report_tables import contraction_table, marker_table, tension_table
 from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
 from hydrostat.plot.robot_tables import body_table, cable_table, place_table, winch_table
 from hydrostat.plot.sheet import MILLIMETRES
-from hydrostat.robot import Robot
+from hydrostat.robot import Robot, Source
 from hydrostat.units import counted
 
-NARROW = 4.9
-"""Width of pictures that stand side by side [inch]: the narrower, the larger their letters."""
-
-
-class Chapter(NamedTuple):
-    """A stage of the design: its headline, what happens, and what there is to see."""
-
-    head: str
-    words: str
-    parts: list[Html]
+_HEADS = {
+    Source.OUTLINE: "A drawing becomes a body",
+    Source.SURFACE: "A surface becomes a body",
+    Source.MESH: "A mesh becomes a body",
+}
 
 
 def stages(network: Network) -> list[Html]:
-    """All chapters, numbered in their order; those on muscles only where muscles led to the design."""
-    chapters = [_body(network.robot), _targets(network)]
-    if network.activations:
-        chapters += [_activations(network), _routes(network)]
-    chapters += [_network(network), _reached(network)]
-    return [_section(number, chapter) for number, chapter in enumerate(chapters, start=1)]
-
-
-def _section(number: int, chapter: Chapter) -> Html:
-    words = tag("div", tag("h2", chapter.head), tag("p", chapter.words))
-    return tag("section", tag("header", tag("div", number, class_="step"), words), *chapter.parts)
+    """All chapters, numbered in their order: what was asked, how the network came about, what it reaches."""
+    trace = network.trace
+    way = muscle_chapters(network, trace) if isinstance(trace, TreeTrace) else growth_chapters(network, trace)
+    chapters = [_body(network.robot), _targets(network), *way, _network(network), _reached(network)]
+    chapters += alternative_chapters(network)
+    return [section(number, chapter) for number, chapter in enumerate(chapters, start=1)]
 
 
 def _body(robot: Robot) -> Chapter:
@@ -50,9 +37,9 @@ def _body(robot: Robot) -> Chapter:
         "fields are held; the white dots are the markers, points to be watched."
     )
     figure = draw_rest(robot.with_network((), ()), title="", width=NARROW)
-    picture = _figure(figure, "body", "Body, mesh and markers", ", coordinates in mm")
+    shown = picture(figure, "body", "Body, mesh and markers", ", coordinates in mm")
     facts = tag("div", tag("h3", "Body"), body_table(robot), tag("h3", "Markers"), place_table(robot))
-    return Chapter("A drawing becomes a body", words, [tag("div", picture, facts, class_="pose")])
+    return Chapter(_HEADS[robot.body.source], words, [tag("div", shown, facts, class_="pose")])
 
 
 def _targets(network: Network) -> Chapter:
@@ -62,36 +49,8 @@ def _targets(network: Network) -> Chapter:
         pose = reached.wanted
         figure = draw_target(network.robot.with_network((), ()), pose, title="", width=NARROW)
         note = f": where {counted(len(pose.targets), 'marker')} should go"
-        pictures.append(_figure(figure, f"target-{index}", pose.name, note))
-    return Chapter("What it should do", words, [_grid(*pictures)])
-
-
-def _activations(network: Network) -> Chapter:
-    words = (
-        "A tongue or an octopus arm moves by muscle alone. Suppose that the body were full of muscle fibres, each free "
-        "to pull as it likes: these are the tensions that bring it into the pose. The wider and darker a fibre, the "
-        "more it pulls; a red line is what is left between marker and target."
-    )
-    pictures = []
-    for index, activation in enumerate(network.activations):
-        figure = draw_activation(network.robot, activation, title="", width=NARROW)
-        note = f": {MILLIMETRES * activation.rms_error:.2f} mm rms with free muscles"
-        pictures.append(_figure(figure, f"activation-{index}", activation.target.name, note))
-    return Chapter("What muscles would do", words, [_grid(*pictures)])
-
-
-def _routes(network: Network) -> Chapter:
-    words = "Nobody can sew in hundreds of muscles. The strongest are kept, and neighbours are joined into routes."
-    pictures = []
-    for index, (activation, kept) in enumerate(zip(network.activations, network.candidates, strict=True)):
-        figure = draw_candidates(network.robot, activation, kept, title="", width=NARROW)
-        note = f": the strongest {len(kept)} of {counted(len(activation.fibres), 'fibre')}"
-        pictures.append(_figure(figure, f"candidates-{index}", f"Candidates for {activation.target.name}", note))
-    figure = draw_trees(network.robot, network.trees, title="", width=NARROW)
-    note = f": {counted(len(network.trees), 'route')} that join neighbouring candidates"
-    return Chapter(
-        "From muscles to routes", words, [_grid(*pictures, _figure(figure, "trees", "Trees", note), kind="small")]
-    )
+        pictures.append(picture(figure, f"target-{index}", pose.name, note))
+    return Chapter("What it should do", words, [grid(*pictures)])
 
 
 def _network(network: Network) -> Chapter:
@@ -99,12 +58,13 @@ def _network(network: Network) -> Chapter:
     words = (
         f"{counted(len(robot.winches), 'winch')} and {counted(len(robot.cables), 'cable')}, "
         f"chosen from {counted(network.tried, 'network')} whose poses were solved. All cables of one winch "
-        "share its contraction. A bar marks the stopper at the end of a cable, a pale pipe a sheath."
+        "share its contraction, each by the radius of its spool. A bar marks the stopper at the end of a "
+        "cable, a pale pipe a sheath."
     )
     figure = draw_network(robot, title="", width=NARROW)
-    picture = _figure(figure, "network", "The network", ": cables are numbered as in the tables")
+    shown = picture(figure, "network", "The network", ": cables are numbered as in the tables")
     facts = tag("div", tag("h3", "Winches"), winch_table(robot), tag("h3", "Cables"), cable_table(robot))
-    return Chapter("Winches and cables", words, [tag("div", picture, facts, class_="pose")])
+    return Chapter("Winches and cables", words, [tag("div", shown, facts, class_="pose")])
 
 
 def _reached(network: Network) -> Chapter:
@@ -126,14 +86,5 @@ def _reached_pose(robot: Robot, reached: ReachedPose, index: int) -> Html:
     }
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
     return tag(
-        "div", _figure(figure, f"reached-{index}", reached.wanted.name, note), tag("div", *numbers), class_="pose"
+        "div", picture(figure, f"reached-{index}", reached.wanted.name, note), tag("div", *numbers), class_="pose"
     )
-
-
-def _figure(figure: Figure, name: str, head: str, words: str) -> Html:
-    svg = Html(inline_svg(figure, name=name, label=head + words))
-    return tag("figure", svg, tag("figcaption", tag("b", head), words))
-
-
-def _grid(*figures: Html, kind: str = "") -> Html:
-    return tag("div", *figures, class_=f"grid {'one' if len(figures) == 1 else kind}".strip())

@@ -33,6 +33,10 @@ p { margin: 0 0 1em; max-width: 68ch; color: var(--soft); }
 .grid { display: grid; gap: 20px; grid-template-columns: repeat(auto-fit, minmax(min(100%, 430px), 1fr));
   margin: 22px 0; }
 .small { grid-template-columns: repeat(auto-fit, minmax(min(100%, 300px), 1fr)); }
+.tiny { grid-template-columns: repeat(auto-fill, minmax(min(100%, 220px), 1fr)); gap: 14px; }
+.tiny figure { padding: 12px 12px 10px; border-radius: 14px; }
+.note { padding: 16px 20px; margin: 20px 0 0; border-left: 3px solid var(--warm); background: var(--card); }
+.note b { color: var(--ink); }
 .one { grid-template-columns: minmax(0, 780px); }
 figure { margin: 0; padding: 18px 18px 14px; background: var(--card); border: 1px solid var(--line);
   border-radius: 18px;

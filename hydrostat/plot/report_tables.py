@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hydrostat.design.network import Network
+from hydrostat.design.network import Network, TreeTrace
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.html import Html, bar, swatch, table, tag
 from hydrostat.plot.numbers import number, place
@@ -58,18 +58,25 @@ def footer(network: Network, facts: Mapping[str, object]) -> Html:
     known = {
         "hydrostat version": __version__,
         "robot hash (SHA-256)": robot_hash(network.robot),
+        "method": network.method,
         "networks tried": network.tried,
-        "score of the thesis, 0 to 1": f"{network.score:.3f}",
-        "CPU time of the design": f"{network.seconds:.1f} s",
+        **_score(network),
+        "CPU time of the design": f"{network.seconds:.1f} s" + ("" if network.complete else ", stopped early"),
         "body": _body(network.robot),
     }
     words = (
         "How the errors were computed: for each pose, inverse kinematics finds the contractions of the network's own "
-        "winches; the body's equilibrium under these cables is solved by finite elements (Neo-Hookean, plane strain); "
+        "winches; the body's equilibrium under these cables is solved by finite elements "
+        f"(Neo-Hookean{', plane strain' if network.robot.body.mesh.dim == 2 else ''}); "
         "an error is the distance from a marker to its target there; rms is the root of the mean of the squared errors."
     )
     rows = [(name, tag("code", value)) for name, value in {**known, **facts}.items()]
     return tag("footer", tag("h2", "How this was made"), tag("p", words), table(("", ""), rows))
+
+
+def _score(network: Network) -> dict[str, str]:
+    trace = network.trace
+    return {"score of the thesis, 0 to 1": f"{trace.score:.3f}"} if isinstance(trace, TreeTrace) else {}
 
 
 def _body(robot: Robot) -> str:

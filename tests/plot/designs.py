@@ -6,8 +6,19 @@ from functools import cache
 import numpy as np
 from builders import box_robot, strip_robot
 
+from hydrostat.design import (
+    Activation,
+    Alternative,
+    Certificate,
+    Constraints,
+    Network,
+    RouteOptions,
+    RouteTrace,
+    Stage,
+    TreeOptions,
+    TreeTrace,
+)
 from hydrostat.design.muscles.fibres import edge_fibres
-from hydrostat.design.network import Activation, Network
 from hydrostat.ik import InverseReason, ReachedPose
 from hydrostat.robot import Cable, Marker, Mount, Pin, Pose, Robot, Winch
 from hydrostat.simulation import Simulation
@@ -34,6 +45,12 @@ def hostile_robot() -> Robot:
     )
 
 
+def hostile_trace() -> TreeTrace:
+    trace = hostile_network().trace
+    assert isinstance(trace, TreeTrace)
+    return trace
+
+
 @cache
 def hostile_network() -> Network:
     robot = hostile_robot()
@@ -43,18 +60,57 @@ def hostile_network() -> Network:
     errors = {name: float(np.linalg.norm(pose.markers[name] - np.array(at))) for name, at in target.targets.items()}
     fibres = edge_fibres(robot.body.mesh)
     tensions = np.linspace(0.0, 2.0, len(fibres))
-    return Network(
-        robot=robot,
+    trace = TreeTrace(
         activations=(Activation(target=target, fibres=fibres, tensions=tensions, nodes=pose.nodes, errors=errors),),
         candidates=(np.argsort(-tensions)[:12],),
         trees=(np.array([[0.02, 0.01], [0.1, 0.01], [0.15, 0.0]]),),
-        reached=(
-            ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5),
-        ),
         score=0.5,
+    )
+    reached = (
+        ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5),
+    )
+    return Network(
+        robot=robot,
+        source=robot,
+        method="trees",
+        reached=reached,
+        trace=trace,
+        constraints=Constraints(),
+        options=TreeOptions(),
         tried=4,
         seconds=1.5,
     )
+
+
+def grown(network: Network, stages: int = 11) -> Network:
+    """The same network as if priced routes had led to it: stages, a certificate, alternatives of other sizes."""
+    robot, (reached, *_) = network.robot, network.reached
+    first, *_ = robot.cables
+    begun = robot.with_network([winch for winch in robot.winches if winch.name == first.winch], [first])
+    words = [SCRIPT, *(f"via points of {index} cables moved" for index in range(1, stages))]
+    less = replace(reached, pose=Simulation(begun).solve(reached.pose.contractions[:1]))
+    return replace(
+        network,
+        method="routes",
+        trace=RouteTrace(
+            stages=tuple(
+                Stage(words=told, robot=begun if index < stages // 2 else robot, error=0.03 / (index + 1))
+                for index, told in enumerate(words)
+            ),
+            certificate=Certificate(further=0.0021, paths=12345, slope=0.0123),
+        ),
+        alternatives=(
+            Alternative(robot=robot, reached=(replace(reached, errors={"tip": 0.0345}),)),
+            Alternative(robot=begun, reached=(replace(less, errors={"tip": 0.0456}),)),
+        ),
+        options=RouteOptions(),
+    )
+
+
+def space_trace() -> TreeTrace:
+    trace = space_network().trace
+    assert isinstance(trace, TreeTrace)
+    return trace
 
 
 @cache
@@ -75,15 +131,23 @@ def space_network() -> Network:
     errors = {"tip": float(np.linalg.norm(pose.markers["tip"] - np.array(target.targets["tip"])))}
     fibres = edge_fibres(robot.body.mesh)
     tensions = np.linspace(0.0, 2.0, len(fibres))
-    return Network(
-        robot=robot,
+    trace = TreeTrace(
         activations=(Activation(target=target, fibres=fibres, tensions=tensions, nodes=pose.nodes, errors=errors),),
         candidates=(np.argsort(-tensions)[:12],),
         trees=(np.array([[0.02, 0.01, 0.02], [0.1, 0.01, 0.02], [0.11, 0.02, 0.03]]),),
-        reached=(
-            ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5),
-        ),
         score=0.5,
+    )
+    reached = (
+        ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5),
+    )
+    return Network(
+        robot=robot,
+        source=robot,
+        method="trees",
+        reached=reached,
+        trace=trace,
+        constraints=Constraints(),
+        options=TreeOptions(),
         tried=4,
         seconds=1.5,
     )

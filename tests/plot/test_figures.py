@@ -8,7 +8,7 @@ import pytest
 from builders import box_robot, strip_robot
 from matplotlib.figure import Figure
 from PIL import Image
-from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_robot
+from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_robot, hostile_trace
 
 from hydrostat import plot
 from hydrostat.errors import InputError
@@ -25,7 +25,8 @@ FIGURES = (
 def figure(kind: str) -> Figure:
     """A new picture of each kind, of the robot with hostile names."""
     network = hostile_network()
-    robot, activation, reached = network.robot, network.activations[0], network.reached[0]
+    trace = hostile_trace()
+    robot, activation, reached = network.robot, trace.activations[0], network.reached[0]
     arguments = {
         "draw_rest": (),
         "draw_target": (reached.target,),
@@ -33,8 +34,8 @@ def figure(kind: str) -> Figure:
         "draw_pose": (reached.pose,),
         "draw_reached": (reached,),
         "draw_activation": (activation,),
-        "draw_candidates": (activation, network.candidates[0]),
-        "draw_trees": (network.trees,),
+        "draw_candidates": (activation, trace.candidates[0]),
+        "draw_trees": (trace.trees,),
         "draw_portrait": (reached.pose.nodes,),
     }
     return getattr(plot, kind)(robot, *arguments[kind])

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from plot.designs import FORMULA, SCRIPT, hostile_network
+from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_trace
 
 from hydrostat.errors import InputError
 from hydrostat.plot import report_text, write_report
@@ -81,7 +81,8 @@ def test_numbers_of_the_report() -> None:
 
 
 def test_no_muscles_no_chapters_on_muscles() -> None:
-    text = report_text(replace(hostile_network(), activations=(), candidates=(), trees=()))
+    trace = replace(hostile_trace(), activations=(), candidates=(), trees=())
+    text = report_text(replace(hostile_network(), trace=trace))
     assert "What muscles would do" not in text
     assert "What it reaches" in text
 

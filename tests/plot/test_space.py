@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
-from plot.designs import space_network
+from plot.designs import space_network, space_trace
 
 from hydrostat import plot
 from hydrostat.plot.open_sheet import open_sheet
@@ -25,15 +25,15 @@ FIGURES = (
 
 
 def figure(kind: str) -> Figure:
-    network = space_network()
-    activation, reached = network.activations[0], network.reached[0]
+    network, trace = space_network(), space_trace()
+    activation, reached = trace.activations[0], network.reached[0]
     arguments = {
         "draw_target": (reached.target,),
         "draw_pose": (reached.pose,),
         "draw_reached": (reached,),
         "draw_activation": (activation,),
-        "draw_candidates": (activation, network.candidates[0]),
-        "draw_trees": (network.trees,),
+        "draw_candidates": (activation, trace.candidates[0]),
+        "draw_trees": (trace.trees,),
         "draw_portrait": (reached.pose.nodes,),
     }
     return getattr(plot, kind)(network.robot, *arguments.get(kind, ()))

@@ -1,0 +1,38 @@
+"""`new_chart`: an empty chart in the look of the other pictures."""
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from hydrostat.plot.palette import GRID, INK, MUTED
+from hydrostat.plot.sheet import WIDTH
+
+EDGES = (0.62, 0.2, 0.5, 0.16)
+"""Left, right, lower and upper border [inch]."""
+
+
+def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0) -> tuple[Figure, Axes]:
+    """A figure with one chart, whose axis across counts in whole numbers.
+
+    Args:
+        across: words at the axis across.
+        up: words at the axis up, with their unit.
+        width: of the picture [inch].
+        height: of the picture [inch].
+    """
+    figure = Figure(figsize=(width, height), facecolor="none")
+    FigureCanvasAgg(figure)
+    left, right, lower, upper = EDGES
+    box = (left / width, lower / height, (width - left - right) / width, (height - lower - upper) / height)
+    axes = figure.add_axes(box)
+    axes.set_facecolor("none")
+    axes.grid(color=GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(MUTED)
+    axes.tick_params(colors=MUTED, labelsize=8)
+    axes.set_xlabel(across, color=INK, fontsize=8.5)
+    axes.set_ylabel(up, color=INK, fontsize=8.5)
+    axes.xaxis.set_major_locator(MaxNLocator(nbins=10, integer=True, min_n_ticks=1))
+    return figure, axes
