@@ -1,76 +1,75 @@
-"""`Region`: where in a flat body cables and winches may be."""
+"""`Region`: where in a body cables and winches may be."""
 
-from dataclasses import dataclass
-from functools import cached_property
+from abc import ABC, abstractmethod
 
 import numpy as np
 from jaxtyping import Bool, Float
-from shapely import LineString, Polygon, contains, distance, linestrings, points, polygonize
-from shapely.geometry.base import BaseGeometry
-from shapely.ops import nearest_points
 
+from hydrostat.arrays import Points
+from hydrostat.design.along import least_along
 from hydrostat.errors import InputError
+from hydrostat.geometry.shell import Nearest, Shell
 from hydrostat.robot import Body
 
 Route = Float[np.ndarray, "_ dim"]
 """Points that a cable runs through [m]."""
 
+MARGIN = 1.02
+"""Points are pushed so many clearances deep, so that rounding takes none out again."""
 
-@dataclass(frozen=True, eq=False)
-class Region:
-    """A flat body and the part of it that keeps a clearance from the edge.
+
+class Region(ABC):
+    """A body at rest and the part of it that keeps a clearance from its edge, or from its surface in space.
+
+    Points on a cable keep the whole clearance, straight segments between them at least half of it. The first point of a
+    cable of a winch in the world lies outside: callers leave it out.
 
     Attributes:
-        body: the whole body [m].
-        inner: the body less a margin of `clearance`, less a hair more for points pushed onto its rim.
+        shell: edge or surface of the body.
         clearance: [m].
     """
 
-    body: Polygon
-    inner: BaseGeometry
+    shell: Shell
     clearance: float
 
-    def push_inside(self, route: Route) -> Route:
-        """Each point, moved to the nearest place of the inner part if it lies outside."""
-        moved = route.copy()
-        for index in np.flatnonzero(~contains(self.inner, points(route))):
-            moved[index] = nearest_points(self.inner, points(route[index]))[0].coords[0]
-        return moved
+    def depths(self, places: Points) -> Float[np.ndarray, " points"]:
+        """Distance of points from the edge or surface [m]; negative outside."""
+        return -self._nearest(places).distances
 
-    def sees(self, start: Route, end: Route) -> Bool[np.ndarray, " segments"]:
-        """Whether each straight segment keeps at least half the clearance."""
-        segments = linestrings(np.stack([start, end], axis=1))
-        return np.asarray(contains(self._half, segments))
+    def inward(self, places: Points) -> Float[np.ndarray, "points dim"]:
+        """Unit vectors in which `depths` grows the fastest: its gradient, but where several places are the nearest."""
+        return -self._nearest(places).directions
+
+    def sees(
+        self, start: Float[np.ndarray, "segments dim"], end: Float[np.ndarray, "segments dim"]
+    ) -> Bool[np.ndarray, " segments"]:
+        """Whether each straight segment keeps at least half the clearance all along."""
+        half = 0.5 * self.clearance
+        return least_along(self.depths, start, end, half) >= half
 
     def holds(self, route: Route) -> bool:
         """Whether a whole route keeps at least half the clearance."""
-        return bool(contains(self._half, LineString(route)))
+        return bool(self.sees(route[:-1], route[1:]).all())
 
-    @cached_property
-    def _half(self) -> BaseGeometry:
-        """The body less half the clearance."""
-        return self.body.buffer(-0.5 * self.clearance)
+    @abstractmethod
+    def push_inside(self, route: Route) -> Route:
+        """Each point, moved to a near place `MARGIN` clearances deep if it is less deep."""
 
-    def depths(self, places: Float[np.ndarray, "places dim"]) -> Float[np.ndarray, " places"]:
-        """Distance of points from the edge of the body [m]; negative outside."""
-        spots = points(places)
-        return np.where(contains(self.body, spots), 1.0, -1.0) * distance(self.body.boundary, spots)
+    def _nearest(self, places: Points) -> Nearest:
+        return self.shell.nearest(places)
 
 
 def body_region(body: Body, clearance: float) -> Region:
-    """The region of a flat body.
+    """The region of a body, as it was drawn or scanned; of its mesh where there is no such thing.
 
     Raises:
-        InputError: a body in space, or one too thin for the clearance.
+        InputError: the body is too thin for the clearance everywhere.
     """
-    if body.mesh.dim != 2:
-        raise InputError("networks can be designed for flat bodies only, this body lies in space")
-    if body.outline is not None:
-        whole = body.outline.polygon
-    else:
-        rings = polygonize(list(np.asarray(linestrings(body.mesh.nodes[body.mesh.boundary]))))
-        whole = max((ring for ring in rings.geoms if isinstance(ring, Polygon)), key=lambda ring: ring.area)
-    inner = whole.buffer(-1.02 * clearance)
-    if inner.is_empty:
-        raise InputError(f"the body is too thin for cables {1e3 * clearance:g} mm inside its edge; lower the clearance")
-    return Region(whole, inner, clearance)
+    from hydrostat.design.flat_region import flat_region
+    from hydrostat.design.space_region import space_region
+
+    region = (flat_region if body.mesh.dim == 2 else space_region)(body, clearance)
+    if region is None:
+        depth = f"{1e3 * clearance:g} mm inside its {'edge' if body.mesh.dim == 2 else 'surface'}"
+        raise InputError(f"the body is too thin for cables {depth}; lower the clearance")
+    return region
