@@ -99,10 +99,10 @@ def _visits(parents, sources, targets, hop, label, slots, point):
 
 @njit(fastmath=FINE, **INNER)
 @no_type_check
-def _dot(first, one, second, two, begin, end):
+def _dot(first, one, second, two, pose):
     total = 0.0
-    for row in range(begin, end):
-        total += first[one, row] * second[two, row]
+    for row in range(first.shape[2]):
+        total += first[one, pose, row] * second[two, pose, row]
     return total
 
 
@@ -120,21 +120,34 @@ def decrease(pull, square, ridge, most):
 
 @njit(fastmath=FINE, **KERNEL)
 @no_type_check
-def edge_products(moves, residual, starts, pulls, squares):
-    """R . m and |m|^2 of each undirected edge in each pose."""
+def edge_products(moves, residual, pulls, squares):
+    """Of each undirected edge in each pose r . m and |m|^2; m is (edges, poses, rows), r (1, poses, rows)."""
     for edge in range(moves.shape[0]):
-        for pose in range(starts.shape[0] - 1):
-            pull, square = 0.0, 0.0
-            for row in range(starts[pose], starts[pose + 1]):
-                pull += residual[row] * moves[edge, row]
-                square += moves[edge, row] * moves[edge, row]
-            pulls[edge, pose] = pull
-            squares[edge, pose] = square
+        for pose in range(moves.shape[1]):
+            pulls[edge, pose] = _dot(residual, 0, moves, edge, pose)
+            squares[edge, pose] = _dot(moves, edge, moves, edge, pose)
 
 
 @njit(**KERNEL)
 @no_type_check
-def first_labels(edge_of, lengths, begins, rooms, moves, pulls, squares, ridge, most, labels, sums, values, parents):
+def first_labels(
+    sources,
+    targets,
+    edge_of,
+    lengths,
+    begins,
+    rooms,
+    moves,
+    pulls,
+    squares,
+    ridge,
+    most,
+    labels,
+    sums,
+    marks,
+    values,
+    parents,
+):
     """Labels of one edge, in the first slot of each directed edge that may begin a path. Layout: see `grow_labels`."""
     poses, slots = ridge.shape[0], values.shape[0] // edge_of.shape[0]
     for edge in range(edge_of.shape[0]):
@@ -152,8 +165,10 @@ def first_labels(edge_of, lengths, begins, rooms, moves, pulls, squares, ridge, 
         sums[label, 2 * poses] = rooms[edge] - lengths[own]
         sums[label, 2 * poses + 1] = begins[edge]
         values[label] = value * begins[edge]
-        for row in range(moves.shape[1]):
-            labels[label, row] = moves[own, row]
+        marks[label] = 1 << (sources[edge] & 63) | 1 << (targets[edge] & 63)
+        for pose in range(poses):
+            for row in range(moves.shape[2]):
+                labels[label, pose, row] = moves[own, pose, row]
 
 
 @njit(fastmath=FINE, **KERNEL)
@@ -167,7 +182,6 @@ def grow_labels(
     blocked,
     lengths,
     moves,
-    starts,
     pulls,
     squares,
     ridge,
@@ -175,10 +189,12 @@ def grow_labels(
     hop,
     labels,
     sums,
+    marks,
     values,
     parents,
     longer,
     longer_sums,
+    longer_marks,
     best,
     ranked,
     chosen,
@@ -187,6 +203,7 @@ def grow_labels(
 
     Label `edge * slots + slot` is a path that ends with a directed edge. Its row of `labels` is what it moves; of
     `sums` r . J of each pose, |J|^2 of each pose, the length it may still grow by, and the factor of its value.
+    `marks` has a bit set for each of its points, by their numbers modulo 64: a bit that is not set rules a point out.
     `values[hop]` is what it gains, -inf for none; `parents[hop]` the label it grew from. The first half of the slots is
     for the largest gains, the rest for the largest r . J of those that are left: a long strong path that is not yet
     well aimed survives. `best`, `ranked` and `chosen` are room for the slots.
@@ -194,7 +211,7 @@ def grow_labels(
     poses, slots = ridge.shape[0], best.shape[0]
     sharp = (slots + 1) // 2
     for edge in range(edge_of.shape[0]):
-        own = edge_of[edge]
+        own, mark = edge_of[edge], 1 << (targets[edge] & 63)
         for slot in range(slots):
             best[slot] = -math.inf
             ranked[slot] = -math.inf
@@ -207,7 +224,7 @@ def grow_labels(
                         continue
                     value, price = 0.0, 0.0
                     for pose in range(poses):
-                        cross = _dot(labels, label, moves, own, starts[pose], starts[pose + 1])
+                        cross = _dot(labels, label, moves, own, pose)
                         pull = sums[label, pose] + pulls[own, pose]
                         square = sums[label, poses + pose] + 2.0 * cross + squares[own, pose]
                         value += decrease(pull, square, ridge[pose], most)
@@ -216,7 +233,7 @@ def grow_labels(
                     price *= sums[label, 2 * poses + 1]
                     if value <= best[sharp - 1] and (slots == sharp or price <= ranked[slots - 1]):
                         continue
-                    if _visits(parents, sources, targets, hop - 1, label, slots, targets[edge]):
+                    if marks[label] & mark and _visits(parents, sources, targets, hop - 1, label, slots, targets[edge]):
                         continue
                     _insert(label, value, price, sharp, best, ranked, chosen)
         for slot in range(slots):
@@ -226,13 +243,15 @@ def grow_labels(
             if label < 0:
                 continue
             for pose in range(poses):
-                cross = _dot(labels, label, moves, own, starts[pose], starts[pose + 1])
+                cross = _dot(labels, label, moves, own, pose)
                 longer_sums[grown, pose] = sums[label, pose] + pulls[own, pose]
                 longer_sums[grown, poses + pose] = sums[label, poses + pose] + 2.0 * cross + squares[own, pose]
+            longer_marks[grown] = marks[label] | mark
             longer_sums[grown, 2 * poses] = sums[label, 2 * poses] - lengths[own]
             longer_sums[grown, 2 * poses + 1] = sums[label, 2 * poses + 1]
-            for row in range(moves.shape[1]):
-                longer[grown, row] = labels[label, row] + moves[own, row]
+            for pose in range(poses):
+                for row in range(moves.shape[2]):
+                    longer[grown, pose, row] = labels[label, pose, row] + moves[own, pose, row]
 
 
 @njit(**INNER)

@@ -120,10 +120,10 @@ def price_paths(
 
         D(J) = sum over poses of max over t in [0, most] of t r.J - t^2 (|J|^2 + ridge) / 2.
 
-    That is not additive, so that a dynamic program over directed edges and hops keeps a few paths for each: those of the
-    largest D, and those of the largest r.J, which D of something longer needs. Two passes, one from the winches and one
-    towards them, see different paths; the better ones of both are returned. Exact for one and two edges, else a
-    heuristic: how near it comes to the best of all paths is tested.
+    That is not additive, so a dynamic program over directed edges and hops keeps a few paths for each: those of the
+    largest D, and those of the largest r.J, which become good when they are longer. Two passes, one from the winches
+    and one towards them, see different paths; the better ones of both are returned. Exact for one and two edges, else
+    a heuristic: how near it comes to the best of all paths is tested.
 
     Args:
         graph: of via points.
@@ -156,6 +156,9 @@ _ALIKE = 0.7
 
 _SOME = 4
 """At most one path in so many, and at least two, stand in one region of winches while there are others."""
+
+_LANES = 4
+"""Numbers that a vector register holds."""
 
 
 class _Starts:
@@ -204,12 +207,11 @@ class _Search:
         self.graph, self.ridge, self.most = graph, ridge, float(most)
         self.hops, self.slots = limits.hops, slots
         self.turns, self.before = _turns(graph, limits.turn)
-        self.order = np.argsort(pose_of_row, kind="stable")
-        self.moves = np.ascontiguousarray(moves[:, self.order], dtype=float)
-        self.residual = np.ascontiguousarray(residual[self.order], dtype=float)
-        self.starts = np.searchsorted(pose_of_row[self.order], np.arange(len(ridge) + 1))
-        self.pulls, self.squares = np.empty((2, len(moves), len(ridge)))
-        edge_products(self.moves, self.residual, self.starts, self.pulls, self.squares)
+        self.moves = _by_pose(moves, pose_of_row, len(ridge))
+        self.residual = _by_pose(residual[None], pose_of_row, len(ridge))
+        self.plain, self.pulls = moves, np.empty((len(moves), len(ridge)))
+        self.squares = np.empty_like(self.pulls)
+        edge_products(self.moves, self.residual, self.pulls, self.squares)
 
     def from_winches(self, starts: _Starts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
         """Gains and points of the best path that ends with each directed edge."""
@@ -232,28 +234,30 @@ class _Search:
     ) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
         """Labels of all hops; then for each directed edge the best that ends with it and has some length left."""
         graph, size = self.graph, len(self.graph.sources) * self.slots
-        labels, longer = np.empty((2, size, self.moves.shape[1]))
+        labels, longer = np.empty((2, size, *self.moves.shape[1:]))
         sums, longer_sums = np.empty((2, size, 2 * len(self.ridge) + 2))
+        marks, longer_marks = np.empty((2, size), dtype=np.int64)
         values, parents = np.empty((self.hops, size)), np.empty((self.hops, size), dtype=np.int64)
         lengths, edge_of = graph.lengths, graph.edge_of
         best, ranked = np.empty((2, self.slots))
         chosen = np.empty(self.slots, dtype=np.int64)
         gains = np.full((self.hops, size), -np.inf)
-        given = (self.moves, self.starts, self.pulls, self.squares, self.ridge, self.most)
+        given = (self.moves, self.pulls, self.squares, self.ridge, self.most)
         for hop in range(self.hops):
             if hop == 0:
                 first_labels(
-                    edge_of, lengths, begins, rooms, self.moves, self.pulls, self.squares, self.ridge, self.most,
-                    longer, longer_sums, values[0], parents[0],
+                    graph.sources, graph.targets, edge_of, lengths, begins, rooms, self.moves, self.pulls, self.squares,
+                    self.ridge, self.most, longer, longer_sums, longer_marks, values[0], parents[0],
                 )  # fmt: skip
             else:
                 grow_labels(
                     self.turns, self.before, graph.sources, graph.targets, edge_of, blocked, lengths, *given, hop,
-                    labels, sums, values, parents, longer, longer_sums, best, ranked, chosen,
+                    labels, sums, marks, values, parents, longer, longer_sums, longer_marks, best, ranked, chosen,
                 )  # fmt: skip
             good = np.isfinite(values[hop]) & (longer_sums[:, -2] >= np.repeat(left, self.slots))
             gains[hop, good] = values[hop, good] * np.repeat(factors, self.slots)[good]
             labels, longer, sums, longer_sums = longer, labels, longer_sums, sums
+            marks, longer_marks = longer_marks, marks
         flat = gains.reshape(self.hops, -1, self.slots).transpose(1, 0, 2).reshape(len(edge_of), -1)
         which = flat.argmax(axis=1)
         hops, slots = np.divmod(which, self.slots)
@@ -265,15 +269,16 @@ class _Search:
     def priced(self, path: Int[np.ndarray, " points"], lead: tuple[int, ...], gain: float) -> PricedPath:
         """All that there is to know of a path."""
         points = path[path >= 0]
-        moves = self.moves[_edges(self.graph, points)].sum(axis=0)
-        tensions = np.zeros(len(self.ridge))
-        for pose, ridge in enumerate(self.ridge):
-            rows = slice(self.starts[pose], self.starts[pose + 1])
-            pull = self.residual[rows] @ moves[rows]
-            tensions[pose] = np.clip(pull / (moves[rows] @ moves[rows] + ridge), 0.0, self.most)
-        back = np.empty_like(moves)
-        back[self.order] = moves
-        return PricedPath(nodes=tuple(points.tolist()), lead=lead, gain=gain, moves=back, tensions=tensions)
+        edges = _edges(self.graph, points)
+        moves = self.moves[edges].sum(axis=0)
+        pulls, squares = (self.residual[0] * moves).sum(axis=1), (moves**2).sum(axis=1)
+        return PricedPath(
+            nodes=tuple(points.tolist()),
+            lead=lead,
+            gain=gain,
+            moves=self.plain[edges].sum(axis=0),
+            tensions=np.clip(pulls / (squares + self.ridge), 0.0, self.most),
+        )
 
 
 def _pick(
@@ -304,6 +309,18 @@ def _likeness(path: Int[np.ndarray, " points"], others: Int[np.ndarray, "paths p
     share = np.zeros(1)
     share_edges(path, others, share)
     return float(share[0])
+
+
+def _by_pose(
+    table: Float[np.ndarray, "things rows"], pose_of_row: Int[np.ndarray, " rows"], poses: int
+) -> Float[np.ndarray, "things poses width"]:
+    """Columns sorted into poses, with noughts behind the shorter ones; the width fills vector registers."""
+    counts = np.bincount(pose_of_row, minlength=poses)
+    width = -(-int(counts.max(initial=1)) // _LANES) * _LANES
+    split = np.zeros((len(table), poses, width))
+    for pose, count in enumerate(counts):
+        split[:, pose, :count] = table[:, pose_of_row == pose]
+    return split
 
 
 def _turned(paths: Int[np.ndarray, "paths points"]) -> Int[np.ndarray, "paths points"]:

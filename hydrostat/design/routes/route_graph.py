@@ -139,11 +139,12 @@ def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spaci
         points, edges = np.concatenate([points, winches]), np.concatenate([edges, entries])
     else:
         places = _winch_places(points, region, constraints)
+    edges = edges[np.lexsort((edges[:, 1], edges[:, 0]))]
     return RouteGraph(
         points=points,
         anchors=anchors,
-        edges=edges[np.lexsort((edges[:, 1], edges[:, 0]))],
-        still=_meets(points, edges[np.lexsort((edges[:, 1], edges[:, 0]))], constraints.still),
+        edges=edges,
+        still=_meets(points, edges, constraints.still),
         winch_places=places,
         size=mesh.size,
         region=region,
@@ -159,9 +160,6 @@ _REACH = 2.0
 _NEIGHBOURS = {2: 12, 3: 18}
 """So many of the nearest points is each joined to, by dimension: enough directions for a cable to follow the field."""
 
-_SAMPLES = 17
-"""Points along an edge at which zones are asked for."""
-
 
 def _via_points(
     nodes: Nodes, region: Region, constraints: Constraints, spacing: float
@@ -173,14 +171,14 @@ def _via_points(
     """
     moved = region.push_inside(nodes)
     shifts = np.linalg.norm(moved - nodes, axis=1)
-    good = (region.depths(moved) >= 0.9 * constraints.clearance) & (shifts <= 2 * constraints.clearance + spacing)
+    good = (region.depths(moved) >= region.clearance) & (shifts <= 2 * region.clearance + spacing)
     good &= _outside(moved, constraints.keep_out)
     order = np.flatnonzero(good)
     order = order[np.argsort(shifts[order] > 1e-12, kind="stable")]
     kept: list[int] = []
-    for node in order:
+    for node in order.tolist():
         if not kept or np.linalg.norm(moved[kept] - moved[node], axis=1).min() >= _CROWDED * spacing:
-            kept.append(int(node))
+            kept.append(node)
     chosen = np.array(sorted(kept), dtype=np.int64)
     return chosen, moved[chosen]
 
@@ -191,7 +189,7 @@ def _near(points: Points, nodes: Int[np.ndarray, " points"], mesh_edges: Pairs, 
     from scipy.spatial import KDTree
 
     count = min(_NEIGHBOURS[points.shape[1]] + 1, len(points))
-    away, near = KDTree(points).query(points, k=count, distance_upper_bound=_REACH * spacing)
+    away, near = map(np.asarray, KDTree(points).query(points, k=count, distance_upper_bound=_REACH * spacing))
     rows, columns = np.nonzero(np.isfinite(away))
     pairs = np.column_stack([rows, near[rows, columns]])
     number = np.full(max(int(mesh_edges.max(initial=0)), int(nodes.max())) + 1, -1)
@@ -254,15 +252,8 @@ def _outside(points: Points, zones: Sequence[Zone]) -> Bool[np.ndarray, " points
 
 
 def _meets(points: Points, pairs: Pairs, zones: Sequence[Zone]) -> Bool[np.ndarray, " edges"]:
-    """Which segments pass through a zone, or so near that samples along them cannot rule it out."""
+    """Which segments pass through a zone."""
     meets = np.zeros(len(pairs), dtype=bool)
-    if not len(pairs):
-        return meets
-    start, end = points[pairs[:, 0]], points[pairs[:, 1]]
-    shares = np.linspace(0.0, 1.0, _SAMPLES)[:, None]
-    samples = (start[:, None] + shares * (end - start)[:, None]).reshape(-1, points.shape[1])
-    gaps = np.linalg.norm(end - start, axis=1) / (_SAMPLES - 1)
     for zone in zones:
-        nearest = zone.distances(samples).reshape(len(pairs), _SAMPLES).min(axis=1)
-        meets |= nearest < 0.5 * gaps
+        meets |= zone.least(points[pairs[:, 0]], points[pairs[:, 1]]) < 0
     return meets
