@@ -1,14 +1,22 @@
 """`Constraints`: what makes a network one that can be built."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isfinite
+from numbers import Integral, Real
+from typing import NoReturn, TypeGuard
 
 from hydrostat.design.zone import Zone
-from hydrostat.robot import Mount
+from hydrostat.errors import InputError
+from hydrostat.robot import Mount, Robot
+from hydrostat.robot.robot import LARGEST_STEP
 
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
     """Limits that every returned network keeps (R12, R14, R44); lengths in metres, at rest.
+
+    `hydrostat.design.buildable` tells whether a network keeps them, and how each of them is measured.
 
     Attributes:
         winch_zones: winches stand in one of these only; anywhere in the body if there is none.
@@ -19,7 +27,7 @@ class Constraints:
         cables_per_winch: most cables of one winch (R44).
         clearance: least distance of a cable from the edge of the body.
         winch_clearance: least distance of a winch in the body from its edge.
-        winch_gap: least distance between two winches.
+        winch_gap: least distance between two winches, unless both stand in the world.
         hole_gap: least distance between two holes through which cables pass the cloth.
         turn: largest turn of a cable at a via point [degrees].
         bend_radius: least radius of the arc that fits a turn between the middles of its two segments.
@@ -32,9 +40,13 @@ class Constraints:
         slack: the most that a stopper may leave loose (E12).
         spool_ratio: most times by which a cable's own spool may be larger or smaller than its winch's; 1: none may.
         leads: whether a cable may run in a sheath from its winch to where bending should begin (R14).
-        mirror: axis whose sign a left-right symmetric network does not feel: "x", "y" or "z"; None: no symmetry.
+        mirror: axis whose sign a left-right symmetric network does not feel: "x", "y" or "z"; None: no symmetry. The
+            mirror is the plane where that coordinate is 0, the middle of what was drawn.
         locked_winches: names of the robot's own winches that stay.
         locked_cables: numbers of the robot's own cables that stay as they are, and their winches with them.
+
+    Raises:
+        InputError: a value of the wrong kind or out of its range.
     """
 
     winch_zones: tuple[Zone, ...] = ()
@@ -60,3 +72,144 @@ class Constraints:
     mirror: str | None = None
     locked_winches: tuple[str, ...] = ()
     locked_cables: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        for field in ("winch_zones", "keep_out", "still", "locked_winches", "locked_cables"):
+            object.__setattr__(self, field, _several(field, getattr(self, field)))
+        for field in ("winch_zones", "keep_out", "still"):
+            for place, zone in enumerate(getattr(self, field)):
+                if not isinstance(zone, Zone):
+                    _refuse(f"{field}[{place}]", zone, "a Zone, such as Zone(at=(0.0, 0.0), radius=0.01)")
+        if self.mount is not None:
+            if self.mount not in list(Mount):
+                _refuse("mount", self.mount, '"body", "world", or None to do as the robot does')
+            object.__setattr__(self, "mount", Mount(self.mount))
+        if not isinstance(self.leads, bool):
+            _refuse("leads", self.leads, "True or False")
+        if self.mirror not in (None, "x", "y", "z"):
+            _refuse("mirror", self.mirror, '"x", "y", "z", or None for no symmetry')
+        self._check_numbers()
+        self._check_locks()
+
+    @property
+    def tension_limit(self) -> float:
+        """The most that any cable may be pulled with [N].
+
+        By the cable itself, or by the motor when all the cables that its winch may have pull so hard, on the largest
+        spools that they may have.
+        """
+        if self.torque is None:
+            return self.tension
+        arm = self.spool_radius * self.spool_ratio
+        return min(self.tension, self.torque / (arm * self.cables_per_winch))
+
+    def check(self, robot: Robot) -> None:
+        """Refuse a robot that these constraints do not fit.
+
+        Raises:
+            InputError: a zone of another dimension, a winch or cable to lock that it does not have, a mirror that its
+                body is not centred on, or winches in the world where it has no winch to stand for one.
+        """
+        mesh = robot.body.mesh
+        for field in ("winch_zones", "keep_out", "still"):
+            for place, zone in enumerate(getattr(self, field)):
+                if zone.dim != mesh.dim:
+                    raise InputError(
+                        f"constraints: {field}[{place}] has {zone.dim} dimensions, the body {mesh.dim}; "
+                        f"give its points {mesh.dim} coordinates"
+                    )
+        for place, name in enumerate(self.locked_winches):
+            try:
+                robot.winch(name)
+            except InputError as error:
+                raise InputError(f"constraints: locked_winches[{place}]: {error}") from None
+        for place, number in enumerate(self.locked_cables):
+            if number >= len(robot.cables):
+                known = f"from 0 to {len(robot.cables) - 1}" if robot.cables else "none"
+                raise InputError(
+                    f"constraints: locked_cables[{place}] = {number}: the robot has no such cable; its numbers: {known}"
+                )
+        if self.mount is Mount.WORLD and not robot.winches:
+            raise InputError(
+                'constraints: mount = "world": winches in the world stand at places of the robot\'s own winches, and '
+                "it has none; add a [[winch]] at each place where one may stand"
+            )
+        self._check_mirror(robot)
+
+    def _check_mirror(self, robot: Robot) -> None:
+        if self.mirror is None:
+            return
+        mesh, axis = robot.body.mesh, "xyz".index(self.mirror)
+        if axis >= mesh.dim:
+            raise InputError(f'constraints: mirror = "{self.mirror}": a flat body has no such axis; choose "x" or "y"')
+        low, high = float(mesh.nodes[:, axis].min()), float(mesh.nodes[:, axis].max())
+        if abs(low + high) > _ASKEW * (high - low):
+            raise InputError(
+                f'constraints: mirror = "{self.mirror}": the body must lie evenly about {self.mirror} = 0, not from '
+                f"{1e3 * low:.4g} to {1e3 * high:.4g} mm; move it there, or set mirror to None"
+            )
+
+    def _check_numbers(self) -> None:
+        for field, unit in _ABOVE_ZERO.items():
+            value = getattr(self, field)
+            if not (value is None and field in _OPTIONAL) and not (_is_number(value) and value > 0):
+                _refuse(field, value, f"finite and above 0{unit}" + (", or None" if field in _OPTIONAL else ""))
+        for field in _NOT_NEGATIVE:
+            value = getattr(self, field)
+            if not (_is_number(value) and value >= 0):
+                _refuse(field, value, "finite and at least 0 m")
+        if not (_is_number(self.turn) and 0 < self.turn <= 180):
+            _refuse("turn", self.turn, "above 0 and at most 180 degrees")
+        if not (_is_number(self.spool_ratio) and 1 <= self.spool_ratio <= LARGEST_STEP):
+            _refuse("spool_ratio", self.spool_ratio, f"at least 1 and at most {LARGEST_STEP:g}")
+        if not (_is_count(self.cables_per_winch) and self.cables_per_winch >= 1):
+            _refuse("cables_per_winch", self.cables_per_winch, "a whole number of at least 1")
+
+    def _check_locks(self) -> None:
+        for place, name in enumerate(self.locked_winches):
+            if not isinstance(name, str):
+                _refuse(f"locked_winches[{place}]", name, "the name of a winch")
+        for place, number in enumerate(self.locked_cables):
+            if not (_is_count(number) and number >= 0):
+                _refuse(f"locked_cables[{place}]", number, "the number of a cable, 0 for the first")
+        for field in ("locked_winches", "locked_cables"):
+            values = getattr(self, field)
+            for value in values:
+                if values.count(value) > 1:
+                    raise InputError(f"constraints: {field} names {value!r} twice; name it once")
+
+
+_ABOVE_ZERO = {
+    "clearance": " m",
+    "longest": " m",
+    "tension": " N",
+    "torque": " N m",
+    "travel": " m",
+    "spool_radius": " m",
+}
+"""Numbers that must be above 0, and their units."""
+
+_OPTIONAL = ("longest", "torque")
+
+_NOT_NEGATIVE = ("winch_clearance", "winch_gap", "hole_gap", "bend_radius", "release", "slack")
+
+_ASKEW = 0.02
+"""Share of its width by which a body's two sides may lie unevenly about a mirror."""
+
+
+def _is_number(value: object) -> TypeGuard[float]:
+    return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
+
+
+def _is_count(value: object) -> TypeGuard[int]:
+    return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+def _several(field: str, given: object) -> tuple[object, ...]:
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        _refuse(field, given, "several values in brackets, such as () for none")
+    return tuple(given)
+
+
+def _refuse(field: str, value: object, allowed: str) -> NoReturn:
+    raise InputError(f"constraints: {field} must be {allowed}, not {value!r:.60}")

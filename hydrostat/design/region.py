@@ -7,9 +7,7 @@ from jaxtyping import Bool, Float
 
 from hydrostat.arrays import Points
 from hydrostat.design.along import least_along
-from hydrostat.errors import InputError
 from hydrostat.geometry.shell import Nearest, Shell
-from hydrostat.robot import Body
 
 Route = Float[np.ndarray, "_ dim"]
 """Points that a cable runs through [m]."""
@@ -57,19 +55,3 @@ class Region(ABC):
 
     def _nearest(self, places: Points) -> Nearest:
         return self.shell.nearest(places)
-
-
-def body_region(body: Body, clearance: float) -> Region:
-    """The region of a body, as it was drawn or scanned; of its mesh where there is no such thing.
-
-    Raises:
-        InputError: the body is too thin for the clearance everywhere.
-    """
-    from hydrostat.design.flat_region import flat_region
-    from hydrostat.design.space_region import space_region
-
-    region = (flat_region if body.mesh.dim == 2 else space_region)(body, clearance)
-    if region is None:
-        depth = f"{1e3 * clearance:g} mm inside its {'edge' if body.mesh.dim == 2 else 'surface'}"
-        raise InputError(f"the body is too thin for cables {depth}; lower the clearance")
-    return region

@@ -5,7 +5,7 @@ import pytest
 import shapely
 from builders import strip_robot
 
-from hydrostat.design.region import body_region
+from hydrostat.design.body_region import body_region
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, length, resample, strongest
 
 LIMITS = GrowthLimits(distance=0.5, steps=20, turn=60.0, spacing=1.0)

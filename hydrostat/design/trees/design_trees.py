@@ -9,13 +9,14 @@ from math import comb
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.design.body_region import body_region
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.muscles.activation import Activation, activate
 from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
 from hydrostat.design.muscles.orientation import wanted_directions
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.design.progress import Progress
-from hydrostat.design.region import Route, body_region
+from hydrostat.design.region import Route
 from hydrostat.design.tree_options import TreeOptions
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, length, sharpest_turn, strongest
 from hydrostat.design.trees.judge import judge
