@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.ik import Effort, EffortKind, Limits, MarkerGoal, solve_ik
+from hydrostat.ik import Effort, EffortKind, InverseOptions, Limits, MarkerGoal, solve_ik
 from hydrostat.ik.limits import bounds
 from hydrostat.ik.objectives.postures import moves_at, posture_at, posture_of
 from hydrostat.ik.search.linear_model import channels, slopes
+from hydrostat.ik.search.search import Search, _full_tension
 from hydrostat.robot import Cable, Robot, Winch
 from hydrostat.simulation import Simulation
 from hydrostat.testing import check_objective
@@ -90,6 +91,37 @@ def test_what_a_shaft_lets_out_to_be_slack() -> None:
     fallen = fall / RATIOS[first]
     after = simulation.cables.stretches(nodes, values - np.array([fallen + places.beyond[0], 0.0]))[first]
     assert after == pytest.approx(-0.01 * simulation.cables.law.smoothing[first], abs=1e-12)
+
+
+def test_a_shaft_that_hardly_pulls_is_let_go() -> None:
+    """Oracle: its first cable is slack by what a plain winch would leave, however small its spool."""
+    robot = stepped()
+    robot = robot.with_network(robot.winches, [replace(cable, spool_radius=0.005) for cable in robot.cables])
+    simulation = Simulation(robot)
+    pose = simulation.solve(np.array([0.01665, 0.028]))
+    goal = MarkerGoal(targets={"tip": tuple(pose.markers["tip"])}).on(simulation)
+    search = Search(simulation, [goal], bounds(simulation, Limits()), InverseOptions(tolerance=1e-3))
+    state = search.begin(pose)
+    assert 0 < state.posture.tensions[0] < 1e-3 * state.posture.tensions[2]
+    tidied = search.tidied(state)
+    assert tidied.posture.stretches[:2].max() <= 0
+    assert tidied.values[0] == pytest.approx(0.0)
+
+
+def test_weights_count_what_cables_take_in() -> None:
+    """Oracle: the same cables on winches of their own that travel in proportion."""
+    robot = stepped()
+    winches = [
+        Winch(name=str(number), at=cable.points[0], travel=ratio * 0.03)
+        for number, (cable, ratio) in enumerate(zip(robot.cables, RATIOS, strict=True))
+    ]
+    cables = [replace(cable, winch=str(number), spool_radius=None) for number, cable in enumerate(robot.cables)]
+    shared, apart = Simulation(robot), Simulation(robot.with_network(winches, cables))
+    assert _full_tension(shared) == pytest.approx(_full_tension(apart), rel=1e-9)
+    slack = posture_at(shared, shared.solve(np.array([0.0, 0.005])))
+    found, expected = (Effort(of="slack").on(simulation).residual(slack) for simulation in (shared, apart))
+    assert found == pytest.approx(expected, rel=1e-12)
+    assert (found != 0).sum() == 2
 
 
 @pytest.mark.parametrize("wanted", [(0.006, 0.008), (0.009, 0.0), (0.0, 0.01)])

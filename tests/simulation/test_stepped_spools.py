@@ -42,6 +42,7 @@ def test_a_step_takes_in_by_its_radius(pair: tuple[Simulation, Simulation]) -> N
     assert np.abs(expected.nodes - pair[0].robot.body.mesh.nodes).max() > 0.05 * size
     assert np.abs(pose.nodes - expected.nodes).max() < 1e-9 * size
     assert pose.tensions == pytest.approx(expected.tensions, rel=1e-8)
+    assert pose.result.iterations == expected.result.iterations
     assert pose.slips == pytest.approx(expected.slips, abs=1e-9 * size)
 
 
