@@ -1,0 +1,105 @@
+"""`violations` and `pulls`: everything about a network that breaks its constraints."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hydrostat.design.checks.bends import bend_violations
+from hydrostat.design.checks.holes import hole_violations
+from hydrostat.design.checks.mirror import mirror_violations
+from hydrostat.design.checks.parts import LENGTH, Parts, mm
+from hydrostat.design.checks.ways import way_violations
+from hydrostat.design.checks.winches import winch_violations
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import Region
+from hydrostat.ik import ReachedPose
+from hydrostat.robot import Robot
+
+
+def violations(robot: Robot, constraints: Constraints, region: Region, *, source: Robot | None = None) -> list[str]:
+    """What about a network cannot be built: a sentence for each place where a constraint is broken.
+
+    Lengths may miss a limit by 0.02 mm and angles by 0.1 degrees, for coordinates are rounded to 0.01 mm. What is
+    locked is not looked at, but what is new must keep its distances from it.
+
+    - Points of cables keep the clearance from the edge or surface, straight segments half of it. Where a cable enters
+      from the world, or begins at a winch that is locked, neither that point nor a clearance's way on from it counts.
+    - Segments keep out of `keep_out` along their whole length, bare ones out of `still`; without `leads`, sheaths are
+      for `still` alone.
+    - Holes are all points of cables but the first. Two that coincide are one. In the body, winches keep two spool
+      radii from holes of cables that others pull.
+    - The bend at a point is the arc that touches both segments half-way along the shorter.
+    - Whether a winch in the world stands where one may is not looked at.
+
+    Args:
+        robot: with the network.
+        constraints: that it should keep.
+        region: of its body, `body_region(robot.body, constraints.clearance)`.
+        source: the robot that the network was designed for, whose cables `locked_cables` counts; the robot itself if
+            left out.
+
+    Returns:
+        Sentences that name the part, its value and the limit; none for a network that can be built.
+    """
+    parts = Parts(robot, constraints, region, source or robot)
+    return [
+        *winch_violations(parts),
+        *way_violations(parts),
+        *hole_violations(parts),
+        *bend_violations(parts),
+        *mirror_violations(parts),
+    ]
+
+
+def pulls(robot: Robot, reached: Sequence[ReachedPose], constraints: Constraints) -> list[str]:
+    """What poses ask of winches and cables beyond what they can do: tension, contraction and torque.
+
+    Tensions and torques may exceed their limit by 0.1 %, contractions by 0.02 mm.
+
+    Args:
+        robot: with the network.
+        reached: poses of it.
+        constraints: that tell how hard cables and motors pull; travel and release are each winch's own.
+
+    Returns:
+        Sentences that name the pose, the part, its value and the limit; none if all is within.
+    """
+    return [sentence for number, one in enumerate(reached) for sentence in _pulled(robot, number, one, constraints)]
+
+
+_SHARE = 1.001
+"""Forces may be so many times their limit: solvers end near it."""
+
+
+def _pulled(robot: Robot, number: int, reached: ReachedPose, constraints: Constraints) -> list[str]:
+    name = f'pose "{reached.target.name}"' if reached.target is not None else f"pose {number}"
+    tensions, contractions = reached.pose.tensions, reached.pose.contractions
+    most, found = constraints.tension_limit, []
+    found += [
+        f"{name}: cable[{index}] is pulled with {tension:.4g} N, more than {most:.4g} N"
+        for index, tension in enumerate(tensions)
+        if tension > _SHARE * most
+    ]
+    for index, (winch, contraction) in enumerate(zip(robot.winches, contractions, strict=True)):
+        which = f"{name}: winch[{index}] {winch.name}"
+        if contraction > winch.travel + LENGTH:
+            found.append(f"{which} takes in {mm(contraction)}, more than its travel of {mm(winch.travel)}")
+        if contraction < -winch.release - LENGTH:
+            found.append(f"{which} lets out {mm(-contraction)}, more than its release of {mm(winch.release)}")
+    return found + _turned(robot, name, tensions, constraints)
+
+
+def _turned(robot: Robot, name: str, tensions: np.ndarray, constraints: Constraints) -> list[str]:
+    """Motors that would have to give more than they can."""
+    if constraints.torque is None:
+        return []
+    found = []
+    for index, winch in enumerate(robot.winches):
+        own = [number for number, cable in enumerate(robot.cables) if cable.winch == winch.name]
+        torque = float(winch.spool_radius * (robot.spool_ratios[own] * tensions[own]).sum())
+        if torque > _SHARE * constraints.torque:
+            found.append(
+                f"{name}: winch[{index}] {winch.name} must give {torque:.4g} N m, "
+                f"more than the torque of {constraints.torque:.4g} N m"
+            )
+    return found

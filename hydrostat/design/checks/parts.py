@@ -1,0 +1,87 @@
+"""`Parts`: the winches and cables of a network that constraints are for, and how what breaks them is told."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import Region
+from hydrostat.robot import Cable, Mount, Robot, Winch
+
+LENGTH = 2e-5
+"""Lengths may miss a limit by so much [m], for coordinates are rounded to half of it."""
+
+ANGLE = 0.1
+"""Angles may miss a limit by so much [degrees], for the same reason."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """A network within constraints.
+
+    Attributes:
+        robot: with the network.
+        constraints: that it should keep.
+        region: of its body.
+        source: the robot that the network was designed for; it knows the cables that are locked by their numbers.
+    """
+
+    robot: Robot
+    constraints: Constraints
+    region: Region
+    source: Robot
+
+    @cached_property
+    def new_winches(self) -> tuple[int, ...]:
+        """Numbers of the winches that are not locked."""
+        stays = {*self.constraints.locked_winches, *(cable.winch for cable in self._locked)}
+        return tuple(index for index, winch in enumerate(self.robot.winches) if winch.name not in stays)
+
+    @cached_property
+    def new_cables(self) -> tuple[int, ...]:
+        """Numbers of the cables that are not locked."""
+        return tuple(index for index, cable in enumerate(self.robot.cables) if cable not in self._locked)
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """Number of each winch by its name."""
+        return {winch.name: index for index, winch in enumerate(self.robot.winches)}
+
+    @cached_property
+    def points(self) -> tuple[Float[np.ndarray, "_ dim"], ...]:
+        """Points of each cable [m]."""
+        return tuple(np.array(cable.points, dtype=float) for cable in self.robot.cables)
+
+    def winch_of(self, cable: Cable) -> Winch:
+        """The winch that pulls a cable."""
+        return self.robot.winches[self.numbers[cable.winch]]
+
+    def outside(self, cable: Cable) -> bool:
+        """Whether a cable begins in the world."""
+        return self.winch_of(cable).mount is Mount.WORLD
+
+    def winch_name(self, index: int) -> str:
+        """A winch as a sentence begins with it."""
+        return f"winch[{index}] {self.robot.winches[index].name}"
+
+    @cached_property
+    def edge(self) -> str:
+        """What a body ends at."""
+        return "edge" if self.robot.body.mesh.dim == 2 else "surface"
+
+    @cached_property
+    def _locked(self) -> tuple[Cable, ...]:
+        return tuple(cable for index, cable in enumerate(self.source.cables) if index in self.constraints.locked_cables)
+
+
+def mm(length: float) -> str:
+    """A length [m] in millimetres, to a hundredth."""
+    return f"{round(1e3 * float(length), 2) + 0.0:g} mm"
+
+
+def place(point: Iterable[float]) -> str:
+    """A place [m] in millimetres, to a tenth."""
+    return "[" + ", ".join(f"{round(1e3 * float(value), 1) + 0.0:g}" for value in point) + "] mm"

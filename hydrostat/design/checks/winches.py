@@ -1,0 +1,80 @@
+"""`winch_violations`: where winches stand, and what they are."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from hydrostat.design.checks.parts import LENGTH, Parts, mm, place
+from hydrostat.robot import Mount
+
+
+def winch_violations(parts: Parts) -> Iterator[str]:
+    """Winches outside their zones, near the edge or each other, of other sizes, or with too many cables."""
+    yield from _out_of_zones(parts)
+    yield from _near_the_edge(parts)
+    yield from _near_each_other(parts)
+    yield from _of_other_makes(parts)
+    yield from _crowded(parts)
+
+
+def _out_of_zones(parts: Parts) -> Iterator[str]:
+    zones = parts.constraints.winch_zones
+    if not zones:
+        return
+    for index in parts.new_winches:
+        at = np.array([parts.robot.winches[index].at], dtype=float)
+        away = min(float(zone.distances(at)[0]) for zone in zones)
+        if away > LENGTH:
+            yield f"{parts.winch_name(index)} stands at {place(at[0])}, {mm(away)} outside the nearest of winch_zones"
+
+
+def _near_the_edge(parts: Parts) -> Iterator[str]:
+    inside = [index for index in parts.new_winches if parts.robot.winches[index].mount is Mount.BODY]
+    if not inside:
+        return
+    least = parts.constraints.winch_clearance
+    depths = parts.region.depths(np.array([parts.robot.winches[index].at for index in inside], dtype=float))
+    for index, depth in zip(inside, depths, strict=True):
+        if depth < least - LENGTH:
+            yield (
+                f"{parts.winch_name(index)} stands {mm(depth)} inside the {parts.edge}, "
+                f"less than the winch_clearance of {mm(least)}"
+            )
+
+
+def _near_each_other(parts: Parts) -> Iterator[str]:
+    least, winches = parts.constraints.winch_gap, parts.robot.winches
+    for one, other in combinations(range(len(winches)), 2):
+        both_given = winches[one].mount is Mount.WORLD and winches[other].mount is Mount.WORLD
+        if both_given or not {one, other} & set(parts.new_winches):
+            continue
+        gap = float(np.linalg.norm(np.subtract(winches[one].at, winches[other].at)))
+        if gap < least - LENGTH:
+            yield (
+                f"{parts.winch_name(other)} stands {mm(gap)} from {parts.winch_name(one)}, "
+                f"less than the winch_gap of {mm(least)}"
+            )
+
+
+def _of_other_makes(parts: Parts) -> Iterator[str]:
+    limits = parts.constraints
+    for index in parts.new_winches:
+        winch, name = parts.robot.winches[index], parts.winch_name(index)
+        if limits.mount is not None and winch.mount is not limits.mount:
+            yield f'{name} has mount = "{winch.mount}", not "{limits.mount}"'
+        if winch.travel > limits.travel + LENGTH:
+            yield f"{name} has a travel of {mm(winch.travel)}, more than {mm(limits.travel)}"
+        if winch.release > limits.release + LENGTH:
+            yield f"{name} has a release of {mm(winch.release)}, more than {mm(limits.release)}"
+        if abs(winch.spool_radius - limits.spool_radius) > LENGTH:
+            yield f"{name} has a spool_radius of {mm(winch.spool_radius)}, not {mm(limits.spool_radius)}"
+
+
+def _crowded(parts: Parts) -> Iterator[str]:
+    most = parts.constraints.cables_per_winch
+    changed = {parts.robot.cables[index].winch for index in parts.new_cables}
+    for index, winch in enumerate(parts.robot.winches):
+        count = sum(cable.winch == winch.name for cable in parts.robot.cables)
+        if winch.name in changed and count > most:
+            yield f"{parts.winch_name(index)} pulls {count} cables, more than the cables_per_winch of {most}"
