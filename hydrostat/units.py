@@ -36,6 +36,8 @@ VISCOSITY = Dimension("a viscosity", "Pa*s", "Pa s", "40 Pa s")
 TIME = Dimension("a time", "s", "s", "2 s")
 FORCE = Dimension("a force", "N", "N", "20 N")
 SPEED = Dimension("a speed", "m/s", "mm/s", "50 mm/s")
+TORQUE = Dimension("a torque", "N*m", "N m", "0.1 N m")
+ANGLE = Dimension("an angle", "deg", "deg", "75 deg")
 
 COMMON = {
     (unit, dimension): Decimal(factor).normalize()
@@ -49,6 +51,8 @@ COMMON = {
         TIME: {"s": "1", "ms": "0.001"},
         FORCE: {"N": "1"},
         SPEED: {"m/s": "1", "mm/s": "0.001"},
+        TORQUE: {"N m": "1", "N mm": "0.001"},
+        ANGLE: {"deg": "1"},
     }.items()
     for unit, factor in factors.items()
 }

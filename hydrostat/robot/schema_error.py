@@ -1,4 +1,4 @@
-"""What is wrong with the tables and keys of a robot.toml, in hydrostat's words instead of pydantic's."""
+"""What is wrong with the tables and keys of a file such as robot.toml, in hydrostat's words instead of pydantic's."""
 
 from difflib import get_close_matches
 from typing import Any
@@ -38,20 +38,24 @@ _EXAMPLES = {
     "points": "points = [[0, 0], [10, 20]]",
     "sheathed": "sheathed = [[0, 1]]",
     "targets": "targets = { tip = [40, 90] }",
+    "outline": "outline = [[0, 0], [10, 0], [10, 20]]",
+    "cables_per_winch": "cables_per_winch = 4",
+    "locked_cables": "locked_cables = [1, 2]",
+    "locked_winches": 'locked_winches = ["left"]',
 }
 
 
-def first_complaint(error: ValidationError) -> tuple[str, str]:
+def first_complaint(error: ValidationError, form: type[Table] = RobotTable) -> tuple[str, str]:
     """Key such as cable[1].points[0], and what is wrong with it; unknown keys first, for they explain missing ones."""
     errors = error.errors()
     worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
     location = tuple(step for step in worst["loc"] if not str(step).startswith("<"))
-    return _dotted(location), _message(worst, location)
+    return _dotted(location), _message(worst, location, form)
 
 
-def allowed_keys(key: str) -> list[str]:
+def allowed_keys(key: str, form: type[Table] = RobotTable) -> list[str]:
     """Keys that the table at a key such as cable[1], in any of its forms, may have; none if it is no table."""
-    tables: list[type[Table]] = [RobotTable]
+    tables = [form]
     for step in filter(None, key.split(".")):
         name = step.partition("[")[0]
         fields = [table.model_fields[name] for table in tables if name in table.model_fields]
@@ -59,13 +63,13 @@ def allowed_keys(key: str) -> list[str]:
     return list(dict.fromkeys(name for table in tables for name in table.model_fields))
 
 
-def _message(error: Any, location: tuple[Any, ...]) -> str:
+def _message(error: Any, location: tuple[Any, ...], form: type[Table]) -> str:
     names = [step for step in location if isinstance(step, str)]
     key = names[-1] if names else ""
     value, limits = quote(error["input"]), error.get("ctx", {})
     match error["type"]:
         case "extra_forbidden":
-            return REFUSED.get(".".join(names)) or _unknown(key, _dotted(location[:-1]))
+            return REFUSED.get(".".join(names)) or _unknown(key, _dotted(location[:-1]), form)
         case "missing":
             return f"the key {quote(key)} is missing; write {_EXAMPLES[key]}"
         case "enum":
@@ -76,9 +80,11 @@ def _message(error: Any, location: tuple[Any, ...]) -> str:
             return "must not be empty"
         case "string_too_long":
             return f"{value} is too long; at most {limits['max_length']} characters are allowed"
+        case "bool_type":
+            return f"{value} is neither true nor false"
         case "int_type":
             return f"{value} is not a whole number; write for example {_EXAMPLES[key]}"
-        case "list_type" if len(location) == 1 and allowed_keys(key):
+        case "list_type" if len(location) == 1 and allowed_keys(key, form):
             return f"begin each with [[{key}]], in two pairs of brackets"
         case "list_type":
             return f"{value} is not a list; write for example {_EXAMPLES.get(key, '[0, 0]')}"
@@ -93,8 +99,8 @@ def _message(error: Any, location: tuple[Any, ...]) -> str:
     return error["msg"].removeprefix("Value error, ")
 
 
-def _unknown(key: str, table: str) -> str:
-    allowed = allowed_keys(table)
+def _unknown(key: str, table: str, form: type[Table]) -> str:
+    allowed = allowed_keys(table, form)
     similar = get_close_matches(key[:60], allowed, n=1)
     hint = f", did you mean {similar[0]}?" if similar else ";"
     return f"unknown key {quote(key)}{hint} allowed here are: {', '.join(allowed)}"

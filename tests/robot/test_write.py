@@ -205,11 +205,11 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
     assert _gravity(reader.table.gravity, 2) == robot.gravity
     assert _material(reader.table.body.material) == material
     assert (reader.table.body.volume or Volume.ELEMENT) is robot.body.volume
-    assert reader._records("winch", reader._winch) == robot.winches
-    assert reader._records("cable", reader._cable) == robot.cables
-    assert reader._records("pin", reader._pin) == robot.pins
-    assert reader._records("marker", reader._marker) == robot.markers
-    assert reader._records("pose", reader._pose) == tuple(robot.poses.values())
+    assert reader.records("winch", reader._winch) == robot.winches
+    assert reader.records("cable", reader._cable) == robot.cables
+    assert reader.records("pin", reader._pin) == robot.pins
+    assert reader.records("marker", reader._marker) == robot.markers
+    assert reader.records("pose", reader._pose) == tuple(robot.poses.values())
 
 
 def test_pleasant(tmp_path: Path) -> None:

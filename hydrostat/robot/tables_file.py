@@ -1,0 +1,141 @@
+"""`TablesFile`: the text of a TOML file and its tables; every complaint names the file, the line and the key."""
+
+import re
+import tomllib
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from decimal import Decimal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+from hydrostat import units
+from hydrostat.errors import InputError
+from hydrostat.robot.lines import find_line
+
+if TYPE_CHECKING:
+    from hydrostat.robot.schema import Table
+
+LARGEST_TEXT = 1_000_000
+"""The file may have this many bytes."""
+
+_LONGEST = 400
+"""Characters of a complaint, its file and line not counted."""
+
+_PLACE = re.compile(r"([a-z_]+)(?:\[\d+\])*(?:\.[a-z_]+(?:\[\d+\])*)*(?=[ :.])")
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]*["']?[ \t]*\.[ \t]*){30}""")
+_Record = TypeVar("_Record")
+
+
+class TablesFile(ABC):
+    """Turns the text of one file into records."""
+
+    kind = "a robot"
+    """What the file describes."""
+
+    empty: str | None = "the file is empty; begin with format = 1, or run hydrostat new"
+    """What is said of a file without text; None: it may have none."""
+
+    unit = "mm"
+    """Of coordinates."""
+
+    def __init__(self, file: Path, text: str) -> None:
+        self.file = file
+        self.text = text
+        self.table = self._parse()
+
+    @abstractmethod
+    def form(self) -> "type[Table]":
+        """The tables and keys that the file may have."""
+
+    def records(self, key: str, make: Callable[[Any], _Record]) -> tuple[_Record, ...]:
+        """A record of each table under a key."""
+        entries = getattr(self.table, key)
+        return tuple(self.at(f"{key}[{index}]", lambda entry=entry: make(entry)) for index, entry in enumerate(entries))
+
+    def point(self, coordinates: list[Decimal]) -> tuple[float, ...]:
+        """Coordinates [m]."""
+        return tuple(units.scale_up(value, self.unit, units.LENGTH) for value in coordinates)
+
+    def at(self, key: str, make: Callable[[], _Record], *, otherwise: str | None = None) -> _Record:
+        """What `make` makes; its complaint is located at the field it begins with, else at `otherwise`."""
+        from hydrostat.robot.schema_error import allowed_keys
+
+        try:
+            return make()
+        except InputError as error:
+            message = str(error)
+            place = _PLACE.match(message)
+            if place and place[1] in allowed_keys(key, self.form()):
+                self.fail(f"{key}.{place[0]}".removeprefix("."), message[place.end() :])
+            self.fail(key if otherwise is None else otherwise, message)
+
+    def fail(self, key: str, message: str, line: int | None = None) -> NoReturn:
+        """Complain of a key.
+
+        Raises:
+            InputError: always.
+        """
+        line = line or find_line(self.text, key)
+        where = f"{self.file}{f', line {line}' if line else ''}"
+        told = key + message if message.startswith((" ", ":")) else f"{key}: {message}" if key else message
+        told = told if len(told) <= _LONGEST else told[: _LONGEST - 3] + "..."
+        raise InputError(units.printable(f"{where}: {told}")) from None
+
+    def _parse(self) -> Any:
+        from pydantic import ValidationError
+
+        from hydrostat.robot.schema_error import first_complaint
+
+        if self.empty is not None and not self.text.strip():
+            self.fail("", self.empty)
+        try:
+            return self.form().model_validate(self._data())
+        except ValidationError as error:
+            self.fail(*first_complaint(error, self.form()))
+
+    def _data(self) -> dict[str, Any]:
+        """The file as tomllib reads it, which takes time in the square of a key's parts."""
+        if _LONG_KEY.search(self.text):
+            self.fail("", f"not TOML of {self.kind}: a key has more than 30 parts")
+        try:
+            return tomllib.loads(self.text, parse_float=Decimal)
+        except tomllib.TOMLDecodeError as error:
+            what, _, place = str(error).partition(" (at line ")
+            line = re.match(r"\d+", place)
+            self.fail("", f"not TOML: {what}", int(line[0]) if line else None)
+        except RecursionError:
+            self.fail("", f"not TOML of {self.kind}: brackets are nested too deep")
+        except (ValueError, ArithmeticError):
+            self.fail("", f"not TOML of {self.kind}: a number is too large or has too many digits")
+
+
+def read_text(file: Path) -> str:
+    """The text of a file in UTF-8.
+
+    Raises:
+        InputError: it cannot be read, is too large, or is no such text.
+    """
+    content = read_bytes(file, units.printable(str(file)), LARGEST_TEXT)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{file}, line {line}: not UTF-8 text; save the file again as UTF-8") from None
+
+
+def read_bytes(file: Path, name: str, most: int) -> bytes:
+    """What stands in a file, at most so many bytes; complaints name it `name`.
+
+    Raises:
+        InputError: it cannot be read, or is larger.
+    """
+    try:
+        if not file.exists():
+            raise InputError(f"{name}: there is no such file")
+        if not file.is_file():
+            raise InputError(f"{name}: is not a file")
+        if file.stat().st_size > most:
+            raise InputError(f"{name}: has {file.stat().st_size / 1e6:.3g} MB, at most {most / 1e6:g} MB are read")
+        return file.read_bytes()
+    except OSError as error:
+        raise InputError(f"{name}: cannot be read ({error.strerror})") from None
