@@ -43,7 +43,9 @@ def way_violations(parts: Parts) -> Iterator[str]:
     yield from _near_the_edge_at_points(parts)
     yield from _near_the_edge(parts, segments)
     for number, zone in enumerate(parts.constraints.keep_out):
-        yield from _through(segments, zone, f"passes through keep_out[{number}]", np.ones(len(segments.bare), dtype=bool))
+        yield from _through(
+            segments, zone, f"passes through keep_out[{number}]", np.ones(len(segments.bare), dtype=bool)
+        )
     for number, zone in enumerate(parts.constraints.still):
         yield from _through(segments, zone, f"runs without a sheath through still[{number}]", segments.bare)
     if not parts.constraints.leads:

@@ -1,0 +1,435 @@
+"""What breaks constraints. Oracle: a network on a plate whose distances and angles are known by hand.
+
+Each case is a network that keeps a constraint by 0.1 mm or 0.2 degrees, and one that breaks it by as much, and nothing
+else.
+"""
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from builders import box_mesh, mesh_body, strip_mesh
+
+from hydrostat.design.body_region import body_region
+from hydrostat.design.buildable import pulls, violations
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.zone import Zone
+from hydrostat.robot import Body, Cable, Mount, Pin, Pose, Robot, Winch
+
+UP = ((0.03, 0.03), (0.06, 0.03), (0.1, 0.03), (0.15, 0.03))
+DOWN = ((0.03, -0.03), (0.06, -0.03), (0.1, -0.03), (0.15, -0.03))
+HAIR = 1e-4
+
+Points = tuple[tuple[float, ...], ...]
+
+
+@cache
+def plate(dim: int) -> Body:
+    """200 x 100 mm from x = 0, evenly about y = 0; in space 60 mm high from z = 0."""
+    if dim == 2:
+        return mesh_body(strip_mesh(8, 4, size=(0.2, 0.1)))
+    mesh = box_mesh((8, 4, 3), size=(0.2, 0.1, 0.06))
+    return mesh_body(replace(mesh, nodes=mesh.nodes - np.array([0.0, 0.05, 0.0])))
+
+
+def network(
+    up: Points = UP,
+    down: Points = DOWN,
+    *,
+    winch: dict[str, Any] | None = None,
+    lower: Any = (),
+    more: Any = (),
+    **cable: Any,
+) -> Robot:
+    """Two winches with a cable each; values of the upper ones, and further cables by winch and points."""
+    dim = len(up[0])
+    return Robot(
+        name="plate",
+        body=plate(dim),
+        pins=(Pin(box=((-0.001,) + (-1.0,) * (dim - 1), (0.001,) + (1.0,) * (dim - 1))),),
+        winches=(Winch(name="up", at=up[0], **(winch or {})), Winch(name="down", at=down[0], **dict(lower))),
+        cables=(
+            Cable(winch="up", points=up, **cable),
+            Cable(winch="down", points=down),
+            *(Cable(winch=name, points=points) for name, points in more),
+        ),
+        poses={},
+    )
+
+
+def broken(robot: Robot, **limits: Any) -> list[str]:
+    constraints = Constraints(**limits)
+    constraints.check(robot)
+    return violations(robot, constraints, body_region(robot.body, constraints.clearance))
+
+
+def moved(points: Points, index: int, *at: float) -> Points:
+    return (*points[:index], at, *points[index + 1 :])
+
+
+def high(points: Points, z: float = 0.03) -> Points:
+    """The same points in space."""
+    return tuple((*point, z) for point in points)
+
+
+def corner(angle: float, first: float = 0.03, last: float = 0.04) -> Points:
+    """A cable that turns by an angle [degrees] at its point 1."""
+    way = np.radians(angle)
+    return (UP[0], (0.03 + first, 0.03), (0.03 + first + last * float(np.cos(way)), 0.03 - last * float(np.sin(way))))
+
+
+def third(x: float, y: float) -> dict[str, Any]:
+    """A further cable of the lower winch that ends in a place."""
+    return {"more": [("down", (DOWN[0], (0.06, -0.012), (x, y)))]}
+
+
+LEADS = {"leads": False, "still": (Zone(box=((0.04, 0.02), (0.07, 0.04))),)}
+ROUND = {"turn": 180.0, "bend_radius": 0.02}
+
+CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
+    "winch_zones": (
+        {"winch_zones": (Zone(at=(0.03, 0.0), radius=0.03), Zone(at=(0.15, 0.0), radius=0.02))},
+        {},
+        {"up": moved(UP, 0, 0.03, 0.0301)},
+        "winch[0] up stands at [30, 30.1] mm, 0.1 mm outside the nearest of winch_zones",
+    ),
+    "winch_clearance": (
+        {},
+        {"up": moved(UP, 0, 0.03, 0.038 - HAIR)},
+        {"up": moved(UP, 0, 0.03, 0.038 + HAIR)},
+        "winch[0] up stands 11.9 mm inside the edge, less than the winch_clearance of 12 mm",
+    ),
+    "winch_gap": (
+        {"winch_gap": 0.06},
+        {"up": moved(UP, 0, 0.03, 0.03 + HAIR)},
+        {"up": moved(UP, 0, 0.03, 0.03 - HAIR)},
+        "winch[1] down stands 59.9 mm from winch[0] up, less than the winch_gap of 60 mm",
+    ),
+    "mount": (
+        {"mount": Mount.BODY},
+        {},
+        {"winch": {"mount": Mount.WORLD}},
+        'winch[0] up has mount = "world", not "body"',
+    ),
+    "travel": (
+        {},
+        {"winch": {"travel": 0.06}},
+        {"winch": {"travel": 0.0601}},
+        "winch[0] up has a travel of 60.1 mm, more than 60 mm",
+    ),
+    "release": (
+        {"release": 0.01},
+        {"winch": {"release": 0.01}},
+        {"winch": {"release": 0.0101}},
+        "winch[0] up has a release of 10.1 mm, more than 10 mm",
+    ),
+    "spool_radius": (
+        {"spool_radius": 0.006},
+        {"winch": {"spool_radius": 0.006}},
+        {"winch": {"spool_radius": 0.0059}},
+        "winch[0] up has a spool_radius of 5.9 mm, not 6 mm",
+    ),
+    "cables_per_winch": (
+        {"cables_per_winch": 2},
+        third(0.15, -0.012),
+        {"more": [*third(0.15, -0.012)["more"], ("down", (DOWN[0], (0.06, 0.0), (0.15, 0.0)))]},
+        "winch[1] down pulls 3 cables, more than the cables_per_winch of 2",
+    ),
+    "clearance of a point": (
+        {},
+        {"up": moved(UP, 3, 0.15, 0.045 - HAIR)},
+        {"up": moved(UP, 3, 0.15, 0.045 + HAIR)},
+        "cable[0].points[3] at [150, 45.1] mm lies 4.9 mm inside the edge, less than the clearance of 5 mm",
+    ),
+    "clearance of a point in space": (
+        {},
+        {"up": moved(high(UP), 3, 0.15, 0.03, 0.005 + HAIR), "down": high(DOWN)},
+        {"up": moved(high(UP), 3, 0.15, 0.03, 0.005 - HAIR), "down": high(DOWN)},
+        "cable[0].points[3] at [150, 30, 4.9] mm lies 4.9 mm inside the surface, less than the clearance of 5 mm",
+    ),
+    "keep_out of a segment": (
+        {"keep_out": (Zone(at=(0.125, 0.02), radius=0.01),)},
+        {"up": (*UP[:2], (0.1, 0.03 + HAIR), (0.15, 0.03 + HAIR))},
+        {"up": (*UP[:2], (0.1, 0.03 - HAIR), (0.15, 0.03 - HAIR))},
+        "cable[0] between points 2 and 3 passes through keep_out[0], 0.1 mm deep",
+    ),
+    "keep_out of a point": (
+        {"keep_out": (Zone(at=(0.2, 0.2), radius=0.001), Zone(box=((0.16, 0.0), (0.18, 0.04))))},
+        {"up": moved(UP, 3, 0.16 - HAIR, 0.03)},
+        {"up": moved(UP, 3, 0.16 + HAIR, 0.03)},
+        "cable[0] between points 2 and 3 passes through keep_out[1], 0.1 mm deep",
+    ),
+    "keep_out in a sheath": (
+        {"keep_out": (Zone(at=(0.045, 0.03), radius=0.005),)},
+        {"up": moved(UP, 1, 0.05, 0.042), "sheathed": ((0, 1),)},
+        {"sheathed": ((0, 1),)},
+        "cable[0] between points 0 and 1 passes through keep_out[0], 5 mm deep",
+    ),
+    "still": (
+        {"still": (Zone(at=(0.045, 0.03), radius=0.005),)},
+        {"sheathed": ((0, 1),)},
+        {"sheathed": ((1, 2),)},
+        "cable[0] between points 0 and 1 runs without a sheath through still[0], 5 mm deep",
+    ),
+    "still beside a bare segment": (
+        {"still": (Zone(at=(0.045, 0.02), radius=0.01),)},
+        {"up": ((0.03, 0.03 + HAIR), (0.06, 0.03 + HAIR), *UP[2:])},
+        {"up": ((0.03, 0.03 - HAIR), (0.06, 0.03 - HAIR), *UP[2:])},
+        "cable[0] between points 0 and 1 runs without a sheath through still[0], 0.1 mm deep",
+    ),
+    "no leads": (
+        {"leads": False},
+        {},
+        {"sheathed": ((0, 1),)},
+        "cable[0] between points 0 and 1 runs in a sheath outside the still zones, and leads are not allowed",
+    ),
+    "no leads but in still zones": (
+        LEADS,
+        {"sheathed": ((0, 2),)},
+        {"sheathed": ((0, 3),), "up": (*UP, (0.18, 0.03))},
+        "cable[0] between points 2 and 3 runs in a sheath outside the still zones, and leads are not allowed",
+    ),
+    "hole_gap": (
+        {"hole_gap": 0.06},
+        {"up": ((0.03, 0.03), (0.15, 0.03 + HAIR)), "down": ((0.03, -0.03), (0.15, -0.03))},
+        {"up": ((0.03, 0.03), (0.15, 0.03 - HAIR)), "down": ((0.03, -0.03), (0.15, -0.03))},
+        "cable[1].points[1] is 59.9 mm from cable[0].points[1], less than the hole_gap of 60 mm",
+    ),
+    "hole_gap along one cable": (
+        {},
+        {"up": (*UP, (0.154 + HAIR, 0.03))},
+        {"up": (*UP, (0.154 - HAIR, 0.03))},
+        "cable[0].points[4] is 3.9 mm from cable[0].points[3], less than the hole_gap of 4 mm",
+    ),
+    "a hole that is shared": (
+        {},
+        {"more": [("down", (DOWN[0], (0.06, -0.012), (0.1, -0.02), DOWN[3]))]},
+        {"more": [("down", (DOWN[0], (0.06, -0.012), (0.1, -0.02), (0.15, -0.0299)))]},
+        "cable[2].points[3] is 0.1 mm from cable[1].points[3], less than the hole_gap of 4 mm",
+    ),
+    "a hole at a winch": (
+        {},
+        {"more": [("down", (DOWN[0], (0.03, 0.018 - HAIR)))]},
+        {"more": [("down", (DOWN[0], (0.03, 0.018 + HAIR)))]},
+        "cable[2].points[1] is 11.9 mm from winch[0] up, which pulls other cables, less than two spool radii of 12 mm",
+    ),
+    "turn": ({}, {"up": corner(74.8)}, {"up": corner(75.2)}, "cable[0].points[1] turns by 75.2 degrees, more than"),
+    "turn in space": (
+        {},
+        {"up": high(corner(74.8)), "down": high(DOWN)},
+        {"up": high(corner(75.2)), "down": high(DOWN)},
+        "cable[0].points[1] turns by 75.2 degrees, more than the turn of 75",
+    ),
+    "bend_radius": (  # a right angle: the radius is half the shorter segment
+        ROUND,
+        {"up": corner(90, last=0.04 + HAIR, first=0.05)},
+        {"up": corner(90, last=0.04 - 2 * HAIR, first=0.05)},
+        "cable[0].points[1] bends with a radius of 19.9 mm, less than the bend_radius of 20 mm",
+    ),
+    "bend_radius by the first segment": (  # 60 degrees: half of it times the root of 3
+        ROUND,
+        {"up": corner(60, first=0.04 / 3**0.5 + HAIR)},
+        {"up": corner(60, first=0.04 / 3**0.5 - HAIR)},
+        "cable[0].points[1] bends with a radius of 19.91 mm, less than the bend_radius of 20 mm",
+    ),
+    "longest": (
+        {"longest": 0.13},
+        {"up": moved(UP, 3, 0.16 - HAIR, 0.03)},
+        {"up": moved(UP, 3, 0.16 + HAIR, 0.03)},
+        "cable[0] is 130.1 mm long, more than the longest of 130 mm",
+    ),
+    "slack": (
+        {"slack": 0.005},
+        {"slack": 0.005},
+        {"slack": 0.0051},
+        "cable[0] has a slack of 5.1 mm, more than 5 mm",
+    ),
+    "spool_ratio": (
+        {"spool_ratio": 1.5},
+        {"spool_radius": 0.009},
+        {"spool_radius": 0.0091},
+        "cable[0] winds on a spool 1.517 times as large as its winch's, beyond the spool_ratio of 1.5",
+    ),
+    "spool_ratio below one": (
+        {"spool_ratio": 1.5},
+        {"spool_radius": 0.004},
+        {"spool_radius": 0.0039},
+        "cable[0] winds on a spool 0.65 times as large as its winch's, beyond the spool_ratio of 1.5",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_each_constraint_is_kept_or_broken(case: str) -> None:
+    limits, keeps, breaks, words = CASES[case]
+    assert broken(network(**keeps), **limits) == []
+    (told,) = broken(network(**breaks), **limits)
+    assert told.startswith(words)
+
+
+def test_every_constraint_has_a_case() -> None:
+    """But the forces, which `pulls` looks at, the mirror, and what is locked: these have tests of their own."""
+    tested = {name.split()[0] for name in CASES} | {"hole_gap", "leads"}
+    others = {"tension", "torque", "mirror", "locked_winches", "locked_cables"}
+    assert set(Constraints.__dataclass_fields__) - others <= tested
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_segment_keeps_half_the_clearance(dim: int) -> None:
+    """Below a notch 20 mm wide that ends at y = 20 mm, between two points far from any edge."""
+    mesh = strip_mesh(20, 10, size=(0.2, 0.1)) if dim == 2 else box_mesh((20, 10, 3), size=(0.2, 0.1, 0.06))
+    mesh = mesh if dim == 2 else replace(mesh, nodes=mesh.nodes - np.array([0.0, 0.05, 0.0]))
+    middles = mesh.nodes[mesh.elements].mean(axis=1)
+    body = mesh_body(_part(mesh, (np.abs(middles[:, 0] - 0.1) > 0.01) | (middles[:, 1] < 0.02)))
+    for depth, count in ((0.0026, 0), (0.0024, 1)):
+        flat: Points = ((0.03, 0.02 - depth), (0.17, 0.02 - depth))
+        way = flat if dim == 2 else high(flat)
+        robot = network() if dim == 2 else network(high(UP), high(DOWN))
+        robot = replace(
+            robot, body=body, winches=(Winch(name="up", at=way[0]),), cables=(Cable(winch="up", points=way),)
+        )
+        told = broken(robot)
+        assert len(told) == count
+        if told:
+            assert told[0].startswith("cable[0] between points 0 and 1 comes to 2.4 mm inside the ")
+            assert told[0].endswith("less than half the clearance of 5 mm")
+
+
+def _part(mesh: Any, chosen: np.ndarray) -> Any:
+    used, elements = np.unique(mesh.elements[chosen], return_inverse=True)
+    return replace(mesh, nodes=mesh.nodes[used], elements=elements.reshape(-1, mesh.dim + 1))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_cable_from_the_world_may_come_in_at_the_edge(dim: int) -> None:
+    """Its first segment and a clearance's way on are free; then half the clearance holds."""
+    into: Points = ((-0.05, 0.03), (0.0, 0.03), (0.1, 0.03), (0.15, 0.03))
+    along: Points = ((-0.05, 0.048), (0.0, 0.048), (0.1, 0.048), (0.15, 0.03))
+    down = DOWN if dim == 2 else high(DOWN)
+    make = {"winch": {"mount": Mount.WORLD}, "down": down}
+    assert broken(network(into if dim == 2 else high(into), **make)) == []
+    told = broken(network(along if dim == 2 else high(along), **make))
+    assert [one.split(" lies ")[0].split(" comes ")[0] for one in told] == [
+        f"cable[0].points[2] at [100, 48{', 30' if dim == 3 else ''}] mm",
+        "cable[0] between points 1 and 2",
+        "cable[0] between points 2 and 3",
+    ]
+
+
+def test_winches_in_the_world_may_stand_close() -> None:
+    into: Points = ((-0.05, 0.005), (0.05, 0.03), (0.15, 0.03))
+    other: Points = ((-0.05, -0.005), (0.05, -0.03), (0.15, -0.03))
+    outside = network(into, other, winch={"mount": Mount.WORLD}, lower={"mount": Mount.WORLD})
+    assert broken(outside, winch_gap=0.03) == []
+    body_and_world = network(into, ((0.02, 0.005), *other[1:]), winch={"mount": Mount.WORLD})
+    assert broken(body_and_world, winch_gap=0.06) == []
+    (told,) = broken(body_and_world, winch_gap=0.08)
+    assert "stands 70 mm from" in told
+
+
+def test_a_mirrored_network() -> None:
+    assert broken(network(), mirror="y") == []
+    assert broken(network(up=moved(UP, 2, 0.1, 0.0305)), mirror="y") == [
+        "cable[0] has no mirror image that ends at [150, -30] mm",
+        "cable[1] has no mirror image that ends at [150, 30] mm",
+    ]
+    assert broken(network(up=moved(UP, 2, 0.1, 0.03005)), mirror="y") == []
+    told = broken(network(up=moved(UP, 0, 0.03, 0.031)), mirror="y")
+    assert [one.split(" has ")[0] for one in told] == ["winch[0] up", "winch[1] down", "cable[0]", "cable[1]"]
+    told = broken(network(winch={"travel": 0.05}), mirror="y")
+    assert [one.split(" has ")[0] for one in told] == ["winch[0] up", "winch[1] down", "cable[0]", "cable[1]"]
+    for values in ({"slack": 0.01}, {"spool_radius": 0.007}, {"sheathed": ((0, 1),)}, {"stiffness": 5e3}):
+        told = broken(network(**values), mirror="y", slack=0.01, spool_ratio=2.0)
+        assert [one.split(" has ")[0] for one in told] == ["cable[0]", "cable[1]"]
+
+
+def test_a_winch_in_the_mirror_is_its_own_image() -> None:
+    start = (0.03, 0.0)
+    pair = network().with_network(
+        (Winch(name="middle", at=start),),
+        (
+            Cable(winch="middle", points=(start, *UP[1:])),
+            Cable(winch="middle", points=(start, *DOWN[1:])),
+            Cable(winch="middle", points=(start, (0.15, 0.0))),
+        ),
+    )
+    assert broken(pair, mirror="y") == []
+    one = pair.with_network(pair.winches, pair.cables[1:])
+    (told,) = broken(one, mirror="y")
+    assert told == "cable[0] has no mirror image that ends at [150, 30] mm"
+
+
+def test_what_is_locked_is_not_looked_at() -> None:
+    wild = network(up=((0.03, 0.041), (0.15, 0.048)), winch={"travel": 0.09, "release": 0.01}, slack=0.02)
+    assert len(broken(wild, winch_gap=0.03)) == 6
+    assert broken(wild, locked_cables=(0,)) == []
+    told = broken(wild, locked_winches=("up",))
+    assert [one.split()[0] for one in told] == ["cable[0].points[1]", "cable[0]", "cable[0]"]
+
+
+def test_locked_cables_are_known_by_their_numbers_in_the_source() -> None:
+    """In the network that was designed they may have others."""
+    source = network(up=((0.03, 0.03), (0.15, 0.048)))
+    designed = source.with_network(source.winches, source.cables[::-1])
+    constraints = Constraints(locked_cables=(0,))
+    region = body_region(source.body, constraints.clearance)
+    assert violations(designed, constraints, region, source=source) == []
+    assert len(violations(designed, constraints, region)) == 2
+
+
+def test_what_is_new_keeps_away_from_what_is_locked() -> None:
+    near = network(**third(0.1, -0.0265))
+    words = "cable[2].points[2] is 3.5 mm from cable[1].points[2], less than the hole_gap of 4 mm"
+    assert broken(near, locked_cables=(1,)) == [words]
+    assert broken(near, locked_cables=(2,)) == [words]
+    assert broken(near, locked_cables=(1, 2)) == []
+    crowded = network(up=moved(UP, 0, 0.03, -0.01))
+    (told,) = broken(crowded, locked_winches=("down",))
+    assert told.startswith("winch[1] down stands 20 mm from winch[0] up")
+    assert broken(crowded, locked_winches=("down", "up")) == []
+
+
+def test_rounding_breaks_nothing() -> None:
+    """Coordinates to 0.01 mm, of points that lie on their limits."""
+    away = 0.045 + 4.9e-6
+    assert broken(network(up=moved(UP, 3, 0.15, away))) == []
+    assert broken(network(up=corner(75.05))) == []
+    assert broken(network(), winch_clearance=0.02, winch_gap=0.06, longest=0.12, cables_per_winch=1) == []
+
+
+def reached(contractions: tuple[float, ...], tensions: tuple[float, ...], name: str | None = "wave") -> Any:
+    return SimpleNamespace(
+        target=None if name is None else Pose(name=name, targets={"tip": (0.0, 0.0)}),
+        pose=SimpleNamespace(contractions=np.array(contractions), tensions=np.array(tensions)),
+    )
+
+
+def test_what_poses_ask(unchecked: None) -> None:
+    robot = network(winch={"travel": 0.05, "release": 0.01}, spool_radius=0.009, **third(0.15, -0.012))
+    limits = Constraints(tension=10.0)
+    within = reached((0.05, 0.0), (10.005, 0.0, 10.0))
+    assert pulls(robot, [within], limits) == []
+    beyond = reached((0.0501, -0.0001), (10.02, 0.0, 9.0), None)
+    assert pulls(robot, [within, beyond], limits) == [
+        "pose 1: cable[0] is pulled with 10.02 N, more than 10 N",
+        "pose 1: winch[0] up takes in 50.1 mm, more than its travel of 50 mm",
+        "pose 1: winch[1] down lets out 0.1 mm, more than its release of 0 mm",
+    ]
+    out = reached((-0.0101, 0.0), (0.0, 0.0, 0.0))
+    assert pulls(robot, [reached((-0.01, 0.0), (0.0, 0.0, 0.0))], limits) == []
+    assert pulls(robot, [out], limits) == ['pose "wave": winch[0] up lets out 10.1 mm, more than its release of 10 mm']
+
+
+def test_what_motors_must_give(unchecked: None) -> None:
+    """6 mm times the sum of the tensions of a winch's cables, 9 mm on a larger step."""
+    robot = network(spool_radius=0.009, **third(0.15, -0.012))
+    limits = Constraints(torque=0.054, spool_ratio=1.0, cables_per_winch=1)
+    assert limits.tension_limit == pytest.approx(9.0)
+    assert pulls(robot, [reached((0.0, 0.0), (6.0, 5.0, 4.0))], limits) == []
+    assert pulls(robot, [reached((0.0, 0.0), (6.1, 5.0, 4.1))], limits) == [
+        'pose "wave": winch[0] up must give 0.0549 N m, more than the torque of 0.054 N m',
+        'pose "wave": winch[1] down must give 0.0546 N m, more than the torque of 0.054 N m',
+    ]
