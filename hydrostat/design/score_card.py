@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design.network import Network, RouteTrace, TreeTrace
+from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot, robot_hash
 
@@ -17,42 +17,25 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         network: what was designed.
         version: of hydrostat.
     """
-    robot = network.robot
+    robot, options = network.robot, asdict(network.options)
     return {
         "rms_error": network.rms_error,
         "rms_error_at_rest": rest_error(network),
         "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
-        "winches": [{"name": winch.name, "at": list(winch.at)} for winch in robot.winches],
-        "cables": [
-            {"winch": cable.winch, "length": cable.length, "sheathed": cable.length - bare}
-            for cable in robot.cables
-            for bare in [float(cable.segments[cable.bare].sum())]
-        ],
+        "winches": _winches(robot),
+        "cables": _cables(robot),
         **_trace(network.trace),
-        "alternatives": [
-            {"winches": len(other.robot.winches), "cables": len(other.robot.cables), "rms_error": other.rms_error}
-            for other in network.alternatives
-        ],
+        "alternatives": [_alternative(other) for other in network.alternatives],
         "networks_tried": network.tried,
         "cpu_seconds": network.seconds,
         "complete": network.complete,
         "method": network.method,
+        "seed": options.get("seed"),
         "constraints": asdict(network.constraints),
-        "options": asdict(network.options),
+        "options": options,
         "version": version,
         "source_robot": robot_hash(network.source),
         "robot": robot_hash(robot),
-    }
-
-
-def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
-    """What the method says of itself."""
-    if isinstance(trace, TreeTrace):
-        fibres = float(np.sqrt(np.mean([activation.rms_error**2 for activation in trace.activations])))
-        return {"tree_score": trace.score, "rms_error_with_all_fibres": fibres}
-    return {
-        "stages": [{"what": stage.words, "rms_error": stage.error} for stage in trace.stages],
-        "certificate": None if trace.certificate is None else asdict(trace.certificate),
     }
 
 
@@ -66,6 +49,63 @@ def rest_error(network: Network) -> float:
     return float(np.sqrt(np.mean(squares)))
 
 
+def _winches(robot: Robot) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": winch.name,
+            "at": list(winch.at),
+            "spool_radius": winch.spool_radius,
+            "travel": winch.travel,
+            "release": winch.release,
+            "mount": str(winch.mount),
+        }
+        for winch in robot.winches
+    ]
+
+
+def _cables(robot: Robot) -> list[dict[str, Any]]:
+    return [
+        {
+            "winch": cable.winch,
+            "length": cable.length,
+            "sheathed": float(cable.segments[~cable.bare].sum()),
+            "slack": cable.slack,
+            "spool_ratio": ratio,
+            "via_points": len(cable.points) - 2,
+        }
+        for cable, ratio in zip(robot.cables, map(float, robot.spool_ratios), strict=True)
+    ]
+
+
+def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
+    """What the method says of itself."""
+    if isinstance(trace, TreeTrace):
+        fibres = float(np.sqrt(np.mean([activation.rms_error**2 for activation in trace.activations])))
+        return {"tree_score": trace.score, "rms_error_with_all_fibres": fibres}
+    return {
+        "stages": [
+            {
+                "what": stage.words,
+                "rms_error": stage.error,
+                "winches": len(stage.robot.winches),
+                "cables": len(stage.robot.cables),
+            }
+            for stage in trace.stages
+        ],
+        "certificate": None if trace.certificate is None else asdict(trace.certificate),
+    }
+
+
+def _alternative(other: Alternative) -> dict[str, Any]:
+    return {
+        "winches": len(other.robot.winches),
+        "cables": len(other.robot.cables),
+        "rms_error": other.rms_error,
+        "poses": {pose.wanted.name: pose.rms_error for pose in other.reached},
+        "robot": robot_hash(other.robot),
+    }
+
+
 def _reached(robot: Robot, reached: ReachedPose) -> dict[str, Any]:
     pose = reached.pose
     return {
@@ -76,5 +116,6 @@ def _reached(robot: Robot, reached: ReachedPose) -> dict[str, Any]:
         },
         "tensions": [float(tension) for tension in pose.tensions],
         "reason": str(reached.reason),
+        "held": list(reached.held),
         "residual": pose.result.residual,
     }

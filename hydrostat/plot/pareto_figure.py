@@ -6,14 +6,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
+from hydrostat.design.front import Size, best_errors, on_front
 from hydrostat.design.network import Alternative, Network
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.palette import ERROR, INK, WINCHES
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.units import counted
-
-Size = tuple[int, int]
-"""Numbers of winches and of cables."""
 
 
 def draw_front(
@@ -36,7 +34,6 @@ def draw_front(
     for index, winches in enumerate(sorted({winches for winches, _ in errors})):
         line = [size for size in sorted(errors) if size[0] == winches]
         _draw_line(axes, line, errors, WINCHES[index % len(WINCHES)])
-    _draw_chosen(axes, chosen)
     if tolerance is not None:
         axes.axhline(MILLIMETRES * tolerance, color=ERROR, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
         axes.annotate(
@@ -45,27 +42,9 @@ def draw_front(
         )  # fmt: skip
     axes.set_ylim(0.0, 1.08 * MILLIMETRES * max([*errors.values(), tolerance or 0.0, 1e-9]))
     axes.margins(x=0.06)
+    _draw_chosen(axes, chosen)
     axes.legend(loc="upper right", fontsize=8, frameon=False, labelcolor=INK, handlelength=1.8)
     return figure
-
-
-def best_errors(alternatives: Iterable[Alternative], chosen: Network) -> dict[Size, float]:
-    """The least error of each number of winches and cables [m], in their order; the chosen network's where it is."""
-    found: dict[Size, float] = {}
-    for network in alternatives:
-        found[_size(network)] = min(network.rms_error, found.get(_size(network), float("inf")))
-    found[_size(chosen)] = chosen.rms_error
-    return dict(sorted(found.items()))
-
-
-def on_front(size: Size, errors: dict[Size, float]) -> bool:
-    """Whether no other network with as few winches and as few cables has an error as small."""
-    others = (error for other, error in errors.items() if other != size and all(map(int.__le__, other, size)))
-    return all(error > errors[size] for error in others)
-
-
-def _size(network: Alternative | Network) -> Size:
-    return len(network.robot.winches), len(network.robot.cables)
 
 
 def _draw_line(axes: Axes, line: list[Size], errors: dict[Size, float], colour: str) -> None:
@@ -77,9 +56,13 @@ def _draw_line(axes: Axes, line: list[Size], errors: dict[Size, float], colour: 
 
 
 def _draw_chosen(axes: Axes, chosen: Network) -> None:
+    """A ring around the chosen network, named where there is room."""
     place = len(chosen.robot.cables), MILLIMETRES * chosen.rms_error
-    axes.plot(*place, marker="o", markersize=12, color="none", markeredgecolor=INK, markeredgewidth=1.3, zorder=5)
+    axes.plot(*place, marker="o", markersize=12, color="none", markeredgecolor=INK, markeredgewidth=1.3, zorder=5,
+        clip_on=False)  # fmt: skip
+    low, high = axes.get_xlim()
+    left = place[0] > (low + high) / 2
     axes.annotate(
-        f"chosen: {place[1]:.2f} mm", place, xytext=(9, 8), textcoords="offset points", fontsize=8.5, color=INK,
-        weight="bold",
+        f"chosen: {place[1]:.2f} mm", place, xytext=(-9 if left else 9, 8), textcoords="offset points", fontsize=8.5,
+        color=INK, weight="bold", ha="right" if left else "left", annotation_clip=False,
     )  # fmt: skip

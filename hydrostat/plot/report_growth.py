@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hydrostat.design.front import size_of
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace
 from hydrostat.design.score_card import rest_error
 from hydrostat.plot.growth_figure import draw_growth
@@ -55,7 +56,7 @@ def alternative_chapters(network: Network) -> list[Chapter]:
     others = network.alternatives
     if not others:
         return []
-    sizes = {(len(one.robot.winches), len(one.robot.cables)) for one in (*others, network)}
+    sizes = {size_of(one) for one in (*others, network)}
     words = "Other networks that were found on the way, each with its error over all poses."
     parts: list[Html] = []
     if len(sizes) > 1:
@@ -63,7 +64,16 @@ def alternative_chapters(network: Network) -> list[Chapter]:
             " More winches and more cables cost more and reach more: the curve tells how much. A filled dot lies on "
             "the Pareto front: no network with as few winches and cables is better."
         )
-        parts.append(grid(picture(draw_front(others, network, width=CHART), "front", "Error against cables", "")))
+        parts.append(
+            grid(
+                picture(
+                    draw_front(others, network, width=CHART),
+                    "front",
+                    "Error against cables",
+                    ", a line for each number of winches",
+                )
+            )
+        )
     shown = [others[index] for index in evenly(len(others), MOST_ALTERNATIVES)]
     parts.append(_pictures(network, shown))
     if len(shown) < len(others):

@@ -124,7 +124,7 @@ def _rule(sheet: Sheet) -> None:
     step = round_step(float((sheet.high - sheet.low).max()))
     axes = sheet.axes
     for axis, low, high in ((axes.xaxis, *_span(sheet, 0)), (axes.yaxis, *_span(sheet, 1))):
-        ticks = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
+        ticks = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step + 0.0  # no -0
         axis.set_ticks(ticks, [f"{tick:.10g}".replace("-", "\N{MINUS SIGN}") for tick in ticks])
     axes.tick_params(length=0, pad=4, labelsize=7, labelcolor=MUTED)
     axes.grid(True, color=GRID, linewidth=0.6)

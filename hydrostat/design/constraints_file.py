@@ -1,0 +1,105 @@
+"""`read_constraints`: from a TOML file to `Constraints` for one robot."""
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hydrostat import units
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.zone import Zone
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+from hydrostat.robot.tables_file import TablesFile, read_text
+
+if TYPE_CHECKING:
+    from hydrostat.robot.schema import Table
+
+ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "still": "still"}
+"""Tables of the file, and the fields of `Constraints` that they make."""
+
+
+def read_constraints(path: str | Path, robot: Robot) -> Constraints:
+    """Constraints from a file; what it leaves out is as in `Constraints`.
+
+    Keys are the fields of `Constraints`: quantities as text with their unit ("5 mm"), zones as tables [[winch_zone]],
+    [[keep_out]] and [[still]] in the length unit of the robot's file, numbers of cables from 1 as in the tables.
+
+    Args:
+        path: of the file.
+        robot: for which they are.
+
+    Raises:
+        InputError: one line that names the file, the line, the key, what is wrong and what is allowed.
+    """
+    path = Path(path)
+    return _Reader(path, read_text(path), robot).constraints()
+
+
+class _Reader(TablesFile):
+    """Turns the text of a file into constraints."""
+
+    kind = "constraints"
+    empty = None
+
+    def __init__(self, file: Path, text: str, robot: Robot) -> None:
+        super().__init__(file, text)
+        self.robot, self.unit = robot, robot.length_unit
+
+    def form(self) -> "type[Table]":
+        from hydrostat.design.constraints_schema import ConstraintsTable
+
+        return ConstraintsTable
+
+    def constraints(self) -> Constraints:
+        """The constraints that the text describes, which fit the robot."""
+        given: dict[str, Any] = {
+            key: value
+            for key, value in self.table
+            if value is not None and key not in {*ZONES, "locked_cables", "spool_ratio", "mirror"}
+        }
+        for table, field in ZONES.items():
+            given[field] = self.records(table, self._zone)
+        if self.table.spool_ratio is not None:
+            given["spool_ratio"] = float(self.table.spool_ratio)
+        if self.table.mirror is not None:
+            given["mirror"] = str(self.table.mirror)
+        given["locked_cables"] = [
+            self.at(f"locked_cables[{place}]", partial(cable_index, number, self.robot))
+            for place, number in enumerate(self.table.locked_cables or [])
+        ]
+        return self.at("", lambda: _fitting(given, self.robot))
+
+    def _zone(self, entry: Any) -> Zone:
+        zone = Zone(
+            at=None if entry.at is None else self.point(entry.at),
+            radius=None if entry.radius is None else units.scale_up(entry.radius, self.unit, units.LENGTH),
+            box=None if entry.box is None else (self.point(entry.box[0]), self.point(entry.box[1])),
+            outline=tuple(map(self.point, entry.outline or ())),
+        )
+        dim = self.robot.body.mesh.dim
+        if zone.dim != dim:
+            raise InputError(f"its points have {zone.dim} coordinates, but the body has {dim}")
+        return zone
+
+
+def cable_index(number: int, robot: Robot) -> int:
+    """The index of a cable by its number, which counts from 1 as tables and pictures do.
+
+    Raises:
+        InputError: there is no such cable.
+    """
+    count = len(robot.cables)
+    if not 1 <= number <= count:
+        known = f"its cables are numbered from 1 to {count}" if count else "it has no cables"
+        raise InputError(f"{number}: the robot has no such cable; {known}")
+    return number - 1
+
+
+def _fitting(given: dict[str, Any], robot: Robot) -> Constraints:
+    """Constraints that fit a robot, whose complaints begin with the key."""
+    try:
+        constraints = Constraints(**given)
+        constraints.check(robot)
+    except InputError as error:
+        raise InputError(str(error).removeprefix("constraints: ")) from None
+    return constraints
