@@ -288,17 +288,18 @@ def _pick(
     reach = 2.0 * float(np.median(graph.lengths))
     quota = max(2, -(-count // _SOME))
     picked: dict[int, tuple[int, ...]] = {}
-    for alike, crowd in ((_ALIKE, quota), (_ALIKE, count), (1.0 - 1e-9, count)):
+    for alike, crowd in ((_ALIKE, quota), (_ALIKE, count), (1.0, count)):
         for index, path in enumerate(paths):
             if len(picked) == count:
                 break
-            if index in picked or _likeness(path, paths[list(picked)]) > alike:
+            others = paths[list(picked)]
+            if _likeness(path, others) > alike or (others == path).all(axis=1).any():
                 continue
             lead = starts.lead(path)
             if len({*lead, *path[path >= 0].tolist()}) < len(lead) - 1 + (path >= 0).sum():
                 continue
-            others = graph.points[[other[0] for other in picked.values()]]
-            near = np.linalg.norm(others - graph.points[lead[0]], axis=1) < reach
+            stands = graph.points[[other[0] for other in picked.values()]]
+            near = np.linalg.norm(stands - graph.points[lead[0]], axis=1) < reach
             if near.sum() < crowd:
                 picked[index] = lead
     return sorted(picked.items())
@@ -339,7 +340,7 @@ def _edges(graph: RouteGraph, points: Int[np.ndarray, " points"]) -> Int[np.ndar
 
 
 @lru_cache(maxsize=4)
-def _turns(graph: RouteGraph, turn: float) -> tuple[Int[np.ndarray, " directed+1"], Int[np.ndarray, " turns"]]:
+def _turns(graph: RouteGraph, turn: float) -> tuple[Int[np.ndarray, " _"], Int[np.ndarray, " turns"]]:
     """Which directed edges each one may follow, as a compressed list; no path runs through a point in the world."""
     counts = np.empty(len(graph.sources) + 1, dtype=np.int64)
     least = math.cos(math.radians(min(turn, 180.0))) - 1e-9

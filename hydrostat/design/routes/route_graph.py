@@ -15,7 +15,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.robot import Mount, Robot
 
-Pairs = Int[np.ndarray, "edges 2"]
+Pairs = Int[np.ndarray, "_ 2"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class RouteGraph:
 
     points: Points
     anchors: Anchors
-    edges: Pairs
+    edges: Int[np.ndarray, "edges 2"]
     still: Bool[np.ndarray, " edges"]
     winch_places: Int[np.ndarray, " places"]
     size: float
@@ -54,7 +54,7 @@ class RouteGraph:
         return np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1)
 
     @cached_property
-    def offsets(self) -> Int[np.ndarray, " points+1"]:
+    def offsets(self) -> Int[np.ndarray, " _"]:
         """Where the directed edges from each point begin; their number at the end."""
         counts = np.bincount(self.edges.ravel(), minlength=len(self.points))
         return np.concatenate([[0], np.cumsum(counts)])
@@ -232,7 +232,9 @@ def _winch_places(points: Points, region: Region, constraints: Constraints) -> I
     return np.flatnonzero(allowed)
 
 
-def _entries(robot: Robot, points: Points, winches: Points, constraints: Constraints, spacing: float) -> Pairs:
+def _entries(
+    robot: Robot, points: Points, winches: Float[np.ndarray, "winches dim"], constraints: Constraints, spacing: float
+) -> Pairs:
     """From each winch in the world to the via points in the part that is held: there a cable enters the body."""
     mesh = robot.body.mesh
     held = np.concatenate([pin.anchors(mesh).positions(mesh.nodes) for pin in robot.pins])
@@ -251,7 +253,7 @@ def _outside(points: Points, zones: Sequence[Zone]) -> Bool[np.ndarray, " points
     return outside
 
 
-def _meets(points: Points, pairs: Pairs, zones: Sequence[Zone]) -> Bool[np.ndarray, " edges"]:
+def _meets(points: Points, pairs: Pairs, zones: Sequence[Zone]) -> Bool[np.ndarray, " _"]:
     """Which segments pass through a zone."""
     meets = np.zeros(len(pairs), dtype=bool)
     for zone in zones:
