@@ -21,7 +21,10 @@ OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm"><pat
         (("simulate", "STARFISH", "--contract", "left", "--out", "OUT"), ("WINCH=LENGTH",)),
         (("simulate", "STARFISH", "--contract", "up=12mm", "--out", "OUT"), ('"up"', "right, left, feet")),
         (("pose", "STARFISH", "--pose", "dance", "--out", "OUT"), ('"dance"', "wave")),
-        (("design", "STARFISH", "--winches", "3", "--cables", "2", "--out", "OUT"), ("3 winches", "2 cables")),
+        (
+            ("design", "STARFISH", "--winches", "3", "--cables", "2", "--method", "trees", "--out", "OUT"),
+            ("3 winches", "2 cables"),
+        ),
         (("design", "STARFISH", "--fibres", "hairs", "--out", "OUT"), ("hairs", "edges", "elements")),
         (("new", "OUT", "--from", "gallery:whale"), ("whale", "starfish")),
         (("new", "OUT", "--from", "drawing.bmp"), ("drawing.bmp", ".svg", ".stl", ".vtu")),

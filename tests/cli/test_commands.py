@@ -89,7 +89,10 @@ def test_pose_writes_one_pose_or_a_folder_for_each(run: Run, tmp_path: Path, sta
 
 
 def test_design_writes_robot_report_score_and_pattern(run: Run, tmp_path: Path, starfish: Path) -> None:
-    arguments = ("--pose", "wave", "--winches", 1, "--cables", 2, "--kit", "--out", tmp_path / "out")
+    arguments = (
+        *("--pose", "wave", "--method", "trees", "--winches", 1, "--cables", 2, "--kit"),
+        *("--out", tmp_path / "out"),
+    )
     code, out, err = run("design", starfish, *arguments)
     assert code == 0
     assert "report.html" in out

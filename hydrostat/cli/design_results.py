@@ -1,0 +1,131 @@
+"""What `hydrostat design` writes and prints."""
+
+import json
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hydrostat.design import Constraints, Network
+    from hydrostat.ik import ReachedPose
+    from hydrostat.robot import Robot
+
+STALE = r"alternatives/\d+_\d+_winches_\d+_cables"
+"""Folders of alternatives of an earlier design."""
+
+
+def write_results(network: "Network", folder: Path) -> None:
+    """The robot, score.json, report.html and the alternatives."""
+    from hydrostat import __version__
+    from hydrostat.design import score_card
+    from hydrostat.plot import write_report
+    from hydrostat.robot import replace_file, save_robot
+
+    save_robot(network.robot, folder / "robot")
+    for number, other in enumerate(network.alternatives, start=1):
+        winches, cables = len(other.robot.winches), len(other.robot.cables)
+        save_robot(other.robot, folder / "alternatives" / f"{number:02d}_{winches}_winches_{cables}_cables")
+    card = score_card(network, version=__version__)
+    replace_file(folder / "score.json", (json.dumps(card, indent=2) + "\n").encode())
+    write_report(network, folder / "report.html", facts=_facts(network))
+
+
+def forget_kit(folder: Path) -> None:
+    """No pattern of an earlier design must lie beside a new one."""
+    for name in ("pattern.svg", "pattern.dxf"):
+        (folder / name).unlink(missing_ok=True)
+
+
+def write_kit(robot: "Robot", folder: Path) -> tuple[str, ...]:
+    """The laser pattern; returns warnings."""
+    from hydrostat.fabrication import PatternOptions, export_kit, plush_pattern
+
+    options = PatternOptions(force=True)
+    export_kit(robot, folder, options=options)
+    return plush_pattern(robot, options=options).warnings
+
+
+def print_poses(network: "Network", seconds: float) -> None:
+    """A table of the poses, and a line on all of them."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from hydrostat.design import rest_error
+    from hydrostat.units import counted
+
+    robot = network.robot
+    size = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+    table = Table(title=f"{robot.name}: {size}", title_justify="left")
+    for name, justify in (("pose", "left"), ("rms error", "right"), ("worst marker", "left"), ("contractions", "left")):
+        table.add_column(name, justify=justify)  # type: ignore[arg-type]
+    for reached in network.reached:
+        table.add_row(*_pose_row(robot, reached))
+    Console(markup=False).print(table)
+    print(
+        f"rms error: {1e3 * rest_error(network):.2f} mm at rest -> {1e3 * network.rms_error:.2f} mm reached; "
+        f"{counted(network.tried, 'network')} tried in {seconds:.1f} s"
+    )
+
+
+def print_front(network: "Network") -> None:
+    """A table of the error against the numbers of winches and cables."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from hydrostat.design.front import best_errors, on_front, size_of
+
+    errors = best_errors(network.alternatives, network)
+    table = Table(title="error against winches and cables", title_justify="left")
+    for name in ("winches", "cables", "rms error"):
+        table.add_column(name, justify="right")
+    table.add_column("")
+    for size, error in errors.items():
+        note = "chosen" if size == size_of(network) else "" if on_front(size, errors) else "fewer reach as much"
+        table.add_row(str(size[0]), str(size[1]), f"{1e3 * error:.2f} mm", note)
+    Console().print(table)
+
+
+def _pose_row(robot: "Robot", reached: "ReachedPose") -> tuple[str, ...]:
+    worst = max(reached.errors, key=lambda name: reached.errors[name])
+    taken = zip(robot.winches, reached.pose.contractions, strict=True)
+    return (
+        reached.wanted.name,
+        f"{1e3 * reached.rms_error:.2f} mm",
+        f"{worst} {1e3 * reached.errors[worst]:.1f} mm",
+        ", ".join(f"{winch.name} {1e3 * value:.1f} mm" for winch, value in taken),
+    )
+
+
+def _facts(network: "Network") -> dict[str, object]:
+    """Options and constraints as a person reads them."""
+    options = asdict(network.options)
+    seed = options.pop("seed", "none: nothing is drawn at random")
+    told = {name: ", ".join(map(str, value)) if isinstance(value, tuple) else value for name, value in options.items()}
+    return {"seed": seed, **told, **_told(network.constraints)}
+
+
+def _told(constraints: "Constraints") -> dict[str, str]:
+    """Constraints as a person reads them; those that ask nothing are left out."""
+    words = {
+        field.name.replace("_", " "): _words(field.name, getattr(constraints, field.name))
+        for field in fields(constraints)
+    }
+    return {name: told for name, told in words.items() if told}
+
+
+def _words(name: str, value: Any) -> str:
+    """The value of one constraint with its unit; nothing if it asks nothing."""
+    if isinstance(value, bool):
+        return "allowed" if value else "not allowed"
+    if name == "locked_cables":
+        return ", ".join(str(number + 1) for number in value)
+    if isinstance(value, tuple):
+        return ", ".join(value) if name == "locked_winches" else str(len(value) or "")
+    if isinstance(value, float):
+        factor, unit = _UNITS.get(name, (1e3, " mm"))
+        return f"{factor * value:g}{unit}"
+    return "" if value is None else str(value)
+
+
+_UNITS = {"tension": (1.0, " N"), "torque": (1.0, " N m"), "turn": (1.0, " degrees"), "spool_ratio": (1.0, "")}
+"""Factors and units of constraints that are no lengths."""

@@ -1,0 +1,53 @@
+"""`result_folder`: results appear in their folder all at once, or not at all."""
+
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
+    """A folder to write to, whose files come to `out` at the end; nowhere if an error or Ctrl-C comes first.
+
+    A new folder is renamed as a whole. In one that exists each file takes the place of the one of its name, and others
+    stay, but for folders that are out of date.
+
+    Args:
+        out: where the results shall be.
+        stale: pattern of paths in `out` of folders of earlier results, which are removed.
+    """
+    out = out.resolve()
+    beside = out if out.exists() else out.parent
+    beside.mkdir(parents=True, exist_ok=True)
+    part = beside / f".{out.name}.{os.getpid()}.part"
+    shutil.rmtree(part, ignore_errors=True)
+    part.mkdir()
+    try:
+        yield part
+        if out.exists():
+            _remove(out, stale)
+            _move_files(part, out)
+        else:
+            part.rename(out)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def _remove(out: Path, stale: str | None) -> None:
+    if stale is None:
+        return
+    old = [folder for folder in out.glob("*/*") if folder.is_dir() and not folder.is_symlink()]
+    for folder in old:
+        if re.fullmatch(stale, folder.relative_to(out).as_posix()):
+            shutil.rmtree(folder)
+
+
+def _move_files(part: Path, out: Path) -> None:
+    for folder, _, files in os.walk(part):
+        place = out / Path(folder).relative_to(part)
+        place.mkdir(parents=True, exist_ok=True)
+        for name in files:
+            os.replace(Path(folder) / name, place / name)
