@@ -25,6 +25,7 @@ def design_cables(
     method: str = "routes",
     constraints: Constraints | None = None,
     options: RouteOptions | TreeOptions | None = None,
+    improve: bool = False,
     progress: Progress | None = None,
 ) -> Network:
     """A network of winches and cables that brings a robot into some poses (R2, R35, F1, E28).
@@ -37,6 +38,7 @@ def design_cables(
         method: "routes" prices routes by the pose error and moves them to where it is least; "trees" is the thesis's.
         constraints: what can be built.
         options: of the method: `RouteOptions` or `TreeOptions`.
+        improve: begin with the robot's own winches and cables, and move and exchange those that are not locked.
         progress: called as the work goes on.
 
     Raises:
@@ -60,7 +62,7 @@ def design_cables(
     if not isinstance(options, RouteOptions):
         raise InputError(f'options of method "routes" must be RouteOptions, not {type(options).__name__}')
     return design_routes(
-        robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told
+        robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told, improve=improve
     )
 
 

@@ -8,11 +8,28 @@ class RouteOptions:
     """How the search for routes works.
 
     Attributes:
-        tolerance: rms error, as a fraction of the body's size, at which nothing more is sought.
+        enough: rms error, as a fraction of the body's size, at which nothing more is sought.
+        tolerance: rms error of each pose [m] that the fewest winches must reach where their number is left open; a
+            hundredth of the body's size if left out.
         spacing: distance between via points, in mean mesh edges.
-        seed: of the random choices.
+        hops: most edges of a path that is priced.
+        lead_penalty: share of the promised gain that a lead as long as the body costs.
+        trials: paths whose networks are solved before one is added.
+        starts: networks that are grown, each from another first cable.
+        exchanges: rounds in which each cable is taken out and the best is put in its place.
+        steps: of refinement after each cable.
+        polish: steps of refinement of a whole network.
+        seed: nothing is drawn at random yet; kept with the results.
     """
 
-    tolerance: float = 1e-4
+    enough: float = 1e-4
+    tolerance: float | None = None
     spacing: float = 2.0
+    hops: int = 14
+    lead_penalty: float = 0.3
+    trials: int = 4
+    starts: int = 3
+    exchanges: int = 1
+    steps: int = 5
+    polish: int = 40
     seed: int = 0

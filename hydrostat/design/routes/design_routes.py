@@ -1,12 +1,31 @@
 """`design_routes`: routes priced by the pose error, added one by one, and moved to where it is least."""
 
+import time
 from collections.abc import Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from hydrostat.design.body_region import body_region
+from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.network import Network
+from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, Stage
 from hydrostat.design.progress import Progress
+from hydrostat.design.region import Region
 from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.routes.begin import layout_of
+from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.certify import certify
+from hydrostat.design.routes.growth import Growth, without
+from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.propose import Proposals
+from hydrostat.design.routes.refine import pushed_back
+from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.errors import HydrostatError, InputError, NotConvergedError
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Simulation
 
 
 def design_routes(
@@ -18,6 +37,180 @@ def design_routes(
     constraints: Constraints,
     options: RouteOptions,
     progress: Progress,
+    improve: bool = False,
 ) -> Network:
-    """Routes."""
-    raise NotImplementedError
+    """Cables added where the adjoint of the pose error prices them best, and moved to where it is least.
+
+    At the equilibria of all poses the adjoint field prices every run between two via points; a dynamic program finds
+    the paths along which one more cable lowers the error most. The best few are solved, the best of these is kept, and
+    all via points are moved downhill; so it goes on (column generation). Several networks are grown from different
+    first cables; the best is refined, and its cables are exchanged one by one where another path does better.
+
+    Interrupted (KeyboardInterrupt), it returns the best network so far.
+
+    Raises:
+        InputError: a body too thin for the constraints.
+        HydrostatError: no network can be built.
+    """
+    return _Design(robot, poses, winches, cables, constraints, options, progress, improve).run()
+
+
+class _Design:
+    """One run."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        poses: Sequence[Pose],
+        winches: int,
+        cables: int,
+        constraints: Constraints,
+        options: RouteOptions,
+        progress: Progress,
+        improve: bool,
+    ) -> None:
+        self.robot, self.poses, self.winches, self.cables = robot, poses, winches, cables
+        self.constraints, self.options, self.progress, self.improve = constraints, options, progress, improve
+        self.bench = Bench(robot, poses, constraints)
+        self.stages: list[Stage] = []
+        self.found: list[Trial] = []
+        self.best: Trial | None = None
+        self.grown = 0
+
+    def run(self) -> Network:
+        began = time.process_time()
+        complete = True
+        try:
+            self._search()
+        except KeyboardInterrupt:
+            complete = False
+            if self.best is None:
+                raise
+        network, alternatives = self._finished()
+        return Network(
+            robot=network.robot,
+            source=self.robot,
+            method="routes",
+            reached=network.reached,
+            alternatives=tuple(alternatives),
+            trace=RouteTrace(stages=tuple(self.stages), certificate=self._certificate(network) if complete else None),
+            constraints=self.constraints,
+            options=self.options,
+            tried=self.bench.solves,
+            seconds=time.process_time() - began,
+            complete=complete,
+        )
+
+    def _search(self) -> None:
+        spacing = mean_edge(self.robot.body.mesh)
+        region = body_region(self.robot.body, self.constraints.clearance)
+        graph = route_graph(self.robot, region, self.constraints, spacing=spacing)
+        self.proposals = Proposals(self.bench, graph, self.options, self.options.spacing * spacing)
+        growth = Growth(self.proposals, self._noted)
+        self.progress("Growing networks", 0, self._total)
+        begun = growth.bare(self._beginning(region))
+        if begun is None:
+            raise HydrostatError("the network to begin with has no equilibrium in reach of its poses; start without it")
+        if begun.layout.lines:
+            self._noted("as it was", begun)
+        for seed in growth.seeds(begun, winches=self.winches, cables=self.cables):
+            self._noted("the first cable", seed)
+            trial = growth.truly(growth.grown(seed, winches=self.winches, cables=self.cables))
+            self.found.append(trial)
+        if not self.found:
+            raise HydrostatError(
+                "no network could be built: no cable keeps clear of the edge, of forbidden zones and of other cables; "
+                "lower the clearance, or allow sharper turns"
+            )
+        self.found.sort(key=lambda trial: trial.cost)
+        for rank, trial in enumerate(self.found[:_REFINED]):
+            self.progress("Refining", rank, _REFINED)
+            self.found[rank] = growth.polished(trial)
+            self._noted("via points moved", self.found[rank])
+        self.found.sort(key=lambda trial: trial.cost)
+        for round_ in range(self.options.exchanges):
+            self.progress("Exchanging cables", round_, self.options.exchanges)
+            better = growth.exchanged(self.found[0], winches=self.winches)
+            if better is self.found[0]:
+                break
+            self.found.insert(0, growth.polished(better))
+            self._noted("cables exchanged, via points moved", self.found[0])
+            self.found.sort(key=lambda trial: trial.cost)
+        self.progress("Exchanging cables", 1, 1)
+
+    @property
+    def _total(self) -> int:
+        return self.options.starts * self.cables
+
+    def _beginning(self, region: Region) -> Layout:
+        """What the search begins with: nothing, what is locked, or all that there is."""
+        whole = layout_of(self.robot, self.constraints)
+        if self.improve:
+            pushed = pushed_back(whole, region, 0.03 * self.robot.body.mesh.size)
+            if pushed is None:
+                raise InputError(
+                    "the robot's own network cannot be moved into what the constraints allow; relax them, or design "
+                    "without improving it"
+                )
+            return pushed
+        layout = whole
+        for number in reversed(range(len(whole.lines))):
+            if number not in self.constraints.locked_cables:
+                layout = without(layout, number) or replace(layout, lines=())
+        stands = [stand for index, stand in enumerate(layout.stands) if stand.fixed]
+        order = [stand.winch.name for stand in stands]
+        lines = tuple(replace(line, winch=order.index(layout.stands[line.winch].winch.name)) for line in layout.lines)
+        return replace(layout, stands=tuple(stands), lines=lines)
+
+    def _noted(self, words: str, trial: Trial) -> None:
+        """A network on the way: the best so far is kept, to be returned if the search is interrupted."""
+        if words.startswith(("cable", "the first")):
+            self.grown += 1
+            self.progress("Growing networks", min(self.grown, self._total), self._total)
+        if self.best is None or (len(trial.layout.lines), -trial.cost) > (len(self.best.layout.lines), -self.best.cost):
+            self.best = trial
+        self.stages.append(Stage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error))
+
+    def _finished(self) -> tuple[Alternative, list[Alternative]]:
+        """The networks found, judged as their user will find them, the best first."""
+        trials = self.found or [self.best]
+        judged = [judged for trial in trials if trial is not None and (judged := self._judged(trial)) is not None]
+        if not judged:
+            raise HydrostatError(
+                "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
+            )
+        judged.sort(key=lambda network: network.rms_error)
+        return judged[0], judged[1:]
+
+    def _judged(self, trial: Trial) -> Alternative | None:
+        """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
+        robot = trial.layout.robot(digits=_DIGITS)
+        region = body_region(self.robot.body, self.constraints.clearance)
+        if violations(robot, self.constraints, region):
+            return None
+        simulation = Simulation(robot)
+        limits = Limits(tension=self.constraints.tension_limit)
+        try:
+            reached = [solve_ik(simulation, pose, limits=limits, options=InverseOptions()) for pose in self.poses]
+        except NotConvergedError:
+            return None
+        return None if pulls(robot, reached, self.constraints) else Alternative(robot=robot, reached=tuple(reached))
+
+    def _certificate(self, network: Alternative) -> Certificate | None:
+        simulation = Simulation(network.robot)
+        trial = self.bench.trial(
+            layout_of(network.robot, self.constraints), simulation, [reached.pose for reached in network.reached]
+        )
+        return certify(self.proposals, trial)
+
+
+def mean_edge(mesh: Mesh) -> float:
+    """Mean length of a mesh edge [m]."""
+    return float(np.linalg.norm(np.diff(mesh.nodes[mesh.edges], axis=1)[:, 0], axis=1).mean())
+
+
+_DIGITS = 5
+"""Coordinates to a hundredth of a millimetre, as nobody places a cable finer."""
+
+_REFINED = 2
+"""Networks that are refined to the end."""

@@ -1,0 +1,125 @@
+"""`Bench`: what a network in the making does to every pose."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.routes.layout import Layout
+from hydrostat.errors import NotConvergedError
+from hydrostat.ik import InverseOptions, Limits, solve_ik
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Simulation, SolvedPose
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A layout with an equilibrium for every pose.
+
+    Attributes:
+        layout: winches and cables.
+        simulation: of the robot with them.
+        poses: at equilibrium, one for each target.
+        error: root of the mean squared marker error over all poses [m].
+        pull: the largest tension, as a share of what a cable bears.
+    """
+
+    layout: Layout
+    simulation: Simulation
+    poses: tuple[SolvedPose, ...]
+    error: float
+    pull: float
+
+    @property
+    def cost(self) -> float:
+        """The error, more where cables bear too much [m]."""
+        return self.error * max(self.pull, 1.0)
+
+
+@dataclass(eq=False)
+class Bench:
+    """Solves layouts for some poses.
+
+    Attributes:
+        source: the robot that is designed for.
+        targets: poses to reach.
+        constraints: limits on tensions and contractions.
+        solves: layouts tried.
+    """
+
+    source: Robot
+    targets: Sequence[Pose]
+    constraints: Constraints
+    solves: int = field(default=0)
+
+    @cached_property
+    def markers(self) -> list[list[int]]:
+        """Numbers of the markers of each pose."""
+        names = [marker.name for marker in self.source.markers]
+        return [[names.index(name) for name in pose.targets] for pose in self.targets]
+
+    @cached_property
+    def goals(self) -> list[np.ndarray]:
+        """Where these markers should be, (markers, dim) [m]."""
+        return [np.array(list(pose.targets.values()), dtype=float) for pose in self.targets]
+
+    @cached_property
+    def weights(self) -> list[float]:
+        """Of the residuals of each pose: with these the sum of squares is the squared rms error."""
+        return [1.0 / np.sqrt(len(self.targets) * len(markers)) for markers in self.markers]
+
+    def residual(self, simulation: Simulation, pose: int, nodes: Nodes) -> Vector:
+        """Target less marker of one pose, weighted [m]."""
+        places = simulation.marker_anchors.positions(nodes)[self.markers[pose]]
+        return self.weights[pose] * (self.goals[pose] - places).ravel()
+
+    def reached(self, layout: Layout, before: Trial | None, *, iterations: int = 30) -> Trial | None:
+        """The layout with contractions that bring every pose nearest; None where no equilibrium is found.
+
+        Args:
+            layout: of the same body.
+            before: a trial to begin from: its winches come first among those of the layout.
+            iterations: most steps of inverse kinematics for each pose.
+        """
+        self.solves += 1
+        simulation = Simulation(layout.robot())
+        options = InverseOptions(restarts=0, unique=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
+        limits = Limits(tension=self.constraints.tension_limit)
+        found = []
+        for index, target in enumerate(self.targets):
+            start = None if before is None else self._begun(simulation, before, index)
+            try:
+                found.append(solve_ik(simulation, target, start=start, limits=limits, options=options).pose)
+            except NotConvergedError:
+                return None
+        return self.trial(layout, simulation, found)
+
+    def held(self, layout: Layout, contractions: Sequence[Vector], before: Trial) -> Trial | None:
+        """The layout at given contractions of each pose [m]; None where Newton does not find an equilibrium at once."""
+        self.solves += 1
+        simulation = Simulation(layout.robot())
+        found = []
+        for pulled, pose in zip(contractions, before.poses, strict=True):
+            result = simulation.relax(pose.nodes, pulled, iterations=15)
+            if not (result.converged and result.stable):
+                return None
+            found.append(simulation.posed(pulled, result))
+        return self.trial(layout, simulation, found)
+
+    def _begun(self, simulation: Simulation, before: Trial, index: int) -> SolvedPose | None:
+        """A pose of the new robot near one of the old; None where there is none."""
+        pose = before.poses[index]
+        pulled = np.zeros(len(simulation.robot.winches))
+        shared = min(len(pulled), len(pose.contractions))
+        pulled[:shared] = pose.contractions[:shared]
+        result = simulation.relax(pose.nodes, pulled, iterations=15)
+        return simulation.posed(pulled, result) if result.converged and result.stable else None
+
+    def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[SolvedPose]) -> Trial:
+        """The trial of poses that were solved."""
+        squares = [float((self.residual(simulation, index, pose.nodes) ** 2).sum()) for index, pose in enumerate(poses)]
+        pull = max(float(pose.tensions.max(initial=0.0)) for pose in poses) / self.constraints.tension_limit
+        return Trial(layout, simulation, tuple(poses), float(np.sqrt(sum(squares))), pull)

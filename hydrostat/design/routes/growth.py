@@ -1,0 +1,161 @@
+"""`Growth`: a network grown cable by cable, each the best of those that promise most."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.propose import Proposals
+from hydrostat.design.routes.refine import RefineOptions, refine
+from hydrostat.simulation import Simulation
+
+Noted = Callable[[str, Trial], None]
+"""Told what was done, and the network after it."""
+
+
+@dataclass(eq=False)
+class Growth:
+    """Grows, refines and exchanges.
+
+    Attributes:
+        proposals: where cables may be added.
+        noted: told of every network on the way.
+    """
+
+    proposals: Proposals
+    noted: Noted
+
+    @property
+    def bench(self) -> Bench:
+        """That solves layouts."""
+        return self.proposals.bench
+
+    def bare(self, layout: Layout) -> Trial | None:
+        """The trial of a layout as it is, even one without cables."""
+        if layout.lines:
+            return self.bench.reached(layout, None)
+        simulation = Simulation(layout.robot())
+        return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
+
+    def seeds(self, trial: Trial, *, winches: int, cables: int) -> list[Trial]:
+        """Networks with one cable more, unlike one another, the best first."""
+        options = self.proposals.options
+        needed = cables - len(trial.layout.lines)
+        if needed <= 0:
+            return [trial]
+        count = max(options.trials, 2 * options.starts)
+        found = self._tried(trial, winches, needed, count)
+        return [self._short(seed) for seed in found[: options.starts]]
+
+    def grown(self, trial: Trial, *, winches: int, cables: int) -> Trial:
+        """The network with as many cables; fewer where no more can be built, or none is needed."""
+        while len(trial.layout.lines) < cables:
+            found = self.with_one_more(trial, winches=winches, needed=cables - len(trial.layout.lines))
+            if found is None:
+                break
+            trial = found
+            self.noted(_words(trial), trial)
+        return trial
+
+    def with_one_more(self, trial: Trial, *, winches: int, needed: int) -> Trial | None:
+        """The best network with one cable more (two where it is mirrored); None if there is none."""
+        tried = self._tried(trial, winches, needed, self.proposals.options.trials)
+        return self._short(tried[0]) if tried else None
+
+    def polished(self, trial: Trial) -> Trial:
+        """The network refined in rounds, each of which must hold from rest on."""
+        steps = self.proposals.options.polish
+        best = self.truly(trial)
+        effort = 1.0
+        done = 0
+        while done < steps:
+            size = min(_ROUND, steps - done)
+            options = replace(self._options(size), effort=effort * self._options(size).effort)
+            found = self.truly(refine(self.bench, self.proposals.graph.region, best, options))
+            done += size
+            if found.cost < best.cost:
+                gain = 1.0 - found.cost / best.cost
+                best = found
+                if gain < _IDLE or best.error <= options.enough:
+                    break
+            else:
+                effort *= 4.0
+        return best
+
+    def truly(self, trial: Trial) -> Trial:
+        """The same network with poses found from rest: what its user will find."""
+        found = self.bench.reached(trial.layout, None, iterations=60)
+        return found if found is not None else replace(trial, error=float("inf"))
+
+    def exchanged(self, trial: Trial, *, winches: int) -> Trial:
+        """The network after each cable was taken out in turn, and the best put in its place where that is better."""
+        for number in range(len(trial.layout.lines)):
+            line = trial.layout.lines[number]
+            if line.kept is not None or line.twin is not None or len(trial.layout.lines) < 2:
+                continue
+            rest = without(trial.layout, number)
+            before = None if rest is None else self.bench.reached(rest, None)
+            if before is None:
+                continue
+            needed = len(trial.layout.lines) - len(before.layout.lines)
+            found = self.with_one_more(before, winches=winches, needed=needed)
+            if found is None:
+                continue
+            found = self.truly(found)
+            if found.cost < (1 - _WORTH) * trial.cost:
+                trial = found
+                self.noted("a cable exchanged", trial)
+        return trial
+
+    def _tried(self, trial: Trial, winches: int, needed: int, count: int) -> list[Trial]:
+        layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=count)
+        tried = (self.bench.reached(layout, trial, iterations=12) for layout in layouts)
+        return sorted((found for found in tried if found is not None), key=lambda found: found.cost)
+
+    def _short(self, trial: Trial) -> Trial:
+        return refine(self.bench, self.proposals.graph.region, trial, self._options(self.proposals.options.steps))
+
+    def _options(self, steps: int) -> RefineOptions:
+        enough = self.proposals.options.enough * self.proposals.graph.size
+        return RefineOptions(iterations=steps, enough=enough)
+
+
+def without(layout: Layout, number: int) -> Layout | None:
+    """A layout less a line, its twin, and winches that pull nothing any more; None if nothing is left."""
+    gone = {number} | {index for index, line in enumerate(layout.lines) if line.twin == number}
+    kept = [index for index in range(len(layout.lines)) if index not in gone]
+    pulled = {layout.lines[index].winch for index in kept}
+    stands = [index for index, stand in enumerate(layout.stands) if index in pulled or stand.fixed]
+    for index in list(stands):  # a winch whose twin is gone would have nothing to follow
+        twin = layout.stands[index].twin
+        if twin is not None and twin not in stands:
+            stands.append(twin)
+    stands.sort()
+    if not kept:
+        return None
+    order = {None: None, **{old: new for new, old in enumerate(stands)}}
+    rank = {None: None, **{old: new for new, old in enumerate(kept)}}
+    return replace(
+        layout,
+        stands=tuple(replace(layout.stands[old], twin=order[layout.stands[old].twin]) for old in stands),
+        lines=tuple(
+            replace(line, winch=stands.index(line.winch), twin=rank[line.twin])
+            for line in (layout.lines[old] for old in kept)
+        ),
+    )
+
+
+def _words(trial: Trial) -> str:
+    layout = trial.layout
+    name = layout.stands[layout.lines[-1].winch].winch.name
+    return f"cable {len(layout.lines)}, pulled by {name}"
+
+
+_ROUND = 8
+"""Steps of refinement before the poses are found from rest again."""
+
+_IDLE = 0.02
+"""A round that gains less ends the refinement."""
+
+_WORTH = 0.01
+"""An exchange must gain so much."""

@@ -1,0 +1,194 @@
+"""`Layout`: winches and cables in the making, as numbers that can be moved."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.design.constraints import Constraints
+from hydrostat.robot import Cable, Mount, Robot, Winch
+
+
+@dataclass(frozen=True, eq=False)
+class Stand:
+    """A winch in the making.
+
+    Attributes:
+        winch: it, at its place.
+        fixed: whether it stays where it is.
+        twin: number of the winch that it mirrors; its own where it stands in the mirror; None: of no other.
+    """
+
+    winch: Winch
+    fixed: bool = False
+    twin: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A cable in the making.
+
+    Attributes:
+        winch: number of its winch.
+        points: first = at the winch, last = stopper [m].
+        lead: so many of its first segments run in a sheath.
+        slack: left by its stopper [m].
+        ratio: of its spool to that of its winch.
+        kept: a cable that stays just as it is.
+        twin: number of the line that it mirrors; None: of no other.
+    """
+
+    winch: int
+    points: Float[np.ndarray, "_ dim"]
+    lead: int = 0
+    slack: float = 0.0
+    ratio: float = 1.0
+    kept: Cable | None = None
+    twin: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """A network in the making.
+
+    Its numbers, in their order: the places of the winches, the points of each line after its first, the slack of each
+    line, the ratio of each line.
+
+    Attributes:
+        source: the robot that it is for.
+        constraints: that it should keep.
+        stands: its winches.
+        lines: its cables.
+    """
+
+    source: Robot
+    constraints: Constraints
+    stands: tuple[Stand, ...]
+    lines: tuple[Line, ...]
+
+    @property
+    def dim(self) -> int:
+        """Of the body."""
+        return self.source.body.mesh.dim
+
+    def robot(self, *, digits: int | None = None) -> Robot:
+        """The robot with this network; coordinates rounded to so many digits of a metre."""
+        winches = [replace(stand.winch, at=_point(stand.winch.at, digits)) for stand in self.stands]
+        cables = []
+        for line in self.lines:
+            if line.kept is not None:
+                cables.append(line.kept)
+                continue
+            winch = winches[line.winch]
+            points = (winch.at, *(_point(point, digits) for point in line.points[1:]))
+            slack, ratio = (value if digits is None else round(value, digits) for value in (line.slack, line.ratio))
+            cables.append(
+                Cable(
+                    winch=winch.name,
+                    points=points,
+                    sheathed=((0, line.lead),) if line.lead else (),
+                    slack=slack,
+                    spool_radius=None if ratio == 1.0 else ratio * winch.spool_radius,
+                )
+            )
+        return self.source.with_network(winches, cables)
+
+    @cached_property
+    def starts(self) -> list[int]:
+        """Where the points of each line begin among the numbers; then where slacks begin, and ratios."""
+        sizes = [self.dim * len(self.stands), *(self.dim * (len(line.points) - 1) for line in self.lines)]
+        return [int(end) for end in np.cumsum([*sizes, len(self.lines)])]
+
+    @property
+    def size(self) -> int:
+        """How many numbers there are."""
+        return self.starts[-1] + len(self.lines)
+
+    def place_of(self, line: int, point: int) -> slice:
+        """The numbers of a point of a line."""
+        begin = self.dim * self.lines[line].winch if point == 0 else self.starts[line] + self.dim * (point - 1)
+        return slice(begin, begin + self.dim)
+
+    @cached_property
+    def numbers(self) -> Vector:
+        """All of them."""
+        parts = [np.ravel([stand.winch.at for stand in self.stands])]
+        parts += [line.points[1:].ravel() for line in self.lines]
+        parts += [[line.slack for line in self.lines], [line.ratio for line in self.lines]]
+        return np.concatenate([np.asarray(part, dtype=float) for part in parts])
+
+    def at(self, numbers: Vector) -> "Layout":
+        """The same network with other numbers."""
+        dim, slacks, ratios = self.dim, *self.starts[-2:]
+        places = numbers[: dim * len(self.stands)].reshape(-1, dim)
+        stands = tuple(
+            replace(stand, winch=replace(stand.winch, at=tuple(map(float, place))))
+            for stand, place in zip(self.stands, places, strict=True)
+        )
+        lines = []
+        for index, line in enumerate(self.lines):
+            own = numbers[self.starts[index] : self.starts[index] + dim * (len(line.points) - 1)].reshape(-1, dim)
+            lines.append(
+                replace(
+                    line,
+                    points=np.vstack([places[line.winch], own]),
+                    slack=float(numbers[slacks + index]),
+                    ratio=float(numbers[ratios + index]),
+                )
+            )
+        return replace(self, stands=stands, lines=tuple(lines))
+
+    @cached_property
+    def ties(self) -> Float[np.ndarray, "numbers free"]:
+        """How the numbers follow those that are free: what stays has no column, a mirrored part follows its twin."""
+        dim, slacks, ratios = self.dim, *self.starts[-2:]
+        flip = np.ones(dim)
+        if self.constraints.mirror is not None:
+            flip["xyz".index(self.constraints.mirror)] = -1.0
+        full = np.eye(self.size)
+        drop = np.zeros(self.size, dtype=bool)
+        for index, stand in enumerate(self.stands):
+            rows = slice(dim * index, dim * (index + 1))
+            if stand.fixed or stand.winch.mount is Mount.WORLD:
+                drop[rows] = True
+            elif stand.twin == index:
+                drop[rows] |= flip < 0
+            elif stand.twin is not None:
+                _follow(full, drop, rows, slice(dim * stand.twin, dim * (stand.twin + 1)), flip)
+        for index, line in enumerate(self.lines):
+            count = len(line.points) - 1
+            rows = slice(self.starts[index], self.starts[index] + dim * count)
+            singles = [slacks + index, ratios + index]
+            if line.kept is not None:
+                drop[rows] = True
+                drop[singles] = True
+            elif line.twin is not None:
+                twin = slice(self.starts[line.twin], self.starts[line.twin] + dim * count)
+                _follow(full, drop, rows, twin, np.tile(flip, count))
+                for base in (slacks, ratios):
+                    _follow(
+                        full,
+                        drop,
+                        slice(base + index, base + index + 1),
+                        slice(base + line.twin, base + line.twin + 1),
+                        1.0,
+                    )
+            if self.constraints.slack == 0.0:
+                drop[slacks + index] = True
+            if self.constraints.spool_ratio == 1.0:
+                drop[ratios + index] = True
+        return full[:, ~drop]
+
+
+def _follow(full: np.ndarray, drop: np.ndarray, rows: slice, twin: slice, flip: Vector | float) -> None:
+    """Rows that follow those of a twin."""
+    full[rows, rows] = 0.0
+    full[rows, twin] = np.eye(rows.stop - rows.start) * flip
+    drop[rows] = True
+
+
+def _point(coordinates: Points | tuple[float, ...], digits: int | None) -> tuple[float, ...]:
+    values = (float(value) for value in coordinates)
+    return tuple(value if digits is None else round(value, digits) for value in values)

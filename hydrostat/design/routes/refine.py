@@ -1,0 +1,241 @@
+"""`refine`: winches, via points, stoppers and spools, moved to where the pose error is least."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.design.region import Region
+from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.room import room
+from hydrostat.ik.search.least_squares import least_squares
+from hydrostat.simulation import rig_slopes
+
+
+@dataclass(frozen=True, kw_only=True)
+class RefineOptions:
+    """How far a refinement goes.
+
+    Attributes:
+        iterations: most steps.
+        effort: error, as a share of the present one, that the tension limit of a cable is worth.
+        progress: it ends after steps that lower the cost by less than this share.
+        enough: error [m] at which it ends.
+    """
+
+    iterations: int = 40
+    effort: float = 0.02
+    progress: float = 3e-3
+    enough: float = 0.0
+
+
+def refine(bench: Bench, region: Region, trial: Trial, options: RefineOptions) -> Trial:
+    """Levenberg and Marquardt over all numbers of a layout and the contractions of every pose at once.
+
+    Residuals are linearised by the adjoint; limits of the layout, on contractions and tensions are rows of each step;
+    a step is pushed back into what can be built before it is tried, and taken where the cost falls.
+    """
+    return _Refinement(bench, region, options).run(trial)
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A trial to first order: |right + matrix d|^2, rows d <= room, for d = free numbers, then contractions."""
+
+    matrix: np.ndarray
+    right: Vector
+    rows: np.ndarray
+    room: Vector
+    scale: Vector
+    free: int
+
+
+class _Refinement:
+    def __init__(self, bench: Bench, region: Region, options: RefineOptions) -> None:
+        self.bench, self.region, self.options = bench, region, options
+        self.limit = bench.constraints.tension_limit
+        self.reach = _REACH * bench.source.body.mesh.size
+        self.damping = _DAMPING
+
+    def run(self, trial: Trial) -> Trial:
+        idle = 0
+        for _ in range(self.options.iterations):
+            if trial.error <= self.options.enough:
+                break
+            effort = (
+                self.options.effort * trial.error / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.lines)))
+            )
+            found = self._step(trial, effort)
+            if found is None:
+                break
+            gain = 1.0 - self._merit(found, effort) / self._merit(trial, effort)
+            idle = idle + 1 if gain < 2 * self.options.progress else 0
+            trial = found
+            if idle >= 2:
+                break
+        return trial
+
+    def _merit(self, trial: Trial, effort: float) -> float:
+        """Squares of error and effort, and of what tensions exceed."""
+        total = trial.error**2
+        for pose in trial.poses:
+            over = np.maximum(pose.tensions - self.limit, 0.0)
+            total += float((effort**2) * (pose.tensions**2).sum() + (_OVER * effort) ** 2 * (over**2).sum())
+        return total
+
+    def _step(self, trial: Trial, effort: float) -> Trial | None:
+        """The first damped step that lowers the merit; None if none does."""
+        model = linear_model(self.bench, self.region, trial, effort=effort, reach=self.reach)
+        before = self._merit(trial, effort)
+        for _ in range(_TRIES):
+            step = self._damped(model)
+            if step is not None:
+                found = self._tried(trial, step, model.free)
+                if found is not None and self._merit(found, effort) < before:
+                    self.damping = max(self.damping / 4, 1e-6)
+                    return found
+            self.damping = max(4 * self.damping, _DAMPING)
+            if self.damping > _STIFF:
+                break
+        self.damping = _DAMPING
+        return None
+
+    def _damped(self, model: Model) -> Vector | None:
+        matrix = model.matrix * model.scale
+        damping = self.damping * float(np.linalg.norm(matrix[:, : model.free], axis=0).max(initial=1e-12))
+        ridge = np.full(len(model.scale), damping)
+        ridge[model.free :] *= _LIGHT
+        stacked = np.vstack([matrix, np.diag(np.maximum(ridge, 1e-9))])
+        aim = np.concatenate([-model.right, np.zeros(len(ridge))])
+        rows = model.rows * model.scale
+        step = least_squares(stacked, aim, rows, model.room)
+        if step is None:
+            step = least_squares(stacked, aim, rows, np.maximum(model.room, 0.0))
+        return None if step is None else model.scale * step
+
+    def _tried(self, trial: Trial, step: Vector, free: int) -> Trial | None:
+        layout = trial.layout
+        longest = np.abs(layout.ties @ step[:free])[: layout.starts[-2]].max(initial=0.0)
+        if longest > 2 * self.reach:
+            step = step * (2 * self.reach / longest)
+        moved = pushed_back(layout.at(layout.numbers + layout.ties @ step[:free]), self.region, self.reach)
+        if moved is None:
+            return None
+        changes = step[free:].reshape(len(trial.poses), -1)
+        contractions = []
+        for pose, change in zip(trial.poses, changes, strict=True):
+            low = [-stand.winch.release for stand in layout.stands]
+            high = [stand.winch.travel for stand in layout.stands]
+            contractions.append(np.clip(pose.contractions + change, low, high))
+        return self.bench.held(moved, contractions, trial)
+
+
+def linear_model(bench: Bench, region: Region, trial: Trial, *, effort: float, reach: float) -> Model:
+    """A trial to first order, with all limits that lie within `reach` [m].
+
+    Args:
+        bench: of the poses.
+        region: where cables may be.
+        trial: at its equilibria.
+        effort: what a tension counts [m/N].
+        reach: how far anything will move [m].
+    """
+    layout, limit = trial.layout, bench.constraints.tension_limit
+    winches, free = len(layout.stands), layout.ties.shape[1]
+    count = free + winches * len(trial.poses)
+    matrix, right, rows, rooms = [], [], [], []
+    for index, pose in enumerate(trial.poses):
+        slopes = rig_slopes(trial.simulation, pose, bench.markers[index])
+        own = np.zeros((len(slopes.contractions), count))
+        own[:, :free] = _by_numbers(layout, slopes) @ layout.ties
+        begin = free + winches * index
+        own[:, begin : begin + winches] = slopes.contractions
+        markers = len(own) - len(layout.lines)
+        matrix += [-bench.weights[index] * own[:markers], effort * own[markers:]]
+        right += [bench.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
+        near = pose.tensions > 0.5 * limit
+        rows.append(own[markers:][near])
+        rooms.append(limit - pose.tensions[near])
+        for winch, stand in enumerate(layout.stands):
+            for sign, left in (
+                (1.0, stand.winch.travel - pose.contractions[winch]),
+                (-1.0, pose.contractions[winch] + stand.winch.release),
+            ):
+                row = np.zeros((1, count))
+                row[0, begin + winch] = sign
+                rows.append(row)
+                rooms.append(np.array([left]))
+    geometry = room(layout, region, reach=reach)
+    tied = np.zeros((len(geometry.rows), count))
+    tied[:, :free] = geometry.rows @ layout.ties
+    scale = np.full(count, _TRAVEL * bench.constraints.travel)
+    scale[:free] = _scales(layout, reach)
+    return Model(
+        np.vstack(matrix), np.concatenate(right), np.vstack([*rows, tied]),
+        np.concatenate([*rooms, geometry.room]), scale, free,
+    )  # fmt: skip
+
+
+def _scales(layout: Layout, reach: float) -> Vector:
+    """What counts as a large step of each free number."""
+    slacks, ratios = layout.starts[-2:]
+    full = np.full(layout.size, reach)
+    full[slacks:ratios] = max(0.25 * layout.constraints.slack, 1e-4)
+    full[ratios:] = 0.2
+    return np.abs(layout.ties.T) @ full / np.maximum(np.abs(layout.ties).sum(axis=0), 1e-300)
+
+
+def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
+    """The nearest layout that can be built, by steps of least length; None if that is not found."""
+    ties = layout.ties
+    for _ in range(_PUSHES):
+        limits = room(layout, region, reach=reach)
+        rows = limits.rows @ ties
+        some = np.abs(rows).max(axis=1, initial=0.0) > 0
+        rows, left = rows[some], limits.room[some]
+        if not len(left) or left.min() >= -_CLOSE:
+            return layout
+        step = least_squares(np.eye(ties.shape[1]), np.zeros(ties.shape[1]), rows, left)
+        if step is None:
+            return None
+        layout = layout.at(layout.numbers + ties @ step)
+    limits = room(layout, region, reach=0.0)
+    return layout if not len(limits.room) or limits.room.min() >= -_CLOSE else None
+
+
+def _by_numbers(layout: Layout, slopes) -> np.ndarray:
+    """Slopes by the numbers of a layout, (rows, numbers)."""
+    full = np.zeros((len(slopes.contractions), layout.size))
+    begin = 0
+    for index, line in enumerate(layout.lines):
+        for point in range(len(line.points)):
+            full[:, layout.place_of(index, point)] += slopes.points[:, begin + point]
+        begin += len(line.points)
+    slacks, ratios = layout.starts[-2:]
+    full[:, slacks:ratios] = slopes.slack
+    full[:, ratios:] = slopes.ratios
+    return full
+
+
+_REACH = 0.03
+"""A large step of a via point, as a share of the body's size."""
+
+_TRAVEL = 0.2
+"""A large step of a contraction, as a share of the travel."""
+
+_DAMPING = 0.1
+"""Where the damping begins, as a share of the largest slope."""
+
+_STIFF = 1e4
+_TRIES = 6
+_LIGHT = 0.1
+"""Damping of contractions against that of the numbers of the layout."""
+
+_OVER = 30.0
+"""How much more the part of a tension beyond its limit weighs."""
+
+_PUSHES = 8
+
+_CLOSE = 2e-5
+"""What may be left of a limit [m]."""

@@ -1,0 +1,241 @@
+"""`room`: how much room a layout has within its constraints, to first order."""
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import Region
+from hydrostat.design.routes.layout import Layout
+from hydrostat.robot import Mount
+
+
+class Room(NamedTuple):
+    """Limits on a change d of the numbers of a layout: rows d <= room [m]."""
+
+    rows: Float[np.ndarray, "limits numbers"]
+    room: Float[np.ndarray, " limits"]
+
+
+def room(layout: Layout, region: Region, *, reach: float) -> Room:
+    """All limits that a layout is within `reach` [m] of, with a hair of margin each.
+
+    Args:
+        layout: what is to be moved.
+        region: where cables may be.
+        reach: how far anything will move.
+    """
+    return _Room(layout, region, reach).found()
+
+
+class _Room:
+    def __init__(self, layout: Layout, region: Region, reach: float) -> None:
+        self.layout, self.region, self.reach = layout, region, reach
+        self.constraints: Constraints = layout.constraints
+        self.rows: list[np.ndarray] = []
+        self.rooms: list[float] = []
+
+    def found(self) -> Room:
+        self._winches()
+        self._edges()
+        self._gaps()
+        self._turns()
+        self._lengths()
+        self._bounds()
+        rows = np.array(self.rows).reshape(-1, self.layout.size)
+        return Room(rows, np.array(self.rooms))
+
+    def _add(self, room: float, *parts: tuple[slice, Vector]) -> None:
+        if room > self.reach:
+            return
+        row = np.zeros(self.layout.size)
+        for place, slope in parts:
+            row[place] += slope
+        if row.any():
+            self.rows.append(row)
+            self.rooms.append(room)
+
+    def _winches(self) -> None:
+        """Winches in the body: deep enough, apart, and in a zone where they may be."""
+        layout, dim = self.layout, self.layout.dim
+        places = np.array([stand.winch.at for stand in layout.stands])
+        inner = [i for i, stand in enumerate(layout.stands) if stand.winch.mount is Mount.BODY and not stand.fixed]
+        if not inner:
+            return
+        depths, ways = self.region.depths(places[inner]), self.region.inward(places[inner])
+        for index, depth, way in zip(inner, depths, ways, strict=True):
+            own = slice(dim * index, dim * (index + 1))
+            self._add(depth - self.constraints.winch_clearance - _HAIR, (own, -way))
+            self._zones(places[index], own)
+            for other, stand in enumerate(layout.stands):
+                if other == index or stand.winch.mount is Mount.WORLD or (other in inner and other < index):
+                    continue
+                self._apart(places[index], own, places[other], slice(dim * other, dim * (other + 1)),
+                    self.constraints.winch_gap)  # fmt: skip
+
+    def _zones(self, place: Vector, own: slice) -> None:
+        zones = self.constraints.winch_zones
+        if zones:
+            away = [float(zone.distances(place[None])[0]) for zone in zones]
+            nearest = int(np.argmin(away))
+            self._add(-away[nearest] - _HAIR, (own, zones[nearest].away(place[None])[0]))
+
+    def _edges(self) -> None:
+        """Points a clearance from the edge, segments half of it; both outside forbidden zones."""
+        clearance = self.constraints.clearance
+        spots, needs, owners = [], [], []
+        for index, line in enumerate(self.layout.lines):
+            if line.kept is not None:
+                continue
+            outside = self.layout.stands[line.winch].winch.mount is Mount.WORLD
+            for point in range(1, len(line.points)):
+                spots.append(line.points[point])
+                needs.append((clearance + _HAIR, 0.0, point > line.lead))
+                owners.append(((self.layout.place_of(index, point), 1.0),))
+            for point in range(1 if outside else 0, len(line.points) - 1):
+                start, end = line.points[point], line.points[point + 1]
+                count = int(np.ceil(np.linalg.norm(end - start) / clearance)) - 1
+                for share in np.arange(1, count + 1) / (count + 1):
+                    spots.append((1 - share) * start + share * end)
+                    needs.append((0.6 * clearance, 0.0, point >= line.lead))
+                    owners.append(
+                        (
+                            (self.layout.place_of(index, point), 1 - share),
+                            (self.layout.place_of(index, point + 1), share),
+                        )
+                    )
+        if not spots:
+            return
+        places = np.array(spots)
+        depths = self.region.depths(places)
+        near = np.flatnonzero(depths - np.array([need[0] for need in needs]) <= self.reach)
+        ways = self.region.inward(places[near]) if len(near) else np.zeros((0, self.layout.dim))
+        for spot, way in zip(near, ways, strict=True):
+            self._add(depths[spot] - needs[spot][0], *((place, -share * way) for place, share in owners[spot]))
+        for zones, bare_only in ((self.constraints.keep_out, False), (self.constraints.still, True)):
+            for zone in zones:
+                away, ways = zone.distances(places), zone.away(places)
+                for spot, (need, owner) in enumerate(zip(needs, owners, strict=True)):
+                    if need[2] or not bare_only:
+                        self._add(away[spot] - _HAIR, *((place, -share * ways[spot]) for place, share in owner))
+
+    def _gaps(self) -> None:
+        """Holes apart; those of other winches' cables outside a winch."""
+        layout, gap = self.layout, self.constraints.hole_gap
+        holes = [
+            (index, point, line.points[point], layout.place_of(index, point))
+            for index, line in enumerate(layout.lines)
+            for point in range(1, len(line.points))
+        ]
+        places = np.array([hole[2] for hole in holes])
+        away = np.linalg.norm(places[:, None] - places[None], axis=2)
+        for one, other in np.argwhere(np.triu(away < gap + self.reach, 1)):
+            if away[one, other] > 1e-6 or holes[one][0] == holes[other][0]:
+                self._apart(holes[one][2], holes[one][3], holes[other][2], holes[other][3], gap)
+        for number, stand in enumerate(layout.stands):
+            if stand.winch.mount is Mount.WORLD:
+                continue
+            centre, own = np.array(stand.winch.at), slice(layout.dim * number, layout.dim * (number + 1))
+            for index, _, place, where in holes:
+                mine = layout.lines[index].winch == number
+                self._apart(place, where, centre, own, gap if mine else 2 * stand.winch.spool_radius)
+
+    def _apart(self, one: Vector, where: slice, other: Vector, there: slice, gap: float) -> None:
+        span = one - other
+        distance = float(np.linalg.norm(span))
+        way = span / distance if distance > 1e-9 else np.eye(len(span))[0]
+        self._add(distance - gap - _HAIR, (where, -way), (there, way))
+
+    def _turns(self) -> None:
+        """No turn sharper than allowed, no arc tighter; slopes by central differences of the three points."""
+        turn, radius = np.radians(self.constraints.turn - _DEGREE), self.constraints.bend_radius
+        for index, line in enumerate(self.layout.lines):
+            if line.kept is not None or len(line.points) < 3:
+                continue
+            corners = np.stack([line.points[:-2], line.points[1:-1], line.points[2:]], axis=1)
+            for kind in ("turn", "radius") if radius > 0 else ("turn",):
+                values, slopes = _sloped(corners, kind, turn, radius)
+                for corner, (value, slope) in enumerate(zip(values, slopes, strict=True)):
+                    parts = ((self.layout.place_of(index, corner + k), -slope[k]) for k in range(3))
+                    self._add(float(value), *parts)
+
+    def _lengths(self) -> None:
+        longest = self.constraints.longest
+        if longest is None:
+            return
+        for index, line in enumerate(self.layout.lines):
+            if line.kept is None:
+                spans = np.diff(line.points, axis=0)
+                lengths = np.linalg.norm(spans, axis=1)
+                units = spans / lengths[:, None]
+                parts = [(self.layout.place_of(index, k), -units[k]) for k in range(len(units))]
+                parts += [(self.layout.place_of(index, k + 1), units[k]) for k in range(len(units))]
+                self._add(longest - float(lengths.sum()) - _HAIR, *parts)
+
+    def _bounds(self) -> None:
+        """Of slack and spool ratios."""
+        slacks, ratios = self.layout.starts[-2:]
+        most = self.constraints.spool_ratio
+        for index, line in enumerate(self.layout.lines):
+            for place, value, low, high in (
+                (slacks + index, line.slack, 0.0, self.constraints.slack),
+                (ratios + index, line.ratio, 1 / most, most),
+            ):
+                own = slice(place, place + 1)
+                for sign, left in ((1.0, high - value), (-1.0, value - low)):
+                    self.rows.append(_unit(self.layout.size, own, sign))
+                    self.rooms.append(left)
+
+
+_HAIR = 5e-5
+"""Kept back from every limit on a length [m]: more than what rounding coordinates changes."""
+
+_DEGREE = 0.5
+"""Kept back from the largest turn."""
+
+_STEP = 1e-7
+
+
+def _unit(size: int, own: slice, sign: float) -> Vector:
+    row = np.zeros(size)
+    row[own] = sign
+    return row
+
+
+def _sloped(
+    corners: Float[np.ndarray, "corners 3 dim"], kind: str, turn: float, radius: float
+) -> tuple[Vector, Float[np.ndarray, "corners 3 dim"]]:
+    """Room of each corner [m], and its slopes by the three points."""
+    value = _turn_room if kind == "turn" else _radius_room
+    limit = turn if kind == "turn" else radius
+    slopes = np.empty_like(corners)
+    for point in range(3):
+        for axis in range(corners.shape[2]):
+            ends = []
+            for sign in (1, -1):
+                moved = corners.copy()
+                moved[:, point, axis] += sign * _STEP
+                ends.append(value(moved, limit))
+            slopes[:, point, axis] = (ends[0] - ends[1]) / (2 * _STEP)
+    return value(corners, limit), slopes
+
+
+def _angles(corners: Float[np.ndarray, "corners 3 dim"]) -> tuple[Vector, Vector]:
+    """Turn of each corner, and the shorter of its two segments [m]."""
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1]
+    lengths = np.linalg.norm(first, axis=1), np.linalg.norm(second, axis=1)
+    cosines = (first * second).sum(axis=1) / np.maximum(lengths[0] * lengths[1], 1e-300)
+    return np.arccos(np.clip(cosines, -1.0, 1.0)), np.minimum(*lengths)
+
+
+def _turn_room(corners: Float[np.ndarray, "corners 3 dim"], turn: float) -> Vector:
+    """As a length: the room of the angle times the shorter segment."""
+    angles, shorter = _angles(corners)
+    return (turn - angles) * shorter
+
+
+def _radius_room(corners: Float[np.ndarray, "corners 3 dim"], radius: float) -> Vector:
+    angles, shorter = _angles(corners)
+    return 0.5 * shorter - radius * np.tan(0.5 * np.minimum(angles, 3.0))
