@@ -362,12 +362,43 @@ def test_a_winch_in_the_mirror_is_its_own_image() -> None:
     assert told == "cable[0] has no mirror image that ends at [150, 30] mm"
 
 
+def test_an_image_is_pulled_by_the_image_of_its_winch() -> None:
+    """Two winches in the mirror, with cables that begin at the same place between them."""
+    upper = ((0.04, 0.0), (0.07, 0.02), (0.15, 0.03))
+    lower = tuple((x, -y) for x, y in upper)
+    winches = Winch(name="first", at=(0.03, 0.0)), Winch(name="second", at=(0.05, 0.0))
+    for pulls_lower, count in (("first", 0), ("second", 2)):
+        cables = Cable(winch="first", points=upper), Cable(winch=pulls_lower, points=lower)
+        told = broken(network().with_network(winches, cables), mirror="y", winch_gap=0.02)
+        assert len(told) == count
+
+
 def test_what_is_locked_is_not_looked_at() -> None:
     wild = network(up=((0.03, 0.041), (0.15, 0.048)), winch={"travel": 0.09, "release": 0.01}, slack=0.02)
     assert len(broken(wild, winch_gap=0.03)) == 6
     assert broken(wild, locked_cables=(0,)) == []
     told = broken(wild, locked_winches=("up",))
     assert [one.split()[0] for one in told] == ["cable[0].points[1]", "cable[0]", "cable[0]"]
+
+
+def test_a_cable_may_begin_at_a_locked_winch_near_the_edge() -> None:
+    """As at the edge itself: a clearance's way on from there is free."""
+    edge: Points = ((0.03, 0.048), (0.06, 0.03), (0.15, 0.03))
+    assert broken(network(up=edge), locked_winches=("up",)) == []
+    assert len(broken(network(up=edge))) == 3
+    along = network(up=(edge[0], (0.06, 0.048), (0.15, 0.03)))
+    told = broken(along, locked_winches=("up",))
+    assert [one.split(" lies ")[0].split(" comes ")[0] for one in told] == [
+        "cable[0].points[1] at [60, 48] mm",
+        "cable[0] between points 0 and 1",
+        "cable[0] between points 1 and 2",
+    ]
+
+
+def test_a_winch_with_locked_cables_may_have_more_of_them() -> None:
+    robot = network(**third(0.15, -0.012))
+    assert broken(robot, cables_per_winch=1, locked_cables=(1, 2)) == []
+    assert len(broken(robot, cables_per_winch=1, locked_cables=(1,))) == 1
 
 
 def test_locked_cables_are_known_by_their_numbers_in_the_source() -> None:
@@ -390,6 +421,10 @@ def test_what_is_new_keeps_away_from_what_is_locked() -> None:
     (told,) = broken(crowded, locked_winches=("down",))
     assert told.startswith("winch[1] down stands 20 mm from winch[0] up")
     assert broken(crowded, locked_winches=("down", "up")) == []
+
+
+def test_a_cable_may_pass_its_own_winch() -> None:
+    assert broken(network(more=[("down", (DOWN[0], (0.032, -0.038), (0.06, -0.039)))])) == []
 
 
 def test_rounding_breaks_nothing() -> None:

@@ -123,6 +123,21 @@ def test_what_is_seen(name: str, unchecked: None) -> None:
     assert found[low] == pytest.approx(least[low], abs=5e-4)
 
 
+def test_few_places_tell() -> None:
+    """A straight way at one depth: two places if it is far from the limit or beyond it, many if it is close."""
+    here, asked = region("strip"), []
+
+    def measure(points: np.ndarray) -> np.ndarray:
+        asked.append(len(points))
+        return here.depths(points)
+
+    for depth, limit, most in ((0.02, 0.0025, 150), (0.02, 0.021, 2), (0.02, 0.0199, 4000)):
+        asked.clear()
+        way = np.array([[0.03, 0.025 - depth]]), np.array([[0.17, 0.025 - depth]])
+        assert least_along(measure, *way, limit) == pytest.approx(depth)
+        assert sum(asked) <= most
+
+
 def test_segments_along_a_wall() -> None:
     """A way 2.4 mm inside the side of a box is seen with 4.7 mm clearance, not with 5 mm."""
     for name, start, end in [
