@@ -55,7 +55,7 @@ class _Reader(TablesFile):
         given: dict[str, Any] = {
             key: value
             for key, value in self.table
-            if value is not None and key not in {*ZONES, "locked_cables", "spool_ratio", "mirror"}
+            if value is not None and key not in {*ZONES, "spool_ratio", "mirror"}
         }
         for table, field in ZONES.items():
             given[field] = self.records(table, self._zone)
@@ -63,10 +63,11 @@ class _Reader(TablesFile):
             given["spool_ratio"] = float(self.table.spool_ratio)
         if self.table.mirror is not None:
             given["mirror"] = str(self.table.mirror)
-        given["locked_cables"] = [
+        given["locked_winches"] = tuple(self.table.locked_winches or ())
+        given["locked_cables"] = tuple(
             self.at(f"locked_cables[{place}]", partial(cable_index, number, self.robot))
-            for place, number in enumerate(self.table.locked_cables or [])
-        ]
+            for place, number in enumerate(self.table.locked_cables or ())
+        )
         return self.at("", lambda: _fitting(given, self.robot))
 
     def _zone(self, entry: Any) -> Zone:

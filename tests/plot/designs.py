@@ -54,27 +54,31 @@ def hostile_trace() -> TreeTrace:
 @cache
 def hostile_network() -> Network:
     robot = hostile_robot()
-    simulation = Simulation(robot)
-    pose = simulation.solve(np.array([0.01, 0.0]))
-    target = robot.poses["<b>"]
+    return _network(robot, robot.poses["<b>"], np.array([[0.02, 0.01], [0.1, 0.01], [0.15, 0.0]]))
+
+
+@cache
+def plain_network() -> Network:
+    """The strip of the other tests, grown in stages, as it can be written and read."""
+    pose = Pose(name="up", targets={"tip": (0.19, 0.03)})
+    robot = replace(strip_robot(columns=10, rows=3), poses={"up": pose})
+    return grown(_network(robot, pose, np.array([[0.02, 0.01], [0.1, 0.01]])))
+
+
+def _network(robot: Robot, target: Pose, tree: np.ndarray) -> Network:
+    """A network as winch trees would have led to it, its first winch taken in by a centimetre."""
+    pose = Simulation(robot).solve(np.array([0.01, 0.0]))
     errors = {name: float(np.linalg.norm(pose.markers[name] - np.array(at))) for name, at in target.targets.items()}
     fibres = edge_fibres(robot.body.mesh)
     tensions = np.linspace(0.0, 2.0, len(fibres))
-    trace = TreeTrace(
-        activations=(Activation(target=target, fibres=fibres, tensions=tensions, nodes=pose.nodes, errors=errors),),
-        candidates=(np.argsort(-tensions)[:12],),
-        trees=(np.array([[0.02, 0.01], [0.1, 0.01], [0.15, 0.0]]),),
-        score=0.5,
-    )
-    reached = (
-        ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5),
-    )
+    activation = Activation(target=target, fibres=fibres, tensions=tensions, nodes=pose.nodes, errors=errors)
+    reached = ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5)
     return Network(
         robot=robot,
         source=robot,
         method="trees",
-        reached=reached,
-        trace=trace,
+        reached=(reached,),
+        trace=TreeTrace(activations=(activation,), candidates=(np.argsort(-tensions)[:12],), trees=(tree,), score=0.5),
         constraints=Constraints(),
         options=TreeOptions(),
         tried=4,
@@ -126,28 +130,4 @@ def space_network() -> Network:
         cables=(Cable(winch="one", points=(outside, *one.points)), replace(two, sheathed=((0, 1),))),
         poses={"nod": Pose(name="nod", targets={"tip": (0.11, 0.03, 0.03)})},
     )
-    pose = Simulation(robot).solve(np.array([0.01, 0.0]))
-    target = robot.poses["nod"]
-    errors = {"tip": float(np.linalg.norm(pose.markers["tip"] - np.array(target.targets["tip"])))}
-    fibres = edge_fibres(robot.body.mesh)
-    tensions = np.linspace(0.0, 2.0, len(fibres))
-    trace = TreeTrace(
-        activations=(Activation(target=target, fibres=fibres, tensions=tensions, nodes=pose.nodes, errors=errors),),
-        candidates=(np.argsort(-tensions)[:12],),
-        trees=(np.array([[0.02, 0.01, 0.02], [0.1, 0.01, 0.02], [0.11, 0.02, 0.03]]),),
-        score=0.5,
-    )
-    reached = (
-        ReachedPose(target=target, pose=pose, errors=errors, reason=InverseReason.OPTIMAL, iterations=3, solves=5),
-    )
-    return Network(
-        robot=robot,
-        source=robot,
-        method="trees",
-        reached=reached,
-        trace=trace,
-        constraints=Constraints(),
-        options=TreeOptions(),
-        tried=4,
-        seconds=1.5,
-    )
+    return _network(robot, robot.poses["nod"], np.array([[0.02, 0.01, 0.02], [0.1, 0.01, 0.02], [0.11, 0.02, 0.03]]))

@@ -1,0 +1,158 @@
+"""Constraints from a file. Oracles: records made by hand, the fields of `Constraints`, errors word by word."""
+
+from dataclasses import fields, replace
+from pathlib import Path
+
+import pytest
+from builders import box_robot, strip_robot
+
+from hydrostat.design import Constraints, Zone
+from hydrostat.design.constraints_file import ZONES, read_constraints
+from hydrostat.design.constraints_schema import ConstraintsTable
+from hydrostat.errors import InputError
+from hydrostat.robot import Mount
+
+ALL = """
+mount = "world"
+cables_per_winch = 4
+clearance = "4 mm"
+winch_clearance = "1.5 cm"
+winch_gap = "30 mm"
+hole_gap = "3 mm"
+turn = "60 deg"
+bend_radius = "8 mm"
+longest = "0.4 m"
+tension = "15 N"
+torque = "0.1 N m"
+travel = "50 mm"
+release = "5 mm"
+spool_radius = "5 mm"
+slack = "6 mm"
+spool_ratio = 2.5
+leads = false
+mirror = "y"
+locked_winches = ["down"]
+locked_cables = [2]
+
+[[winch_zone]]
+box = [[0, -20], [40, 20]]
+
+[[winch_zone]]
+outline = [[50, -20], [90, -20], [70, 20]]
+
+[[keep_out]]
+at = [100, 0]
+radius = 12.5
+
+[[still]]
+at = [20, 5]
+radius = 10
+"""
+
+MADE = Constraints(
+    winch_zones=(
+        Zone(box=((0.0, -0.02), (0.04, 0.02))),
+        Zone(outline=((0.05, -0.02), (0.09, -0.02), (0.07, 0.02))),
+    ),
+    keep_out=(Zone(at=(0.1, 0.0), radius=0.0125),),
+    still=(Zone(at=(0.02, 0.005), radius=0.01),),
+    mount=Mount.WORLD,
+    cables_per_winch=4,
+    clearance=0.004,
+    winch_clearance=0.015,
+    winch_gap=0.03,
+    hole_gap=0.003,
+    turn=60.0,
+    bend_radius=0.008,
+    longest=0.4,
+    tension=15.0,
+    torque=0.1,
+    travel=0.05,
+    release=0.005,
+    spool_radius=0.005,
+    slack=0.006,
+    spool_ratio=2.5,
+    leads=False,
+    mirror="y",
+    locked_winches=("down",),
+    locked_cables=(1,),
+)
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "limits.toml"
+
+
+def test_every_field_can_stand_in_the_file(file: Path) -> None:
+    assert {ZONES.get(key, key) for key in ConstraintsTable.model_fields} == {field.name for field in fields(MADE)}
+    for field in fields(MADE):
+        assert getattr(MADE, field.name) != getattr(Constraints(), field.name), field.name
+    file.write_text(ALL)
+    assert read_constraints(file, strip_robot()) == MADE
+
+
+def test_what_is_left_out_is_as_ever(file: Path) -> None:
+    for text, changed in (("", {}), ('tension = "3 N"', {"tension": 3.0}), ("leads = true", {"leads": True})):
+        file.write_text(text)
+        assert read_constraints(file, strip_robot()) == replace(Constraints(), **changed)
+
+
+def test_zones_are_in_the_unit_of_the_robots_file(file: Path) -> None:
+    file.write_text("[[keep_out]]\nat = [3, 0, 1]\nradius = 0.5")
+    zones = read_constraints(file, replace(box_robot(), length_unit="cm")).keep_out
+    assert zones == (Zone(at=(0.03, 0.0, 0.01), radius=0.005),)
+
+
+ERRORS = {
+    "clearance = 5": 'line 1: clearance: 5 has no unit; write a length as text: "12 mm"',
+    '\nclearance = "-5 mm"': "line 2: clearance must be finite and above 0 m, not -0.005",
+    'tension = "3 mm"': 'line 1: tension: "mm" does not measure a force; write for example "20 N"',
+    'torque = "3 N"': 'line 1: torque: "N" does not measure a torque; write for example "0.1 N m"',
+    "turn = 75": 'line 1: turn: 75 has no unit; write an angle as text: "75 deg"',
+    'turn = "200 deg"': "line 1: turn must be above 0 and at most 180 degrees, not 200.0",
+    "spool_ratio = 9": "line 1: spool_ratio must be at least 1 and at most 4, not 9.0",
+    'mount = "air"': 'line 1: mount: "air" is not known; allowed are: body or world',
+    'mirror = "w"': 'line 1: mirror: "w" is not known; allowed are: x, y or z',
+    "leads = 1": "line 1: leads: 1 is neither true nor false",
+    "cables_per_winch = 2.5": "line 1: cables_per_winch: 2.5 is not a whole number; "
+    "write for example cables_per_winch = 4",
+    "locked_cables = [1, 3]": "line 1: locked_cables[1]: 3: the robot has no such cable; "
+    "its cables are numbered from 1 to 2",
+    "locked_cables = [0]": "line 1: locked_cables[0]: 0: the robot has no such cable; "
+    "its cables are numbered from 1 to 2",
+    'locked_winches = "up"': 'line 1: locked_winches: "up" is not a list; write for example locked_winches = ["left"]',
+    'locked_winches = ["bob"]': 'line 1: locked_winches[0]: there is no winch "bob"; its winches are: up, down',
+    "[[keep_out]]\nat = [1, 2]": "line 1: keep_out[0]: a zone about a point needs both at and radius; "
+    "give the other too",
+    "[[still]]\nat = [1, 2]\nradius = 0": "line 3: still[0].radius of a zone must be finite and above 0 m, not 0.0",
+    "[[still]]\nat = [1, 2, 3]\nradius = 1": "line 1: still[0]: its points have 3 coordinates, but the body has 2",
+    "[[still]]\noutline = [[0, 0], [1, 1]]": "line 2: still[0].outline: has 2 entries, at least 3 are needed",
+    "[[keep_out]]\nat = [1, 2]\nradius = 3\n[[keep_out]]\nradios = 3": "line 5: keep_out[1].radios: unknown key "
+    '"radios", did you mean radius? allowed here are: at, radius, box, outline',
+    "keep_out = 3": "line 1: keep_out: begin each with [[keep_out]], in two pairs of brackets",
+    "winch_zones = []": 'line 1: winch_zones: unknown key "winch_zones", did you mean winch_zone? allowed here are: '
+    + ", ".join(ConstraintsTable.model_fields),
+    "x = = 3": "line 1: not TOML: Invalid value",
+    "x = " + 500 * "[": "not TOML of constraints: brackets are nested too deep",
+}
+
+
+@pytest.mark.parametrize("text", ERRORS)
+def test_what_is_wrong_is_one_line(text: str, file: Path) -> None:
+    file.write_text(text)
+    with pytest.raises(InputError) as caught:
+        read_constraints(file, strip_robot())
+    place = ", " if ERRORS[text].startswith("line") else ": "
+    assert str(caught.value) == f"{file}{place}{ERRORS[text]}"
+
+
+def test_a_robot_without_cables_has_none_to_lock(file: Path) -> None:
+    file.write_text("locked_cables = [1]")
+    with pytest.raises(InputError, match="the robot has no such cable; it has no cables"):
+        read_constraints(file, strip_robot().with_network((), ()))
+
+
+def test_no_such_file(file: Path) -> None:
+    with pytest.raises(InputError, match=r"limits.toml: there is no such file"):
+        read_constraints(file, strip_robot())

@@ -1,0 +1,147 @@
+"""What the report tells of grown networks. Oracles: words and numbers by hand, brute force, the pictures' own data."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
+from plot.test_report import Page
+
+from hydrostat.design import Alternative, Certificate, Network
+from hydrostat.design.front import best_errors, on_front
+from hydrostat.plot import draw_front, draw_growth, inline_svg, report_text
+from hydrostat.plot.palette import WINCHES
+from hydrostat.plot.report_growth import alternative_chapters, certificate_words, evenly
+from hydrostat.plot.stage_figure import draw_stage, stage_frame
+from hydrostat.robot import Robot
+
+
+def sized(winches: int, cables: int, error: float) -> Alternative:
+    """An alternative of some size and error [m]; its winches pull the same two cables over and over."""
+    network = plain_network()
+    robot, (reached, *_) = network.robot, network.reached
+    parts = [replace(robot.winches[0], name=f"w{index}") for index in range(winches)]
+    lines = [replace(robot.cables[0], winch=parts[index % winches].name) for index in range(cables)]
+    return Alternative(robot=robot.with_network(parts, lines), reached=(replace(reached, errors={"tip": error}),))
+
+
+@pytest.mark.parametrize(("count", "most"), [(1, 8), (2, 8), (8, 8), (9, 8), (40, 8), (5, 2)])
+def test_stages_shown_are_spread_evenly(count: int, most: int) -> None:
+    shown = evenly(count, most)
+    assert len(shown) == min(count, most)
+    assert (shown[0], shown[-1]) == (0, count - 1)
+    gaps = np.diff(shown)
+    assert np.ptp(gaps) <= 1 if len(gaps) else True
+
+
+def test_the_certificate_in_words() -> None:
+    one = Certificate(further=0.0012, paths=12345, slope=0.0251)
+    assert certificate_words(0.0034, one) == (
+        "One more cable with a winch of its own, along the best of 12,345 paths, would promise 1.20 mm rms instead of "
+        "3.40 mm rms. No small move of a via point lowers the error by more than 0.025 mm for each millimetre."
+    )
+    assert "promises nothing beyond 1.20 mm rms." in certificate_words(0.0012, one)
+    assert certificate_words(0.1, None) == "The search was stopped before it could tell what one more cable would gain."
+
+
+@pytest.mark.parametrize("network", [hostile_network, space_network])
+def test_the_report_tells_how_it_grew(network: object, unchecked: None) -> None:
+    page = Page(report_text(grown(network())))  # pyright: ignore[reportCallIssue]
+    words = " ".join(page.words)
+    assert "script" not in page.tags
+    for told in ("How it grew", "Alternatives", "What is left to gain.", "promise 2.10 mm rms", f"1. {SCRIPT}"):
+        assert told in words
+    for number, shown in ((1, True), (2, True), (3, False), (6, False), (11, True)):
+        assert (f"{number}. Via points of {number - 1} cables moved" in words) == (shown and number > 1)
+    assert ": 34.50 mm rms" in page.words
+    assert ": 45.60 mm rms" in page.words
+    assert "What muscles would do" not in words
+
+
+def test_no_alternatives_no_chapter() -> None:
+    text = report_text(replace(plain_network(), alternatives=()))
+    assert "Alternatives" not in text
+    assert "How it grew" in text
+
+
+def told(*others: tuple[int, int, float]) -> str:
+    """The chapter on alternatives."""
+    (chapter,) = alternative_chapters(replace(plain_network(), alternatives=tuple(sized(*other) for other in others)))
+    return "".join(chapter.parts)
+
+
+def test_alternatives_of_one_size_have_no_front() -> None:
+    assert "Error against cables" not in told((2, 2, 0.01), (2, 2, 0.02))
+    assert "Error against cables" in told((2, 2, 0.01), (2, 3, 0.02))
+
+
+def test_of_many_alternatives_some_are_shown() -> None:
+    page = told(*((2, 2, 0.01 + 1e-3 * index) for index in range(14)))
+    assert page.count("<figure>") == 12
+    assert "12 of 14 are shown." in page
+
+
+def test_the_curve_of_growth_holds_every_stage() -> None:
+    trace = plain_network().trace
+    axes = draw_growth(trace.stages, rest=0.02, marked=[0, 10]).axes[0]  # pyright: ignore[reportAttributeAccessIssue]
+    line, hollow, filled, rest = axes.lines
+    assert np.asarray(line.get_ydata()) == pytest.approx([30 / number for number in range(1, 12)])
+    assert list(filled.get_xdata()) == [1, 11]
+    assert len(hollow.get_xdata()) == 9
+    assert list(rest.get_ydata()) == [20, 20]
+
+
+OTHERS = [(1, 1, 0.009), (1, 2, 0.008), (1, 3, 0.0085), (2, 3, 0.004), (2, 4, 0.004), (3, 3, 0.005), (1, 2, 0.02)]
+
+
+def chosen(error: float = 0.006) -> Network:
+    network = plain_network()
+    return replace(network, reached=(replace(network.reached[0], errors={"tip": error}),))
+
+
+def test_the_best_of_each_size_counts_and_the_chosen_one_always() -> None:
+    errors = best_errors([sized(*other) for other in [*OTHERS, (2, 2, 0.001)]], chosen())
+    assert errors == pytest.approx(
+        {(1, 1): 0.009, (1, 2): 0.008, (1, 3): 0.0085, (2, 2): 0.006, (2, 3): 0.004, (2, 4): 0.004, (3, 3): 0.005}
+    )
+    assert list(errors) == sorted(errors)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_front_is_what_nothing_dominates(seed: int) -> None:
+    """Brute force over all pairs: at most as many winches and cables, at most the error, and not itself."""
+    random = np.random.default_rng(seed)
+    sizes = {(int(w), int(w + more)) for w, more in random.integers(1, 5, size=(12, 2))}
+    errors = {size: float(error) for size, error in zip(sizes, random.integers(1, 6, len(sizes)), strict=True)}
+    points = {size: np.array([*size, error]) for size, error in errors.items()}
+    for size, point in points.items():
+        beaten = any((other <= point).all() for name, other in points.items() if name != size)
+        assert on_front(size, errors) == (not beaten)
+
+
+def test_the_picture_of_the_front() -> None:
+    axes = draw_front([sized(*other) for other in OTHERS], chosen(), tolerance=0.0045).axes[0]
+    curves = {line.get_label(): line for line in axes.lines if not str(line.get_label()).startswith("_")}
+    assert list(curves) == ["1 winch", "2 winches", "3 winches"]
+    assert np.asarray(curves["1 winch"].get_xydata()) == pytest.approx(np.array([[1, 9.0], [2, 8.0], [3, 8.5]]))
+    assert np.asarray(curves["2 winches"].get_xydata()) == pytest.approx(np.array([[2, 6.0], [3, 4.0], [4, 4.0]]))
+    assert [curve.get_color() for curve in curves.values()] == list(WINCHES[:3])
+    dots = {tuple(np.asarray(line.get_xydata())[0]): line for line in axes.lines if len(line.get_xdata()) == 1}
+    assert dots[3, 8.5].get_markerfacecolor() == "white"
+    assert dots[3, 4.0].get_markerfacecolor() == WINCHES[1]
+    assert {text.get_text() for text in axes.texts} == {"chosen: 6.00 mm", "tolerance"}
+    assert axes.get_ylim()[0] == 0.0
+
+
+@pytest.mark.parametrize("network", [plain_network, space_network])
+def test_stages_share_their_frame_and_side(network: object) -> None:
+    """The same body lies at the same place, whatever network is on it."""
+    robot: Robot = network().robot  # pyright: ignore[reportCallIssue]
+    begun = robot.with_network(robot.winches[1:], robot.cables[1:])
+    frame = stage_frame([robot, begun])
+    one, two = (draw_stage(shown, like=robot, frame=frame) for shown in (robot, begun))
+    assert np.array_equal(one.get_size_inches(), two.get_size_inches())
+    assert one.axes[0].get_xlim() == two.axes[0].get_xlim()
+    for first, second in zip(one.axes[0].images, two.axes[0].images, strict=True):
+        assert np.array_equal(first.get_array(), second.get_array())  # pyright: ignore[reportArgumentType]
+    assert inline_svg(one, name="it", label="") != inline_svg(two, name="it", label="")
