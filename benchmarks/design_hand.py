@@ -6,7 +6,8 @@ Each has the counts of `BODIES` and keeps the constraints there. They were drawn
 and redrawn after seeing what each marker misses, as a good maker would: the puppy in three rounds, the starfish in
 seventeen. What helped: a cable that ends early and hugs the edge bends more for what the winch takes in; one that goes
 a long way round, or out and back, bends less, so that limbs on one winch come to the same pace; a sheath up to where
-bending should begin. The examples' own networks serve as they are where they keep counts and constraints: the cupping hand.
+bending should begin. The cupping hand keeps the network of the example, which has its counts and keeps its constraints
+but for stoppers that stand too near the point before.
 """
 
 import argparse
