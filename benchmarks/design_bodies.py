@@ -4,7 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import machine  # noqa: F401  one thread, before NumPy
+
+import numpy as np  # isort: skip
+
 from robustness import EXAMPLES
+from scipy.optimize import nnls
 
 from hydrostat.design import Constraints
 from hydrostat.design.error import rms_error
@@ -73,3 +77,59 @@ def judged(robot: Robot, poses: Sequence[Pose], constraints: Constraints) -> flo
         except HydrostatError:
             return float("inf")
     return rms_error(reached)
+
+
+def rest_error(robot: Robot) -> float:
+    """Rms error over markers and poses where nothing moves [m]."""
+    return float(np.sqrt(np.mean([np.nansum(moves**2) / len(pose.targets) for pose, moves in _moves(robot)])))
+
+
+def sharing_error(robot: Robot, winches: int) -> float:
+    """Rms error over markers and poses [m] if each winch moved all markers along straight lines of one's choice.
+
+    What sharing winches costs at least, to first order: each pose is then a sum of the winches' moves, each as much as
+    its contraction, which is not negative. A body that bends far moves along curves, and may do better or worse.
+    Alternating least squares from some random beginnings; 0 where there is a winch for each pose.
+    """
+    poses = _moves(robot)
+    if winches >= len(poses):
+        return 0.0
+    draw = np.random.default_rng(0)
+    return min(_shared(poses, winches, draw) for _ in range(40))
+
+
+def _shared(poses: list[tuple[Pose, np.ndarray]], winches: int, draw: np.random.Generator) -> float:
+    wanted = np.array([moves for _, moves in poses])
+    asked = np.array([np.repeat(_asked(moves), moves.shape[1]) for _, moves in poses])
+    wanted = np.nan_to_num(wanted).reshape(len(poses), -1)
+    weights = asked / np.sqrt([[len(pose.targets)] for pose, _ in poses])
+    pulls = draw.random((len(poses), winches))
+    moved = np.zeros_like(wanted)
+    for _ in range(200):
+        lines = np.column_stack(
+            [
+                np.linalg.lstsq(weights[:, [column]] * pulls, weights[:, column] * wanted[:, column], rcond=None)[0]
+                for column in range(wanted.shape[1])
+            ]
+        )
+        pulls = np.array(
+            [nnls((weight * lines).T, weight * goal)[0] for weight, goal in zip(weights, wanted, strict=True)]
+        )
+        moved = pulls @ lines
+    return float(np.sqrt(np.sum((weights * (moved - wanted)) ** 2) / len(poses)))
+
+
+def _asked(moves: np.ndarray) -> np.ndarray:
+    return np.asarray(~np.isnan(moves).any(axis=1))
+
+
+def _moves(robot: Robot) -> list[tuple[Pose, np.ndarray]]:
+    """Each pose, and how far each marker should go in it [m]; NaN where it has no target."""
+    nowhere = (np.nan,) * robot.body.mesh.dim
+    return [
+        (
+            pose,
+            np.array([np.subtract(pose.targets.get(marker.name, nowhere), marker.at) for marker in robot.markers]),
+        )
+        for pose in robot.poses.values()
+    ]
