@@ -1,0 +1,165 @@
+"""How well a network serves poses that it was not designed for (F3).
+
+    python benchmarks/design_held_out.py [--quick] [--bodies starfish,trunk] [--methods routes,trees,random]
+                                         [--random 100] [--seed 0]
+
+The poses of a body come from a hidden network, dense and unlike any that is designed: many cables at random, each with
+a winch of its own, some of them pulled at random. So something on strings reaches every pose, though no few cables may.
+A network is designed for some of them, and judged on eight others. First the number of cables grows, with a winch for
+each as far as winches may stand; then the number of poses that the network is designed for.
+"""
+
+import argparse
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from design_bodies import BODIES, Body, body_robot, judged, rest_error
+from design_random import best_of, ground, random_network
+from machine import machine
+
+import numpy as np  # isort: skip
+
+from hydrostat.design import design_cables
+from hydrostat.errors import HydrostatError
+from hydrostat.robot import Mount, Pose, Robot
+from hydrostat.simulation import Simulation
+
+POSES = 8
+"""Held out; as many are there to design for."""
+
+CABLES = (2, 4, 6, 8)
+
+TRAINING = (1, 2, 4, 8)
+
+FIXED = (6, 4)
+"""Cables while poses vary, poses while cables vary."""
+
+HIDDEN = {"starfish": 14, "trunk": 10}
+"""Cables of the hidden network."""
+
+PULLED = 0.4
+"""Share of the hidden cables that a pose pulls."""
+
+SHARE = 0.35
+"""The most that one takes in, as a share of its bare length."""
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Poses of one kind.
+
+    Attributes:
+        robot: whose they are.
+        training: to design for.
+        held_out: to judge by.
+    """
+
+    robot: Robot
+    training: tuple[Pose, ...]
+    held_out: tuple[Pose, ...]
+
+
+def family(name: str, seed: int) -> Family:
+    """Poses that a hidden network reaches."""
+    robot = body_robot(name)
+    draw = np.random.default_rng([seed, 1])
+    hidden = _hidden(robot, BODIES[name], HIDDEN[name], draw)
+    simulation = Simulation(hidden)
+    lengths = np.array([cable.segments[cable.bare].sum() for cable in hidden.cables])
+    poses: list[Pose] = []
+    while len(poses) < 2 * POSES:
+        pulled = draw.random(len(lengths)) < PULLED
+        solved = simulation.solve(pulled * draw.uniform(0.0, SHARE, len(lengths)) * lengths, strict=False)
+        if solved.result.converged and pulled.any():
+            targets = {marker: tuple(map(float, at)) for marker, at in solved.markers.items()}
+            poses.append(Pose(name=f"pose {len(poses) + 1}", targets=targets))
+    return Family(robot, tuple(poses[:POSES]), tuple(poses[POSES:]))
+
+
+def _hidden(robot: Robot, body: Body, cables: int, draw: np.random.Generator) -> Robot:
+    """Winches in the body, also where those of the robot stand beside it, and nearer to one another than can be built.
+
+    Raises:
+        RuntimeError: none is found.
+    """
+    dense = replace(body.constraints, mount=Mount.BODY, winch_gap=0.0, hole_gap=0.0, travel=1.0)
+    found = random_network(ground(robot, dense), cables, cables, draw)
+    if found is None:
+        raise RuntimeError(f"no hidden network of {cables} cables")
+    return found
+
+
+def network(poses: Sequence[Pose], of: Family, body: Body, method: str, count: int, seed: int) -> Robot | None:
+    """What a method makes of some poses; None if nothing."""
+    if method == "random":
+        best = best_of(of.robot, poses, body, count=count, seed=seed)
+        return None if best is None else best.robot
+    try:
+        return design_cables(
+            of.robot,
+            poses,
+            winches=body.winches,
+            cables=body.cables,
+            method=method,
+            constraints=body.constraints,
+        ).robot
+    except HydrostatError:
+        return None
+
+
+def cases(quick: bool) -> Iterator[tuple[int, int]]:
+    """Numbers of cables and of poses to design for."""
+    if quick:
+        yield 2, 2
+        return
+    yield from ((cables, FIXED[1]) for cables in CABLES)
+    yield from ((FIXED[0], training) for training in TRAINING if training != FIXED[1])
+
+
+def _posed(robot: Robot, poses: Sequence[Pose]) -> Robot:
+    return replace(robot, poses={pose.name: pose for pose in poses})
+
+
+def _row(name: str, of: Family, method: str, cables: int, training: int, count: int, seed: int) -> str:
+    body = BODIES[name]
+    world = [winch for winch in of.robot.winches if winch.mount is Mount.WORLD]
+    winches = min(cables, len(world)) if world else cables
+    asked = replace(body, winches=winches, cables=cables)
+    poses = of.training[:training]
+    found = network(poses, of, asked, method, count, seed)
+    errors = [rest_error(_posed(of.robot, some)) for some in (poses, of.held_out)]
+    cells = ["", ""]
+    if found is not None:
+        cells = [f"{1e3 * judged(found, some, body.constraints):.2f}" for some in (poses, of.held_out)]
+    return (
+        f"| {name} | {method} | {winches} / {cables} | {training} | {1e3 * errors[0]:.2f} | {cells[0]} "
+        f"| {1e3 * errors[1]:.2f} | {cells[1]} |"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="the starfish with two cables and two poses only")
+    parser.add_argument("--bodies", default=",".join(HIDDEN), help="names with commas between")
+    parser.add_argument("--methods", default="routes,trees,random", help="names with commas between")
+    parser.add_argument(
+        "--random", type=int, default=100, metavar="N", help="random networks of which the best is kept"
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of the hidden and of the random networks")
+    options = parser.parse_args()
+    print(f"{machine()}; rms errors over markers and poses in mm; {POSES} poses held out; best of {options.random}\n")
+    print(
+        "| body | method | winches / cables | poses designed for | they at rest | reached | held out, at rest | reached |\n"
+        "|---|---|---|---|---|---|---|---|"
+    )
+    for name in ["starfish"] if options.quick else options.bodies.split(","):
+        of = family(name, options.seed)
+        for cables, training in cases(options.quick):
+            for method in options.methods.split(","):
+                if method == "trees" and of.robot.body.mesh.dim == 3:
+                    continue
+                print(_row(name, of, method, cables, training, options.random, options.seed), flush=True)
+
+
+if __name__ == "__main__":
+    main()
