@@ -98,11 +98,11 @@ def design(
         raise InputError("--kit: patterns are for flat bodies, this body lies in space; leave the option out")
     if count == AUTO and tolerance is None:
         tolerance = "1 mm"
-    options = wanted_options(method, robot=source, winches=count, tolerance=tolerance, seed=seed, fibres=fibres)
+    options = wanted_options(
+        method, robot=source, winches=count, improve=improve, tolerance=tolerance, seed=seed, fibres=fibres
+    )
     asked: dict[str, Any] = {"winches": count, "cables": cables, "method": method, "options": options}
-    if improve:
-        asked["improve"] = True
-    asked["constraints"] = wanted_constraints(source, constraints, limits)
+    asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
     with progress_bar() as progress:
         network = design_cables(source, poses, progress=progress, **asked)

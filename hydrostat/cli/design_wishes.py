@@ -16,6 +16,12 @@ AUTO = "auto"
 
 MOST_WINCHES = 20
 
+_ROUTES_ONLY = (
+    *("winch_zones", "keep_out", "still", "mount", "bend_radius", "longest", "torque", "slack", "spool_ratio"),
+    *("mirror", "locked_winches", "locked_cables"),
+)
+"""Constraints that winch trees do not look at."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
@@ -44,8 +50,8 @@ def winch_count(text: str) -> int | str:
     return int(text)
 
 
-def wanted_constraints(robot: "Robot", file: Path | None, limits: Limits) -> "Constraints":
-    """The constraints of a file, with those of the command line in their place.
+def wanted_constraints(robot: "Robot", file: Path | None, limits: Limits, *, method: str) -> "Constraints":
+    """The constraints of a file, with those of the command line before them.
 
     Raises:
         InputError: a limit that does not fit the robot.
@@ -56,11 +62,28 @@ def wanted_constraints(robot: "Robot", file: Path | None, limits: Limits) -> "Co
     constraints = Constraints() if file is None else read_constraints(file, robot)
     constraints = replace(constraints, **_given(limits, robot))
     constraints.check(robot)
+    if method == "trees":
+        _check_trees(constraints)
     return constraints
 
 
+def _check_trees(constraints: "Constraints") -> None:
+    """Refuse what winch trees do not look at."""
+    usual = type(constraints)()
+    for name in _ROUTES_ONLY:
+        if getattr(constraints, name) != getattr(usual, name):
+            raise InputError(f"{name} is kept by --method routes only; leave it out, or the trees")
+
+
 def wanted_options(
-    method: str, *, robot: "Robot", winches: int | str, tolerance: str | None, seed: int | None, fibres: str | None
+    method: str,
+    *,
+    robot: "Robot",
+    winches: int | str,
+    improve: bool,
+    tolerance: str | None,
+    seed: int | None,
+    fibres: str | None,
 ) -> "RouteOptions | TreeOptions":
     """Options of the method.
 
@@ -78,9 +101,9 @@ def wanted_options(
     if tolerance is not None and winches != AUTO:
         raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
     if method == "trees":
-        for option, used in (("--seed", seed is not None), ("--winches auto", winches == AUTO)):
+        for option, used in (("--seed", seed is not None), ("--winches auto", winches == AUTO), ("--improve", improve)):
             if used:
-                raise InputError(f"{option} is for --method routes; the trees draw nothing at random and need counts")
+                raise InputError(f"{option} is for --method routes; leave it out, or the trees")
         return TreeOptions() if fibres is None else TreeOptions(fibres=FibreKind(fibres))
     if fibres is not None:
         raise InputError("--fibres is for --method trees; routes need no muscle fibres")

@@ -7,7 +7,7 @@ import numpy as np
 from hydrostat.design.front import size_of
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace
 from hydrostat.design.score_card import rest_error
-from hydrostat.plot.growth_figure import draw_growth
+from hydrostat.plot.growth_figure import draw_growth, stage_runs
 from hydrostat.plot.html import Html, tag
 from hydrostat.plot.pareto_figure import draw_front
 from hydrostat.plot.report_parts import Chapter, grid, picture
@@ -33,6 +33,8 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
         "At each stage the error itself says what every route through the body would gain. The best one becomes a "
         "cable, cables that no longer earn their place are dropped, and via points move to where the error is least."
     )
+    if len(stage_runs(trace.stages)) > 1:
+        words += " Several networks are begun, each from another first cable; the most promising is refined."
     shown = evenly(len(trace.stages), MOST_STAGES)
     stages = [trace.stages[index] for index in shown]
     frame = stage_frame([*(stage.robot for stage in stages), network.robot])
@@ -45,7 +47,7 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
         )
         for index, stage in zip(shown, stages, strict=True)
     ]
-    curve = draw_growth(trace.stages, rest=rest_error(network), marked=shown, width=CHART)
+    curve = draw_growth(trace.stages, rest=rest_error(network), final=network.rms_error, marked=shown, width=CHART)
     note = f" over {counted(len(trace.stages), 'stage')}; those with a picture above are filled dots"
     parts = [grid(*pictures, kind="tiny"), grid(picture(curve, "growth", "The error", note))]
     return [Chapter("How it grew", words, [*parts, _certificate(network, trace.certificate)])]
@@ -118,7 +120,8 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
 
 
 def _told(error: float) -> str:
-    return f"{MILLIMETRES * error:.2f} mm rms"
+    millimetres = MILLIMETRES * error
+    return f"{millimetres:.2f} mm rms" if millimetres >= 0.1 or not millimetres else f"{millimetres:.2g} mm rms"
 
 
 def _sentence(words: str) -> str:

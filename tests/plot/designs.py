@@ -2,7 +2,10 @@
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
+import meshio
 import numpy as np
 from builders import box_robot, strip_robot
 
@@ -20,7 +23,7 @@ from hydrostat.design import (
 )
 from hydrostat.design.muscles.fibres import edge_fibres
 from hydrostat.ik import InverseReason, ReachedPose
-from hydrostat.robot import Cable, Marker, Mount, Pin, Pose, Robot, Winch
+from hydrostat.robot import Cable, Marker, Mount, Pin, Pose, Robot, Winch, mesh_body
 from hydrostat.simulation import Simulation
 
 SCRIPT = "<script>alert(1)</script>"
@@ -61,8 +64,19 @@ def hostile_network() -> Network:
 def plain_network() -> Network:
     """The strip of the other tests, grown in stages, as it can be written and read."""
     pose = Pose(name="up", targets={"tip": (0.19, 0.03)})
-    robot = replace(strip_robot(columns=10, rows=3), poses={"up": pose})
+    robot = written(replace(strip_robot(columns=10, rows=3), poses={"up": pose}))
     return grown(_network(robot, pose, np.array([[0.02, 0.01], [0.1, 0.01]])))
+
+
+def written(robot: Robot) -> Robot:
+    """A robot whose body comes from a file."""
+    mesh, body = robot.body.mesh, robot.body
+    kind = "triangle" if mesh.dim == 2 else "tetra"
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "made.vtk"
+        meshio.Mesh(np.pad(1e3 * mesh.nodes, [(0, 0), (0, 3 - mesh.dim)]), {kind: mesh.elements}).write(path)
+        made = mesh_body(path, unit=1e-3, material=body.material, thickness=body.thickness)
+    return replace(robot, body=made)
 
 
 def _network(robot: Robot, target: Pose, tree: np.ndarray) -> Network:

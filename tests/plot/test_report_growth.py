@@ -7,9 +7,10 @@ import pytest
 from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
 from plot.test_report import Page
 
-from hydrostat.design import Alternative, Certificate, Network
+from hydrostat.design import Alternative, Certificate, Network, Stage
 from hydrostat.design.front import best_errors, on_front
 from hydrostat.plot import draw_front, draw_growth, inline_svg, report_text
+from hydrostat.plot.growth_figure import stage_runs
 from hydrostat.plot.palette import WINCHES
 from hydrostat.plot.report_growth import alternative_chapters, certificate_words, evenly
 from hydrostat.plot.stage_figure import draw_stage, stage_frame
@@ -81,14 +82,46 @@ def test_of_many_alternatives_some_are_shown() -> None:
     assert "12 of 14 are shown." in page
 
 
+def staged(*cables: int) -> list[Stage]:
+    """Stages with so many cables, whose errors fall from 30 mm."""
+    return [
+        Stage(words="", robot=sized(1, count, 0.0).robot, error=0.03 / number)
+        for number, count in enumerate(cables, start=1)
+    ]
+
+
 def test_the_curve_of_growth_holds_every_stage() -> None:
-    trace = plain_network().trace
-    axes = draw_growth(trace.stages, rest=0.02, marked=[0, 10]).axes[0]  # pyright: ignore[reportAttributeAccessIssue]
-    line, hollow, filled, rest = axes.lines
-    assert np.asarray(line.get_ydata()) == pytest.approx([30 / number for number in range(1, 12)])
-    assert list(filled.get_xdata()) == [1, 11]
-    assert len(hollow.get_xdata()) == 9
-    assert list(rest.get_ydata()) == [20, 20]
+    axes = draw_growth(staged(1, 2, 3, 4, 5, 6), rest=0.02, final=0.005, marked=[0, 5]).axes[0]
+    line, hollow, filled, rest, final = axes.lines
+    assert np.asarray(line.get_ydata()) == pytest.approx([30 / number for number in range(1, 7)])
+    assert list(filled.get_xdata()) == [1, 6]
+    assert list(hollow.get_xdata()) == [2, 3, 4, 5]
+    assert (list(rest.get_ydata()), list(final.get_ydata())) == ([20, 20], [5, 5])
+    assert {text.get_text() for text in axes.texts} == {"at rest: 20 mm", "returned: 5 mm"}
+    assert (axes.get_yscale(), axes.get_ylim()[0]) == ("linear", 0.0)
+
+
+def test_errors_that_differ_much_are_on_a_logarithmic_scale() -> None:
+    assert draw_growth(staged(1, 2), final=1e-5).axes[0].get_yscale() == "log"
+    assert draw_growth(staged(1, 2), final=0.0).axes[0].get_yscale() == "linear"
+
+
+@pytest.mark.parametrize(
+    ("cables", "runs"),
+    [
+        ((1, 2, 3, 3, 2, 3), [[0, 1, 2, 3, 4, 5]]),
+        ((1, 2, 3, 1, 2, 3, 3), [[0, 1, 2], [3, 4, 5, 6]]),
+        ((1, 2, 1, 2, 1), [[0, 1], [2, 3], [4]]),
+        ((3, 4, 5, 3, 4, 5), [[0, 1, 2], [3, 4, 5]]),
+        ((1,), [[0]]),
+    ],
+)
+def test_a_new_line_where_another_network_is_begun(cables: tuple[int, ...], runs: list[list[int]]) -> None:
+    """One cable that is dropped is no new network."""
+    stages = staged(*cables)
+    assert stage_runs(stages) == runs
+    shown = [list(line.get_xdata()) for line in draw_growth(stages).axes[0].lines if line.get_linestyle() == "-"]
+    assert shown == [[index + 1 for index in run] for run in runs]
 
 
 OTHERS = [(1, 1, 0.009), (1, 2, 0.008), (1, 3, 0.0085), (2, 3, 0.004), (2, 4, 0.004), (3, 3, 0.005), (1, 2, 0.02)]

@@ -1,0 +1,251 @@
+"""`hydrostat design`: what is asked of the search, what is written, what is told.
+
+The search is replaced by one that notes what it was asked for. Oracles: records made by hand, written files read back,
+errors word by word.
+"""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from builders import box_robot
+from plot.designs import plain_network, written
+
+import hydrostat as hs
+from hydrostat.design import Alternative, Constraints, FibreKind, Network, RouteOptions, TreeOptions, Zone
+from hydrostat.robot import Pose, robot_hash, save_robot
+
+Run = Callable[..., tuple[int, str, str]]
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+
+@pytest.fixture
+def strip(tmp_path: Path) -> Path:
+    """The folder of a robot with winches up and down, a cable each."""
+    save_robot(plain_network().robot, tmp_path / "strip")
+    return tmp_path / "strip"
+
+
+class Search:
+    """Stands for `design_cables`."""
+
+    def __init__(self) -> None:
+        self.asked: dict[str, Any] = {}
+        self.answer: Network = plain_network()
+
+    def __call__(self, robot: hs.Robot, poses: list[Pose], **asked: Any) -> Network:
+        asked.pop("progress")
+        self.asked = {"poses": [pose.name for pose in poses], **asked}
+        return replace(self.answer, constraints=asked["constraints"], options=asked["options"])
+
+
+@pytest.fixture
+def search(monkeypatch: pytest.MonkeyPatch) -> Search:
+    fake = Search()
+    monkeypatch.setattr("hydrostat.design.design_cables", fake)
+    return fake
+
+
+@pytest.fixture
+def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The report, which takes a second, is a line."""
+    monkeypatch.setattr("hydrostat.plot.write_report", lambda _, path, **facts: path.write_text(str(facts)))
+
+
+def files_in(folder: Path) -> list[str]:
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+
+
+PLAIN = Constraints()
+SIZE = 0.2
+OPTIONS = {
+    (): {},
+    ("--winches", "1", "--cables", "3"): {"winches": 1, "cables": 3},
+    ("--winches", "auto"): {"winches": "auto", "options": RouteOptions(tolerance=0.001 / SIZE)},
+    ("--winches", "auto", "--tolerance", "3 mm"): {"winches": "auto", "options": RouteOptions(tolerance=0.003 / SIZE)},
+    ("--seed", "7"): {"options": RouteOptions(seed=7)},
+    ("--improve",): {"improve": True},
+    ("--method", "trees"): {"method": "trees", "options": TreeOptions()},
+    ("--method", "trees", "--fibres", "elements"): {
+        "method": "trees",
+        "options": TreeOptions(fibres=FibreKind.ELEMENTS),
+    },
+    ("--cables-per-winch", "3"): {"constraints": replace(PLAIN, cables_per_winch=3)},
+    ("--clearance", "7 mm"): {"constraints": replace(PLAIN, clearance=0.007)},
+    ("--tension", "12 N"): {"constraints": replace(PLAIN, tension=12.0)},
+    ("--slack", "4 mm"): {"constraints": replace(PLAIN, slack=0.004)},
+    ("--stepped-spools",): {"constraints": replace(PLAIN, spool_ratio=2.0)},
+    ("--symmetric", "y"): {"constraints": replace(PLAIN, mirror="y")},
+    ("--lock-winch", "down", "--lock-winch", "up"): {"constraints": replace(PLAIN, locked_winches=("down", "up"))},
+    ("--lock-cable", "2", "--lock-cable", "2"): {"constraints": replace(PLAIN, locked_cables=(1,))},
+}
+
+
+@pytest.mark.parametrize("options", OPTIONS)
+def test_options_reach_the_search(
+    run: Run, strip: Path, search: Search, no_report: None, options: tuple[str, ...], tmp_path: Path
+) -> None:
+    assert run("design", strip, *options, "--out", tmp_path / "out")[0] == 0
+    usual = {
+        "poses": ["up"],
+        "winches": 2,
+        "cables": 6,
+        "method": "routes",
+        "options": RouteOptions(),
+        "constraints": PLAIN,
+        "improve": False,
+    }
+    assert search.asked == usual | OPTIONS[options]
+
+
+def test_options_come_before_the_file(run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path) -> None:
+    file = tmp_path / "limits.toml"
+    file.write_text(
+        'clearance = "4 mm"\ntension = "9 N"\nlocked_cables = [1]\n[[keep_out]]\nat = [50, 0]\nradius = 5\n'
+    )
+    options = ("--constraints", file, "--tension", "12 N", "--lock-cable", "2")
+    assert run("design", strip, *options, "--out", tmp_path / "out")[0] == 0
+    zone = Zone(at=(0.05, 0.0), radius=0.005)
+    assert search.asked["constraints"] == Constraints(
+        clearance=0.004, tension=12.0, locked_cables=(1,), keep_out=(zone,)
+    )
+    card = json.loads((tmp_path / "out" / "score.json").read_text())
+    assert card["constraints"]["keep_out"] == [{"at": [0.05, 0.0], "radius": 0.005, "box": None, "outline": []}]
+    assert card["constraints"]["tension"] == 12.0
+    told = (tmp_path / "out" / "report.html").read_text()
+    for words in ("'clearance': '4 mm'", "'tension': '12 N'", "'keep out': '1'", "'locked cables': '2'", "'seed': 0"):
+        assert words in told
+    assert "still" not in told
+
+
+def test_everything_is_written_and_can_be_read(run: Run, strip: Path, search: Search, tmp_path: Path) -> None:
+    out = tmp_path / "new" / "out"
+    code, told, _ = run("design", strip, "--out", out)
+    assert code == 0
+    assert files_in(out) == [
+        "alternatives/01_2_winches_2_cables/made.vtk",
+        "alternatives/01_2_winches_2_cables/robot.toml",
+        "alternatives/02_1_winches_1_cables/made.vtk",
+        "alternatives/02_1_winches_1_cables/robot.toml",
+        "report.html",
+        "robot/made.vtk",
+        "robot/robot.toml",
+        "score.json",
+    ]
+    assert [path.name for path in out.parent.iterdir()] == ["out"]
+    network, card = search.answer, json.loads((out / "score.json").read_text())
+    assert card["robot"] == robot_hash(hs.load_robot(out / "robot")) == robot_hash(network.robot)
+    for other, folder in zip(card["alternatives"], sorted((out / "alternatives").iterdir()), strict=True):
+        assert other["robot"] == robot_hash(hs.load_robot(folder))
+    assert f"{1e3 * network.rms_error:.2f} mm reached; 4 networks tried in " in told
+    assert "rms error: 31.62 mm at rest -> " in told
+    assert f"Open {out / 'report.html'}" in told
+    assert "How it grew" in (out / "report.html").read_text()
+
+
+def test_an_earlier_design_is_replaced_and_what_else_lies_there_stays(
+    run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    assert run("design", strip, "--out", out)[0] == 0
+    for name in ("notes.txt", "alternatives/mine/robot.toml", "robot/photo.png", "pattern/pattern.svg"):
+        (out / name).parent.mkdir(exist_ok=True)
+        (out / name).write_text("mine")
+    search.answer = replace(plain_network(), alternatives=plain_network().alternatives[1:])
+    assert run("design", strip, "--out", out)[0] == 0
+    kept = {"notes.txt", "alternatives/mine/robot.toml", "robot/photo.png"}
+    assert {name for name in files_in(out) if (out / name).read_bytes() == b"mine"} == kept
+    assert sorted(folder.name for folder in (out / "alternatives").iterdir()) == ["01_1_winches_1_cables", "mine"]
+    assert not (out / "pattern" / "pattern.svg").exists()
+    assert not list(tmp_path.rglob("*.part"))
+
+
+def test_nothing_is_written_where_writing_is_stopped(
+    run: Run, strip: Path, search: Search, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hydrostat.plot.write_report", stop)
+    before = sorted(tmp_path.rglob("*"))
+    assert run("design", strip, "--out", tmp_path / "out")[0] == 130
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_the_best_so_far_where_the_search_is_stopped(
+    run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path
+) -> None:
+    search.answer = replace(plain_network(), complete=False)
+    code, told, _ = run("design", strip, "--out", tmp_path / "out")
+    assert code == 130
+    assert told.endswith("stopped early: the best network so far\n")
+    assert json.loads((tmp_path / "out" / "score.json").read_text())["complete"] is False
+    assert hs.load_robot(tmp_path / "out" / "robot").cables == search.answer.robot.cables
+
+
+def test_auto_tells_the_error_against_winches_and_cables(
+    run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path
+) -> None:
+    network = plain_network()
+    worse = Alternative(robot=network.robot, reached=(replace(network.reached[0], errors={"tip": 0.05}),))
+    search.answer = replace(network, alternatives=(*network.alternatives, worse))
+    _, told, _ = run("design", strip, "--winches", "auto", "--out", tmp_path / "out")
+    rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in told.splitlines() if line.startswith("│")]
+    assert ["1", "1", "45.60 mm", ""] in rows
+    assert ["2", "2", f"{1e3 * network.rms_error:.2f} mm", "chosen"] in rows
+    assert "error against" not in run("design", strip, "--out", tmp_path / "out")[1]
+
+
+BAD = {
+    ("--winches", "many"): "--winches many: must be a whole number from 1 to 20, or auto",
+    ("--winches", "0"): "--winches 0: must be a whole number from 1 to 20, or auto",
+    ("--winches", "²"): "--winches ²: must be a whole number from 1 to 20, or auto",
+    ("--method", "magic"): "--method magic: must be one of routes, trees",
+    ("--fibres", "hairs"): "--fibres hairs: must be one of edges, elements",
+    ("--fibres", "edges"): "--fibres is for --method trees; routes need no muscle fibres",
+    ("--tolerance", "1 mm"): "--tolerance is for --winches auto, which finds the fewest winches that keep it",
+    ("--winches", "auto", "--tolerance", "0 mm"): "--tolerance 0 mm: must be above 0, such as 12 mm",
+    ("--method", "trees", "--seed", "1"): "--seed is for --method routes; leave it out, or the trees",
+    ("--method", "trees", "--winches", "auto"): "--winches auto is for --method routes; leave it out, or the trees",
+    ("--method", "trees", "--improve"): "--improve is for --method routes; leave it out, or the trees",
+    ("--method", "trees", "--stepped-spools"): "spool_ratio is kept by --method routes only; "
+    "leave it out, or the trees",
+    ("--clearance", "5"): '--clearance 5: "5" has no unit; write for example "12 mm"',
+    ("--tension", "0 N"): "--tension 0 N: must be above 0, such as 20 N",
+    ("--slack", "-1 mm"): "--slack -1 mm: must be 0 or more, such as 12 mm",
+    ("--symmetric", "w"): "--symmetric w: must be the axis across the mirror: x, y or z",
+    ("--symmetric", "x"): 'constraints: mirror = "x": the body must lie evenly about x = 0, not from 0 to 200 mm; '
+    "move it there, or set mirror to None",
+    ("--lock-winch", "bob"): '--lock-winch bob: there is no winch "bob"; its winches are: up, down',
+    ("--lock-cable", "3"): "--lock-cable 3: the robot has no such cable; its cables are numbered from 1 to 2",
+    ("--constraints", "none.toml"): "none.toml: there is no such file",
+    ("--pose", "dance"): 'there is no pose "dance"; its poses are: up',
+}
+
+
+@pytest.mark.parametrize("options", BAD)
+def test_what_is_wrong_is_one_line(
+    run: Run, strip: Path, search: Search, options: tuple[str, ...], tmp_path: Path
+) -> None:
+    code, out, errors = run("design", strip, *options, "--out", tmp_path / "out")
+    assert (code, out, errors) == (2, "", f"hydrostat: {BAD[options]}\n")
+    assert search.asked == {}
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_pattern_of_a_body_in_space_is_refused_before_the_work(run: Run, search: Search, tmp_path: Path) -> None:
+    save_robot(written(box_robot()), tmp_path / "box")
+    code, _, errors = run("design", tmp_path / "box", "--kit", "--out", tmp_path / "out")
+    assert code == 2
+    assert errors == "hydrostat: --kit: patterns are for flat bodies, this body lies in space; leave the option out\n"
+    assert search.asked == {}
+
+
+def test_help_shows_an_example(run: Run) -> None:
+    code, out, _ = run("design", "--help")
+    assert code == 0
+    assert "Example: hydrostat design examples/starfish" in out
