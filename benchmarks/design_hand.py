@@ -7,7 +7,7 @@ and redrawn after seeing what each marker misses, as a good maker would: the pup
 seventeen. What helped: a cable that ends early and hugs the edge bends more for what the winch takes in; one that goes
 a long way round, or out and back, bends less, so that limbs on one winch come to the same pace; a sheath up to where
 bending should begin. The cupping hand keeps the network of the example, which has its counts and keeps its constraints
-but for stoppers that stand too near the point before.
+but for via points too near to a stopper.
 """
 
 import argparse
@@ -85,11 +85,12 @@ def _points(text: str) -> list[tuple[float, ...]]:
 
 
 def _with_holes_apart(robot: Robot, gap: float) -> Robot:
-    """Without the points at the end of a cable that are nearer than `gap` to the one before."""
+    """Without the points that are nearer than `gap` to the stopper of their cable."""
     cables = []
     for cable in robot.cables:
-        short = np.flatnonzero(cable.segments < gap)
-        cables.append(replace(cable, points=cable.points[: short[0] + 1]) if len(short) else cable)
+        away = np.linalg.norm(np.subtract(cable.points, cable.points[-1]), axis=1)
+        kept = [point for point, distance in zip(cable.points[:-1], away[:-1], strict=True) if distance >= gap]
+        cables.append(replace(cable, points=(*kept, cable.points[-1])))
     return robot.with_network(robot.winches, cables)
 
 

@@ -152,7 +152,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=1, metavar="N", help="hidden networks")
     options = parser.parse_args()
     print(f"{machine()}; rms errors over markers and poses in mm")
-    print(f"{POSES} poses held out, {options.seeds} hidden networks; the best of {options.random} at random\n")
+    print(f"{POSES} poses held out; hidden networks: {options.seeds}; the best of {options.random} at random\n")
     columns = ["body", "method", "winches / cables", "poses designed for", "they at rest", "reached"]
     columns += ["held out, at rest", "reached"]
     print("| " + " | ".join(columns) + " |\n" + "|---" * len(columns) + "|", flush=True)
