@@ -60,9 +60,13 @@ def design(
     improve: Annotated[bool, typer.Option("--improve", help="Begin with the robot's own network.")] = False,
     tolerance: Annotated[
         str | None,
-        typer.Option(metavar="LENGTH", help="With --winches auto: rms error of every pose; 1 mm if left out."),
+        typer.Option(
+            metavar="LENGTH", help="With --winches auto: rms error of each pose; 1 % of the body's size if left out."
+        ),
     ] = None,
-    seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="Of the random choices of routes.")] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, metavar="N", help="Of random choices; kept with the results.")
+    ] = None,
     fibres: Annotated[
         str | None, typer.Option(metavar="edges|elements", help="Muscles of trees; on mesh edges if left out.")
     ] = None,
@@ -96,11 +100,7 @@ def design(
     source = read_robot(robot)
     if kit and source.body.mesh.dim != 2:
         raise InputError("--kit: patterns are for flat bodies, this body lies in space; leave the option out")
-    if count == AUTO and tolerance is None:
-        tolerance = "1 mm"
-    options = wanted_options(
-        method, robot=source, winches=count, improve=improve, tolerance=tolerance, seed=seed, fibres=fibres
-    )
+    options = wanted_options(method, winches=count, improve=improve, tolerance=tolerance, seed=seed, fibres=fibres)
     asked: dict[str, Any] = {"winches": count, "cables": cables, "method": method, "options": options}
     asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())

@@ -101,7 +101,8 @@ def _facts(network: "Network") -> dict[str, object]:
     options = asdict(network.options)
     seed = options.pop("seed", "none: nothing is drawn at random")
     told = {name: ", ".join(map(str, value)) if isinstance(value, tuple) else value for name, value in options.items()}
-    return {"seed": seed, **told, **_told(network.constraints)}
+    given = {name.replace("_", " "): value for name, value in told.items() if value is not None}
+    return {"seed": seed, **given, **_told(network.constraints)}
 
 
 def _told(constraints: "Constraints") -> dict[str, str]:

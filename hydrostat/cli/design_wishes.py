@@ -78,7 +78,6 @@ def _check_trees(constraints: "Constraints") -> None:
 def wanted_options(
     method: str,
     *,
-    robot: "Robot",
     winches: int | str,
     improve: bool,
     tolerance: str | None,
@@ -109,7 +108,7 @@ def wanted_options(
         raise InputError("--fibres is for --method trees; routes need no muscle fibres")
     given: dict[str, Any] = {} if seed is None else {"seed": seed}
     if tolerance is not None:
-        given["tolerance"] = positive("--tolerance", tolerance, LENGTH) / robot.body.mesh.size
+        given["tolerance"] = positive("--tolerance", tolerance, LENGTH)
     return RouteOptions(**given)
 
 

@@ -15,3 +15,9 @@ def number(value: float, digits: int) -> str:
     text = f"{value:.{digits}f}"
     text = text.lstrip("-") if float(text) == 0 else text
     return text.replace("-", "\N{MINUS SIGN}")
+
+
+def millimetres(error: float) -> str:
+    """An error [m] in millimetres: to a hundredth, below a tenth of a millimetre to two digits."""
+    value = MILLIMETRES * error
+    return f"{value:.2f}" if value >= 0.1 or value == 0 else f"{value:.2g}"

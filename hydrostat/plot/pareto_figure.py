@@ -9,6 +9,8 @@ from matplotlib.ticker import MultipleLocator
 from hydrostat.design.front import Size, best_errors, on_front
 from hydrostat.design.network import Alternative, Network
 from hydrostat.plot.chart import new_chart
+from hydrostat.plot.labels import HALO
+from hydrostat.plot.numbers import millimetres
 from hydrostat.plot.palette import ERROR, INK, WINCHES
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.units import counted
@@ -63,6 +65,7 @@ def _draw_chosen(axes: Axes, chosen: Network) -> None:
     low, high = axes.get_xlim()
     left = place[0] > (low + high) / 2
     axes.annotate(
-        f"chosen: {place[1]:.2f} mm", place, xytext=(-9 if left else 9, 8), textcoords="offset points", fontsize=8.5,
-        color=INK, weight="bold", ha="right" if left else "left", annotation_clip=False,
+        f"chosen: {millimetres(chosen.rms_error)} mm", place, xytext=(-4 if left else 4, 11),
+        textcoords="offset points", fontsize=8.5, color=INK, weight="bold", gid=HALO, ha="right" if left else "left",
+        annotation_clip=False,
     )  # fmt: skip

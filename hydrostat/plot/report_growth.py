@@ -6,12 +6,13 @@ import numpy as np
 
 from hydrostat.design.front import size_of
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace
+from hydrostat.design.route_options import RouteOptions
 from hydrostat.design.score_card import rest_error
 from hydrostat.plot.growth_figure import draw_growth, stage_runs
 from hydrostat.plot.html import Html, tag
+from hydrostat.plot.numbers import millimetres
 from hydrostat.plot.pareto_figure import draw_front
 from hydrostat.plot.report_parts import Chapter, grid, picture
-from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.stage_figure import draw_stage, stage_frame
 from hydrostat.units import counted
 
@@ -69,7 +70,7 @@ def alternative_chapters(network: Network) -> list[Chapter]:
         parts.append(
             grid(
                 picture(
-                    draw_front(others, network, width=CHART),
+                    draw_front(others, network, tolerance=_tolerance(network), width=CHART),
                     "front",
                     "Error against cables",
                     ", a line for each number of winches",
@@ -108,6 +109,11 @@ def _certificate(network: Network, certificate: Certificate | None) -> Html:
     return tag("p", tag("b", "What is left to gain. "), words, class_="note")
 
 
+def _tolerance(network: Network) -> float | None:
+    """The error of each pose that was asked for [m], where the number of winches was left open."""
+    return network.options.tolerance if isinstance(network.options, RouteOptions) else None
+
+
 def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
     frame = stage_frame([*(other.robot for other in others), network.robot])
     pictures = []
@@ -120,8 +126,7 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
 
 
 def _told(error: float) -> str:
-    millimetres = MILLIMETRES * error
-    return f"{millimetres:.2f} mm rms" if millimetres >= 0.1 or not millimetres else f"{millimetres:.2g} mm rms"
+    return f"{millimetres(error)} mm rms"
 
 
 def _sentence(words: str) -> str:

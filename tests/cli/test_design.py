@@ -61,12 +61,11 @@ def files_in(folder: Path) -> list[str]:
 
 
 PLAIN = Constraints()
-SIZE = 0.2
 OPTIONS = {
     (): {},
     ("--winches", "1", "--cables", "3"): {"winches": 1, "cables": 3},
-    ("--winches", "auto"): {"winches": "auto", "options": RouteOptions(tolerance=0.001 / SIZE)},
-    ("--winches", "auto", "--tolerance", "3 mm"): {"winches": "auto", "options": RouteOptions(tolerance=0.003 / SIZE)},
+    ("--winches", "auto"): {"winches": "auto"},
+    ("--winches", "auto", "--tolerance", "3 mm"): {"winches": "auto", "options": RouteOptions(tolerance=0.003)},
     ("--seed", "7"): {"options": RouteOptions(seed=7)},
     ("--improve",): {"improve": True},
     ("--method", "trees"): {"method": "trees", "options": TreeOptions()},
