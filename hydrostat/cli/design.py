@@ -1,5 +1,6 @@
 """`hydrostat design`."""
 
+import sys
 import time
 from pathlib import Path
 from shlex import quote
@@ -105,7 +106,11 @@ def design(
     asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
     with progress_bar() as progress:
-        network = design_cables(source, poses, progress=progress, **asked)
+        try:
+            network = design_cables(source, poses, progress=progress, **asked)
+        except KeyboardInterrupt:
+            print("hydrostat: stopped before there was a network; nothing is written", file=sys.stderr)
+            raise typer.Exit(130) from None
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE) as folder:
             write_results(network, folder)

@@ -175,6 +175,18 @@ def test_nothing_is_written_where_writing_is_stopped(
     assert sorted(tmp_path.rglob("*")) == before
 
 
+def test_a_search_that_is_stopped_before_it_has_found_anything(
+    run: Run, strip: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hydrostat.design.design_cables", stop)
+    code, _, errors = run("design", strip, "--out", tmp_path / "out")
+    assert (code, errors) == (130, "hydrostat: stopped before there was a network; nothing is written\n")
+    assert not (tmp_path / "out").exists()
+
+
 def test_the_best_so_far_where_the_search_is_stopped(
     run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path
 ) -> None:
