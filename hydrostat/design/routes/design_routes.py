@@ -117,6 +117,8 @@ class _Design:
             self._noted("the first cable", seed)
             trial = growth.truly(growth.grown(seed, winches=self.winches, cables=self.cables))
             self.found.append(trial)
+            if growth.enough(trial, self.winches):
+                break
         if not self.found:
             raise HydrostatError(
                 "no network could be built: no cable keeps clear of the edge, of forbidden zones and of other cables; "
@@ -129,6 +131,8 @@ class _Design:
             self._noted("via points moved", self.found[rank])
         self.found.sort(key=lambda trial: trial.cost)
         for round_ in range(self.options.exchanges):
+            if growth.enough(self.found[0], self.winches):
+                break
             self.progress("Exchanging cables", round_, self.options.exchanges)
             better = growth.exchanged(self.found[0], winches=self.winches)
             if better is self.found[0]:

@@ -49,7 +49,7 @@ class Growth:
 
     def grown(self, trial: Trial, *, winches: int, cables: int) -> Trial:
         """The network with as many cables; fewer where no more can be built, or none is needed."""
-        while len(trial.layout.lines) < cables:
+        while len(trial.layout.lines) < cables and not self.enough(trial, winches):
             found = self.with_one_more(trial, winches=winches, needed=cables - len(trial.layout.lines))
             if found is None:
                 break
@@ -68,7 +68,7 @@ class Growth:
         best = self.truly(trial)
         effort = 1.0
         done = 0
-        while done < steps:
+        while done < steps and best.cost > self._options(0).enough:
             size = min(_ROUND, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
             found = self.truly(refine(self.bench, self.proposals.graph.region, best, options))
@@ -107,9 +107,14 @@ class Growth:
                 self.noted("a cable exchanged", trial)
         return trial
 
+    def enough(self, trial: Trial, winches: int) -> bool:
+        """Whether nothing more is needed."""
+        enough = self.proposals.options.enough * self.proposals.graph.size
+        return len(trial.layout.stands) >= winches and trial.cost <= enough
+
     def _tried(self, trial: Trial, winches: int, needed: int, count: int) -> list[Trial]:
         layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=count)
-        tried = (self.bench.reached(layout, trial, iterations=12) for layout in layouts)
+        tried = (self.bench.reached(layout, trial, iterations=_GLANCE) for layout in layouts)
         return sorted((found for found in tried if found is not None), key=lambda found: found.cost)
 
     def _short(self, trial: Trial) -> Trial:
@@ -150,6 +155,9 @@ def _words(trial: Trial) -> str:
     name = layout.stands[layout.lines[-1].winch].winch.name
     return f"cable {len(layout.lines)}, pulled by {name}"
 
+
+_GLANCE = 5
+"""Steps of inverse kinematics that tell which of several networks is the best."""
 
 _ROUND = 8
 """Steps of refinement before the poses are found from rest again."""

@@ -134,7 +134,7 @@ class Layout:
                 replace(
                     line,
                     points=np.vstack([places[line.winch], own]),
-                    slack=float(numbers[slacks + index]),
+                    slack=max(float(numbers[slacks + index]), 0.0),
                     ratio=float(numbers[ratios + index]),
                 )
             )

@@ -85,17 +85,19 @@ class _Refinement:
         return total
 
     def _step(self, trial: Trial, effort: float) -> Trial | None:
-        """The first damped step that lowers the merit; None if none does."""
+        """The first damped step that lowers the merit; None if none does. The damping follows what steps keep."""
         model = linear_model(self.bench, self.region, trial, effort=effort, reach=self.reach)
         before = self._merit(trial, effort)
         for _ in range(_TRIES):
             step = self._damped(model)
-            if step is not None:
-                found = self._tried(trial, step, model.free)
-                if found is not None and self._merit(found, effort) < before:
-                    self.damping = max(self.damping / 4, 1e-6)
-                    return found
-            self.damping = max(4 * self.damping, _DAMPING)
+            found = None if step is None else self._tried(trial, step, model.free)
+            if step is not None and found is not None and (after := self._merit(found, effort)) < before:
+                promised = before - float(((model.right + model.matrix @ step) ** 2).sum())
+                kept = (before - after) / max(promised, 1e-300)
+                self.damping *= 0.3 if kept > _GOOD else 1.0 if kept > _POOR else 3.0
+                self.damping = max(self.damping, _LEAST)
+                return found
+            self.damping = max(4 * self.damping, _LEAST)
             if self.damping > _STIFF:
                 break
         self.damping = _DAMPING
@@ -119,7 +121,7 @@ class _Refinement:
         longest = np.abs(layout.ties @ step[:free])[: layout.starts[-2]].max(initial=0.0)
         if longest > 2 * self.reach:
             step = step * (2 * self.reach / longest)
-        moved = pushed_back(layout.at(layout.numbers + layout.ties @ step[:free]), self.region, self.reach)
+        moved = pushed_back(layout.at(layout.numbers + layout.ties @ step[:free]), self.region, _NEAR * self.reach)
         if moved is None:
             return None
         changes = step[free:].reshape(len(trial.poses), -1)
@@ -191,12 +193,10 @@ def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
     ties = layout.ties
     for _ in range(_PUSHES):
         limits = room(layout, region, reach=reach)
-        rows = limits.rows @ ties
-        some = np.abs(rows).max(axis=1, initial=0.0) > 0
-        rows, left = rows[some], limits.room[some]
-        if not len(left) or left.min() >= -_CLOSE:
+        if not len(limits.room) or limits.room.min() >= -_CLOSE:
             return layout
-        step = least_squares(np.eye(ties.shape[1]), np.zeros(ties.shape[1]), rows, left)
+        rows = limits.rows @ ties
+        step = least_squares(np.eye(ties.shape[1]), np.zeros(ties.shape[1]), rows, limits.room)
         if step is None:
             return None
         layout = layout.at(layout.numbers + ties @ step)
@@ -224,11 +224,19 @@ _REACH = 0.03
 _TRAVEL = 0.2
 """A large step of a contraction, as a share of the travel."""
 
+_NEAR = 0.3
+"""Share of a large step within which limits are felt when a layout is pushed back."""
+
 _DAMPING = 0.1
 """Where the damping begins, as a share of the largest slope."""
 
-_STIFF = 1e4
-_TRIES = 6
+_LEAST, _STIFF = 1e-4, 1e3
+"""Between these the damping stays."""
+
+_GOOD, _POOR = 0.6, 0.2
+"""Shares of what a step promised, above which the damping falls and below which it rises."""
+
+_TRIES = 5
 _LIGHT = 0.1
 """Damping of contractions against that of the numbers of the layout."""
 

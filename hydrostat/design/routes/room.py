@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hydrostat.arrays import Vector
 from hydrostat.design.constraints import Constraints
@@ -84,63 +84,53 @@ class _Room:
 
     def _edges(self) -> None:
         """Points a clearance from the edge, segments half of it; both outside forbidden zones."""
-        clearance = self.constraints.clearance
-        spots, needs, owners = [], [], []
-        for index, line in enumerate(self.layout.lines):
-            if line.kept is not None:
-                continue
-            outside = self.layout.stands[line.winch].winch.mount is Mount.WORLD
-            for point in range(1, len(line.points)):
-                spots.append(line.points[point])
-                needs.append((clearance + _HAIR, 0.0, point > line.lead))
-                owners.append(((self.layout.place_of(index, point), 1.0),))
-            for point in range(1 if outside else 0, len(line.points) - 1):
-                start, end = line.points[point], line.points[point + 1]
-                count = int(np.ceil(np.linalg.norm(end - start) / clearance)) - 1
-                for share in np.arange(1, count + 1) / (count + 1):
-                    spots.append((1 - share) * start + share * end)
-                    needs.append((0.6 * clearance, 0.0, point >= line.lead))
-                    owners.append(
-                        (
-                            (self.layout.place_of(index, point), 1 - share),
-                            (self.layout.place_of(index, point + 1), share),
-                        )
-                    )
-        if not spots:
+        clearance, spots = self.constraints.clearance, _spots(self.layout, 0.5 * self.constraints.clearance)
+        if not len(spots.shares):
             return
-        places = np.array(spots)
-        depths = self.region.depths(places)
-        near = np.flatnonzero(depths - np.array([need[0] for need in needs]) <= self.reach)
-        ways = self.region.inward(places[near]) if len(near) else np.zeros((0, self.layout.dim))
-        for spot, way in zip(near, ways, strict=True):
-            self._add(depths[spot] - needs[spot][0], *((place, -share * way) for place, share in owners[spot]))
-        for zones, bare_only in ((self.constraints.keep_out, False), (self.constraints.still, True)):
+        numbers = self.layout.numbers
+        starts, ends = (numbers[side[:, None] + np.arange(self.layout.dim)] for side in (spots.starts, spots.ends))
+        places = starts + spots.shares[:, None] * (ends - starts)
+        needs = np.where(spots.shares == 0.0, clearance + _HAIR, 0.6 * clearance)
+        lefts = self.region.depths(places) - needs
+        near = np.flatnonzero(lefts <= self.reach)
+        if len(near):
+            self._add_spots(spots.chosen(near), lefts[near], self.region.inward(places[near]))
+        for zones, seen in ((self.constraints.keep_out, np.ones(len(needs), dtype=bool)),
+                            (self.constraints.still, spots.bare)):  # fmt: skip
             for zone in zones:
-                away, ways = zone.distances(places), zone.away(places)
-                for spot, (need, owner) in enumerate(zip(needs, owners, strict=True)):
-                    if need[2] or not bare_only:
-                        self._add(away[spot] - _HAIR, *((place, -share * ways[spot]) for place, share in owner))
+                away = zone.distances(places) - _HAIR
+                near = np.flatnonzero(seen & (away <= self.reach))
+                if len(near):
+                    self._add_spots(spots.chosen(near), away[near], zone.away(places[near]))
+
+    def _add_spots(self, spots: "_Spots", lefts: Vector, ways: Float[np.ndarray, "spots dim"]) -> None:
+        """Places along cables must not move against `ways` farther than what is left."""
+        rows = np.zeros((len(lefts), self.layout.size))
+        every = np.arange(len(lefts))[:, None], np.arange(self.layout.dim)
+        rows[every[0], spots.starts[:, None] + every[1]] -= (1 - spots.shares)[:, None] * ways
+        rows[every[0], spots.ends[:, None] + every[1]] -= spots.shares[:, None] * ways
+        self.rows += list(rows)
+        self.rooms += lefts.tolist()
 
     def _gaps(self) -> None:
         """Holes apart; those of other winches' cables outside a winch."""
         layout, gap = self.layout, self.constraints.hole_gap
-        holes = [
-            (index, point, line.points[point], layout.place_of(index, point))
-            for index, line in enumerate(layout.lines)
-            for point in range(1, len(line.points))
-        ]
-        places = np.array([hole[2] for hole in holes])
+        spots = [(index, point) for index, line in enumerate(layout.lines) for point in range(1, len(line.points))]
+        owners = np.array([index for index, _ in spots])
+        where = [layout.place_of(*spot) for spot in spots]
+        places = np.concatenate([line.points[1:] for line in layout.lines])
         away = np.linalg.norm(places[:, None] - places[None], axis=2)
-        for one, other in np.argwhere(np.triu(away < gap + self.reach, 1)):
-            if away[one, other] > 1e-6 or holes[one][0] == holes[other][0]:
-                self._apart(holes[one][2], holes[one][3], holes[other][2], holes[other][3], gap)
+        shared = (away < 1e-6) & (owners[:, None] != owners)
+        for one, other in np.argwhere(np.triu((away < gap + self.reach) & ~shared, 1)):
+            self._apart(places[one], where[one], places[other], where[other], gap)
+        pulled = np.array([layout.lines[index].winch for index in owners])
         for number, stand in enumerate(layout.stands):
             if stand.winch.mount is Mount.WORLD:
                 continue
             centre, own = np.array(stand.winch.at), slice(layout.dim * number, layout.dim * (number + 1))
-            for index, _, place, where in holes:
-                mine = layout.lines[index].winch == number
-                self._apart(place, where, centre, own, gap if mine else 2 * stand.winch.spool_radius)
+            needs = np.where(pulled == number, gap, 2 * stand.winch.spool_radius)
+            for hole in np.flatnonzero(np.linalg.norm(places - centre, axis=1) < needs + self.reach):
+                self._apart(places[hole], where[hole], centre, own, float(needs[hole]))
 
     def _apart(self, one: Vector, where: slice, other: Vector, there: slice, gap: float) -> None:
         span = one - other
@@ -187,6 +177,38 @@ class _Room:
                 for sign, left in ((1.0, high - value), (-1.0, value - low)):
                     self.rows.append(_unit(self.layout.size, own, sign))
                     self.rooms.append(left)
+
+
+class _Spots(NamedTuple):
+    """Places along cables: on the way from one point of a cable to another, by where their numbers begin."""
+
+    starts: Int[np.ndarray, " spots"]
+    ends: Int[np.ndarray, " spots"]
+    shares: Vector
+    bare: np.ndarray
+
+    def chosen(self, which: np.ndarray) -> "_Spots":
+        """Some of them."""
+        return _Spots(*(part[which] for part in self))
+
+
+def _spots(layout: Layout, spacing: float) -> _Spots:
+    """Every point of a cable but those that stay, and places about every `spacing` between them."""
+    starts, ends, shares, bare = [], [], [], []
+    for index, line in enumerate(layout.lines):
+        if line.kept is not None:
+            continue
+        outside = layout.stands[line.winch].winch.mount is Mount.WORLD
+        lengths = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+        for point, length in enumerate(lengths):
+            here, there = (layout.place_of(index, end).start for end in (point, point + 1))
+            count = 0 if outside and point == 0 else max(int(np.ceil(length / spacing)) - 1, 0)
+            own = np.arange(1, count + 1) / (count + 1)
+            starts += [there, *[here] * count]
+            ends += [there] * (count + 1)
+            shares += [0.0, *own]
+            bare += [point + 1 > line.lead, *[point >= line.lead] * count]
+    return _Spots(np.array(starts, dtype=np.int64), np.array(ends, dtype=np.int64), np.array(shares), np.array(bare))
 
 
 _HAIR = 5e-5
