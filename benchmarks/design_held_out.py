@@ -122,10 +122,10 @@ def _posed(robot: Robot, poses: Sequence[Pose]) -> Robot:
 
 
 def _errors(name: str, of: Family, asked: Body, method: str, training: int, count: int, seed: int) -> list[float]:
-    """Poses designed for and held out, each at rest and as they are reached [m]; NaN where no network is found."""
+    """Cables used; poses designed for and held out, each at rest and as reached [m]; NaN where no network is found."""
     poses = of.training[:training]
     found = network(poses, of, asked, method, count, seed)
-    errors = []
+    errors = [np.nan if found is None else float(len(found.cables))]
     for some in (poses, of.held_out):
         errors.append(rest_error(_posed(of.robot, some)))
         errors.append(np.nan if found is None else judged(found, some, BODIES[name].constraints))
@@ -136,9 +136,10 @@ def _row(name: str, families: Sequence[Family], method: str, cables: int, traini
     world = [winch for winch in families[0].robot.winches if winch.mount is Mount.WORLD]
     winches = min(cables, len(world)) if world else cables
     asked = replace(BODIES[name], winches=winches, cables=cables)
-    errors = [_errors(name, of, asked, method, training, count, seed) for seed, of in enumerate(families)]
-    cells = " | ".join(f"{1e3 * error:.2f}" for error in np.sqrt(np.mean(np.square(errors), axis=0)))
-    return f"| {name} | {method} | {winches} / {cables} | {training} | {cells} |"
+    found = [_errors(name, of, asked, method, training, count, seed) for seed, of in enumerate(families)]
+    used, *errors = np.array(found).T
+    cells = " | ".join(f"{1e3 * np.sqrt(np.mean(error**2)):.2f}" for error in errors)
+    return f"| {name} | {method} | {winches} / {cables} | {np.mean(used):g} | {training} | {cells} |"
 
 
 def main() -> None:
@@ -153,7 +154,7 @@ def main() -> None:
     options = parser.parse_args()
     print(f"{machine()}; rms errors over markers and poses in mm")
     print(f"{POSES} poses held out; hidden networks: {options.seeds}; the best of {options.random} at random\n")
-    columns = ["body", "method", "winches / cables", "poses designed for", "they at rest", "reached"]
+    columns = ["body", "method", "winches / cables", "cables used", "poses designed for", "they at rest", "reached"]
     columns += ["held out, at rest", "reached"]
     print("| " + " | ".join(columns) + " |\n" + "|---" * len(columns) + "|", flush=True)
     for name in ["starfish"] if options.quick else options.bodies.split(","):
