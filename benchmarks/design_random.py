@@ -47,11 +47,11 @@ TURNS = (10.0, 75.0)
 SHORTEST = 2
 """Edges that a walk must have, to be more than a stub."""
 
-ROUNDS = (3, 30)
-"""Steps of inverse kinematics for all networks, and more for the best quarter."""
+ROUNDS = ((4, 3), (4, 10), (0, 100))
+"""Rounds: one in so many goes on, just the final ones where it is 0; steps of inverse kinematics in each."""
 
 FINAL = 5
-"""So many of the best are solved to the end."""
+"""So many of the best are solved to the end by the judge, and so many at least go on from each round."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,27 +206,26 @@ def best_of(
 ) -> Best | None:
     """The best of `count` random networks; None if none can be built.
 
-    A few steps of inverse kinematics for all; more for the best quarter; the best few are judged as every network is.
+    A few steps of inverse kinematics for all, more for the best quarter, all for the best of these; the best few are
+    judged as every network is.
     """
     began = time.process_time()
     draw, on = np.random.default_rng(seed), ground(robot, body.constraints)
-    networks: list[tuple[float, Robot]] = []
-    for _ in range(count):
-        network = random_network(on, body.winches, body.cables, draw)
-        if network is None:
-            break
-        networks.append((_rough(network, poses, body.constraints, ROUNDS[0]), network))
-    if not networks:
+    drawn = (random_network(on, body.winches, body.cables, draw) for _ in range(count))
+    left = [network for network in drawn if network is not None]
+    errors: list[float] = []
+    for number, (share, iterations) in enumerate(ROUNDS):
+        ranked = sorted(
+            ((_rough(network, poses, body.constraints, iterations), network) for network in left),
+            key=lambda pair: pair[0],
+        )
+        errors = errors if number else [error for error, _ in ranked]
+        left = [network for _, network in ranked[: max(FINAL, len(ranked) // share) if share else FINAL]]
+    if not left:
         return None
-    networks.sort(key=lambda pair: pair[0])
-    quarter = networks[: max(FINAL, len(networks) // 4)]
-    further = sorted(
-        ((_rough(network, poses, body.constraints, ROUNDS[1]), network) for _, network in quarter),
-        key=lambda pair: pair[0],
-    )
-    final = [(judged(network, poses, body.constraints), network) for _, network in further[:FINAL]]
+    final = [(judged(network, poses, body.constraints), network) for network in left]
     error, best = min(final, key=lambda pair: pair[0])
-    return Best(best, error, tuple(error for error, _ in networks), time.process_time() - began)
+    return Best(best, error, tuple(errors), time.process_time() - began)
 
 
 def _rough(robot: Robot, poses: Sequence[Pose], constraints: Constraints, iterations: int) -> float:
