@@ -6,6 +6,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Network
 from hydrostat.design.progress import Progress, silent
 from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.tree_options import TreeOptions
 from hydrostat.design.trees.design_trees import design_trees
@@ -15,12 +16,15 @@ from hydrostat.robot import Pose, Robot
 METHODS = ("routes", "trees")
 """Ours, and the thesis's."""
 
+AUTO = "auto"
+"""As many winches as are needed."""
+
 
 def design_cables(
     robot: Robot,
     poses: Iterable[Pose],
     *,
-    winches: int,
+    winches: int | str,
     cables: int,
     method: str = "routes",
     constraints: Constraints | None = None,
@@ -33,7 +37,8 @@ def design_cables(
     Args:
         robot: body, pins and markers; its own winches and cables are left aside but for those that are locked.
         poses: what the network should reach, all of them with the same cables.
-        winches: how many.
+        winches: how many; "auto" for the fewest that bring every pose under the tolerance of the options (F1, F2): then
+            `alternatives` hold the best network found of every size that was tried.
         cables: how many in all, at least one a winch.
         method: "routes" prices routes by the pose error and moves them to where it is least; "trees" is the thesis's.
         constraints: what can be built.
@@ -48,6 +53,7 @@ def design_cables(
     poses = list(poses)
     given = constraints or Constraints()
     _check(robot, poses, winches, cables, given)
+    given.check(robot)
     if method not in METHODS:
         raise InputError(f'method = "{method}": must be one of {", ".join(METHODS)}')
     told = progress or silent
@@ -55,21 +61,42 @@ def design_cables(
         options = options or TreeOptions()
         if not isinstance(options, TreeOptions):
             raise InputError(f'options of method "trees" must be TreeOptions, not {type(options).__name__}')
+        if improve or not isinstance(winches, int):
+            raise InputError('method "trees" starts from nothing with a number of winches; use method "routes"')
+        _check_trees(given)
         return design_trees(
             robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told
         )
     options = options or RouteOptions()
     if not isinstance(options, RouteOptions):
         raise InputError(f'options of method "routes" must be RouteOptions, not {type(options).__name__}')
+    if not isinstance(winches, int):
+        return design_fewest(robot, poses, cables=cables, constraints=given, options=options, progress=told)
     return design_routes(
         robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told, improve=improve
     )
 
 
-def _check(robot: Robot, poses: Sequence[Pose], winches: int, cables: int, constraints: Constraints) -> None:
+def _check(robot: Robot, poses: Sequence[Pose], winches: int | str, cables: int, constraints: Constraints) -> None:
     if not poses:
         raise InputError("there is no pose to design for; add a [[pose]] to the robot")
-    if not 1 <= winches <= cables:
+    _check_counts(winches, cables, constraints)
+    markers = [marker.name for marker in robot.markers]
+    for pose in poses:
+        for name in pose.targets:
+            if name not in markers:
+                known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
+                raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')
+
+
+def _check_counts(winches: int | str, cables: int, constraints: Constraints) -> None:
+    for name, value in (("winches", winches), ("cables", cables)):
+        if (name, value) != ("winches", AUTO) and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
+            also = ' or "auto"' if name == "winches" else ""
+            raise InputError(f"{name} must be a whole number above 0{also}, not {value!r}")
+    if not isinstance(winches, int):
+        return
+    if winches > cables:
         raise InputError(
             f"{winches} winches and {cables} cables: there must be at least one winch, and a cable for each"
         )
@@ -78,9 +105,18 @@ def _check(robot: Robot, poses: Sequence[Pose], winches: int, cables: int, const
             f"{winches} winches pull at most {winches * constraints.cables_per_winch} cables, not {cables}; "
             "ask for more winches, or raise cables_per_winch"
         )
-    markers = [marker.name for marker in robot.markers]
-    for pose in poses:
-        for name in pose.targets:
-            if name not in markers:
-                known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
-                raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')
+
+
+def _check_trees(constraints: Constraints) -> None:
+    """Refuse what the thesis's way does not know."""
+    usual = Constraints()
+    asked = [name for name in _ROUTES_ONLY if getattr(constraints, name) != getattr(usual, name)]
+    if asked:
+        raise InputError(f'method "trees" does not keep {", ".join(asked)}; use method "routes", which does')
+
+
+_ROUTES_ONLY = (
+    "winch_zones", "keep_out", "still", "mount", "bend_radius", "longest", "torque", "slack", "spool_ratio", "mirror",
+    "locked_winches", "locked_cables",
+)  # fmt: skip
+"""Constraints that winch trees are not grown within."""

@@ -52,10 +52,10 @@ def design_routes(
         InputError: a body too thin for the constraints.
         HydrostatError: no network can be built.
     """
-    return _Design(robot, poses, winches, cables, constraints, options, progress, improve).run()
+    return Search(robot, poses, winches, cables, constraints, options, progress, improve=improve).run()
 
 
-class _Design:
+class Search:
     """One run."""
 
     def __init__(
@@ -67,7 +67,8 @@ class _Design:
         constraints: Constraints,
         options: RouteOptions,
         progress: Progress,
-        improve: bool,
+        *,
+        improve: bool = False,
     ) -> None:
         self.robot, self.poses, self.winches, self.cables = robot, poses, winches, cables
         self.constraints, self.options, self.progress, self.improve = constraints, options, progress, improve
@@ -75,9 +76,11 @@ class _Design:
         self.stages: list[Stage] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
+        self.sizes: dict[tuple[int, int], Trial] = {}
         self.grown = 0
 
     def run(self) -> Network:
+        """Search, judge, and tell how it came about."""
         began = time.process_time()
         complete = True
         try:
@@ -171,6 +174,9 @@ class _Design:
         if words.startswith(("cable", "the first")):
             self.grown += 1
             self.progress("Growing networks", min(self.grown, self._total), self._total)
+        size = len(trial.layout.stands), len(trial.layout.lines)
+        if size not in self.sizes or trial.cost < self.sizes[size].cost:
+            self.sizes[size] = trial
         if self.best is None or (len(trial.layout.lines), -trial.cost) > (len(self.best.layout.lines), -self.best.cost):
             self.best = trial
         self.stages.append(Stage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error))
@@ -178,7 +184,7 @@ class _Design:
     def _finished(self) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""
         trials = self.found or [self.best]
-        judged = [judged for trial in trials if trial is not None and (judged := self._judged(trial)) is not None]
+        judged = [judged for trial in trials if trial is not None and (judged := self.judged(trial)) is not None]
         if not judged:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
@@ -186,11 +192,11 @@ class _Design:
         judged.sort(key=lambda network: network.rms_error)
         return judged[0], judged[1:]
 
-    def _judged(self, trial: Trial) -> Alternative | None:
+    def judged(self, trial: Trial) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
         robot = trial.layout.robot(digits=_DIGITS)
         region = body_region(self.robot.body, self.constraints.clearance)
-        if violations(robot, self.constraints, region):
+        if violations(robot, self.constraints, region, source=self.robot):
             return None
         simulation = Simulation(robot)
         limits = Limits(tension=self.constraints.tension_limit)

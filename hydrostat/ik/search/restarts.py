@@ -12,11 +12,12 @@ SEED = 0
 
 
 def restarts(search: Search, best: Callable[[], State]) -> Iterator[State]:
-    """States to begin from, for ever: each the pose that leads at once from rest to other contractions.
+    """States to begin from: each the pose that leads at once from rest to other contractions.
 
     A body with several poses at the same contractions ends on the branch that its way leads to (E20), and the errors of
     markers have local optima. So first the best contractions are tried from rest; then in turn ones near them and ones
-    anywhere. Only channels that move what is missed are changed: the fingers that are right stay.
+    anywhere. Only channels that move what is missed are changed: the fingers that are right stay. It ends after a few
+    jumps that lead nowhere.
 
     Args:
         search: the problem.
@@ -27,10 +28,15 @@ def restarts(search: Search, best: Callable[[], State]) -> Iterator[State]:
     if found is not None and not _same(found, state):
         yield found
     draw = np.random.default_rng(SEED)
+    failures = 0
     for number in count():
         found = search.jump(_contractions(search, best(), number, draw))
         if found is not None:
             yield found
+            continue
+        failures += 1
+        if failures == _FAILURES:  # few contractions of this robot can be jumped to: a way there would be long
+            return
 
 
 def _contractions(search: Search, state: State, number: int, draw: np.random.Generator) -> Vector:
@@ -63,6 +69,9 @@ def _same(first: State, second: State) -> bool:
     nodes = second.result.nodes
     return bool(np.abs(first.result.nodes - nodes).max() < _APART * np.ptp(nodes, axis=0).max())
 
+
+_FAILURES = 6
+"""Jumps that lead to no pose, after which there are no more."""
 
 _NEAR = 0.03
 """How far contractions near the best ones are from them: a share of the range, in the root of the mean square."""

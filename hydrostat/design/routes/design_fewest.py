@@ -1,0 +1,73 @@
+"""`design_fewest`: the fewest winches that bring every pose under a tolerance, and what each number gains (F1, F2)."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.network import Alternative, Network
+from hydrostat.design.progress import Progress
+from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.routes.design_routes import Search
+from hydrostat.robot import Pose, Robot
+
+
+def design_fewest(
+    robot: Robot,
+    poses: Sequence[Pose],
+    *,
+    cables: int,
+    constraints: Constraints,
+    options: RouteOptions,
+    progress: Progress,
+) -> Network:
+    """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
+
+    Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
+    that miss the tolerance the best one is returned.
+
+    Args:
+        robot: that is designed for.
+        poses: to reach.
+        cables: most in all.
+        constraints: to keep; locked winches count.
+        options: of the search, with the tolerance.
+        progress: told how the work goes on.
+    """
+    size = robot.body.mesh.size
+    tolerance = _SHARE * size if options.tolerance is None else options.tolerance
+    sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
+    found: list[Network] = []
+    front: dict[tuple[int, int], Alternative] = {}
+    for winches in range(1, cables + 1):
+        most = min(cables, winches * constraints.cables_per_winch)
+        search = Search(robot, poses, winches, most, constraints, sought, progress)
+        found.append(search.run())
+        for network in (*(search.judged(trial) for trial in search.sizes.values()), *_all(found[-1])):
+            if network is not None:
+                counts = len(network.robot.winches), len(network.robot.cables)
+                if counts not in front or network.rms_error < front[counts].rms_error:
+                    front[counts] = network
+        if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
+            break
+    best = found[-1] if found[-1].complete else min(found, key=lambda network: network.rms_error)
+    if any(reached.rms_error > tolerance for reached in best.reached):
+        best = min(found, key=lambda network: network.rms_error)
+    return replace(
+        best,
+        alternatives=tuple(front[counts] for counts in sorted(front)),
+        options=options,
+        tried=sum(network.tried for network in found),
+        seconds=sum(network.seconds for network in found),
+        complete=all(network.complete for network in found),
+    )
+
+
+def _all(network: Network) -> tuple[Alternative, ...]:
+    return Alternative(robot=network.robot, reached=network.reached), *network.alternatives
+
+
+_SHARE = 0.01
+"""The tolerance where none is given, as a share of the body's size."""
+
+_SAFE = 0.6
+"""Share of the tolerance at which no more cables are added: the mean over poses hides the worst."""
