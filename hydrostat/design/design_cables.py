@@ -1,6 +1,7 @@
 """`design_cables`: from poses to winches and cables."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Network
@@ -91,12 +92,13 @@ def _check(robot: Robot, poses: Sequence[Pose], winches: int | str, cables: int,
 
 def _check_counts(winches: int | str, cables: int, constraints: Constraints) -> None:
     for name, value in (("winches", winches), ("cables", cables)):
-        if (name, value) != ("winches", AUTO) and (isinstance(value, bool) or not isinstance(value, int) or value < 1):
+        if (name, value) != ("winches", AUTO) and (isinstance(value, bool) or not isinstance(value, int)):
             also = ' or "auto"' if name == "winches" else ""
-            raise InputError(f"{name} must be a whole number above 0{also}, not {value!r}")
+            raise InputError(f"{name} must be a whole number{also}, not {value!r}")
     if not isinstance(winches, int):
-        return
-    if winches > cables:
+        winches = 1
+        constraints = replace(constraints, cables_per_winch=max(cables, 1))
+    if not 1 <= winches <= cables:
         raise InputError(
             f"{winches} winches and {cables} cables: there must be at least one winch, and a cable for each"
         )

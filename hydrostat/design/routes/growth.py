@@ -3,10 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from hydrostat.arrays import Points
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import RefineOptions, refine
+from hydrostat.robot import Mount
 from hydrostat.simulation import Simulation
 
 Noted = Callable[[str, Trial], None]
@@ -115,7 +119,16 @@ class Growth:
     def _tried(self, trial: Trial, winches: int, needed: int, count: int) -> list[Trial]:
         layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=count)
         tried = (self.bench.reached(layout, trial, iterations=_GLANCE) for layout in layouts)
-        return sorted((found for found in tried if found is not None), key=lambda found: found.cost)
+        return sorted((found for found in tried if found is not None), key=self._rated)
+
+    def _rated(self, trial: Trial) -> float:
+        """The cost [m], more for winches that are not deep in the body (R12) and cables that turn much (E14)."""
+        layout = trial.layout
+        inner = [stand.winch.at for stand in layout.stands if stand.winch.mount is Mount.BODY]
+        depths = self.proposals.graph.region.depths(np.array(inner)) if inner else np.zeros(0)
+        shallow = np.maximum(1.0 - depths / self.proposals.deepest, 0.0).mean() if inner else 0.0
+        turned = np.mean([total_turn(line.points) for line in layout.lines])
+        return trial.cost * (1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned))
 
     def _short(self, trial: Trial) -> Trial:
         return refine(self.bench, self.proposals.graph.region, trial, self._options(self.proposals.options.steps))
@@ -123,6 +136,13 @@ class Growth:
     def _options(self, steps: int) -> RefineOptions:
         enough = self.proposals.options.enough * self.proposals.graph.size
         return RefineOptions(iterations=steps, enough=enough)
+
+
+def total_turn(points: Points) -> float:
+    """Sum of the turns of a polyline [rad]."""
+    spans = np.diff(points, axis=0)
+    units = spans / np.maximum(np.linalg.norm(spans, axis=1), 1e-300)[:, None]
+    return float(np.arccos(np.clip((units[:-1] * units[1:]).sum(axis=1), -1.0, 1.0)).sum())
 
 
 def without(layout: Layout, number: int) -> Layout | None:
@@ -164,6 +184,12 @@ _ROUND = 8
 
 _IDLE = 0.02
 """A round that gains less ends the refinement."""
+
+_SHALLOW = 0.3
+"""How much more a network costs whose winches are at the edge."""
+
+_TURNED = 0.1
+"""How much more a network costs whose cables turn by 1 rad."""
 
 _WORTH = 0.01
 """An exchange must gain so much."""

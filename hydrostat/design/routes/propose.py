@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -32,6 +33,12 @@ class Proposals:
     graph: RouteGraph
     options: RouteOptions
     spacing: float
+
+    @cached_property
+    def deepest(self) -> float:
+        """How deep a winch can be in the body [m]."""
+        inner = self.graph.points[~self.graph.world]
+        return max(float(self.graph.region.depths(inner).max(initial=0.0)), 1e-9)
 
     def priced(self, trial: Trial, *, count: int, winches: Sequence[int] | None = None) -> list[PricedPath]:
         """Paths that promise most beside the network there is, at the equilibria where it is.

@@ -20,12 +20,15 @@ class RefineOptions:
     Attributes:
         iterations: most steps.
         effort: error, as a share of the present one, that the tension limit of a cable is worth.
+        straightness: error, as a share of the present one, that a cable which turns by 1 rad at every point is worth:
+            turns rub (E14), and what does not matter to the poses should look as if it had been meant.
         progress: it ends after steps that lower the cost by less than this share.
         enough: error [m] at which it ends.
     """
 
     iterations: int = 40
     effort: float = 0.02
+    straightness: float = 0.1
     progress: float = 3e-3
     enough: float = 0.0
 
@@ -66,32 +69,33 @@ class _Refinement:
             effort = (
                 self.options.effort * trial.error / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.lines)))
             )
-            found = self._step(trial, effort)
+            bend = self.options.straightness * trial.error / np.sqrt(max(len(turns(trial.layout)[0]), 1))
+            found = self._step(trial, effort, bend)
             if found is None:
                 break
-            gain = 1.0 - self._merit(found, effort) / self._merit(trial, effort)
+            gain = 1.0 - self._merit(found, effort, bend) / self._merit(trial, effort, bend)
             idle = idle + 1 if gain < 2 * self.options.progress else 0
             trial = found
             if idle >= 2:
                 break
         return trial
 
-    def _merit(self, trial: Trial, effort: float) -> float:
-        """Squares of error and effort, and of what tensions exceed."""
-        total = trial.error**2
+    def _merit(self, trial: Trial, effort: float, bend: float) -> float:
+        """Squares of error, effort and turns, and of what tensions exceed."""
+        total = trial.error**2 + float(((bend * turns(trial.layout)[0]) ** 2).sum())
         for pose in trial.poses:
             over = np.maximum(pose.tensions - self.limit, 0.0)
             total += float((effort**2) * (pose.tensions**2).sum() + (_OVER * effort) ** 2 * (over**2).sum())
         return total
 
-    def _step(self, trial: Trial, effort: float) -> Trial | None:
+    def _step(self, trial: Trial, effort: float, bend: float) -> Trial | None:
         """The first damped step that lowers the merit; None if none does. The damping follows what steps keep."""
-        model = linear_model(self.bench, self.region, trial, effort=effort, reach=self.reach)
-        before = self._merit(trial, effort)
+        model = linear_model(self.bench, self.region, trial, effort=effort, bend=bend, reach=self.reach)
+        before = self._merit(trial, effort, bend)
         for _ in range(_TRIES):
             step = self._damped(model)
             found = None if step is None else self._tried(trial, step, model.free)
-            if step is not None and found is not None and (after := self._merit(found, effort)) < before:
+            if step is not None and found is not None and (after := self._merit(found, effort, bend)) < before:
                 promised = before - float(((model.right + model.matrix @ step) ** 2).sum())
                 kept = (before - after) / max(promised, 1e-300)
                 self.damping *= 0.3 if kept > _GOOD else 1.0 if kept > _POOR else 3.0
@@ -133,7 +137,9 @@ class _Refinement:
         return self.bench.held(moved, contractions, trial)
 
 
-def linear_model(bench: Bench, region: Region, trial: Trial, *, effort: float, reach: float) -> Model:
+def linear_model(
+    bench: Bench, region: Region, trial: Trial, *, effort: float, reach: float, bend: float = 0.0
+) -> Model:
     """A trial to first order, with all limits that lie within `reach` [m].
 
     Args:
@@ -142,6 +148,7 @@ def linear_model(bench: Bench, region: Region, trial: Trial, *, effort: float, r
         trial: at its equilibria.
         effort: what a tension counts [m/N].
         reach: how far anything will move [m].
+        bend: what a turn of 1 rad counts [m].
     """
     layout, limit = trial.layout, bench.constraints.tension_limit
     winches, free = len(layout.stands), layout.ties.shape[1]
@@ -168,6 +175,11 @@ def linear_model(bench: Bench, region: Region, trial: Trial, *, effort: float, r
                 row[0, begin + winch] = sign
                 rows.append(row)
                 rooms.append(np.array([left]))
+    bends, slopes = turns(layout)
+    straight = np.zeros((len(bends), count))
+    straight[:, :free] = bend * slopes @ layout.ties
+    matrix.append(straight)
+    right.append(bend * bends)
     geometry = room(layout, region, reach=reach)
     tied = np.zeros((len(geometry.rows), count))
     tied[:, :free] = geometry.rows @ layout.ties
@@ -177,6 +189,27 @@ def linear_model(bench: Bench, region: Region, trial: Trial, *, effort: float, r
         np.vstack(matrix), np.concatenate(right), np.vstack([*rows, tied]),
         np.concatenate([*rooms, geometry.room]), scale, free,
     )  # fmt: skip
+
+
+def turns(layout: Layout) -> tuple[Vector, np.ndarray]:
+    """How much each cable turns at its points, coordinate by coordinate [rad, roughly], and the slopes by the numbers.
+
+    A turn is the difference of the two segments at a point, over their mean length in this layout's cable.
+    """
+    values, rows = [np.zeros(0)], [np.zeros((0, layout.size))]
+    for index, line in enumerate(layout.lines):
+        if line.kept is not None or len(line.points) < 3:
+            continue
+        spacing = float(np.linalg.norm(np.diff(line.points, axis=0), axis=1).mean())
+        inner = len(line.points) - 2
+        own = np.zeros((inner, layout.dim, layout.size))
+        for point in range(inner):
+            for step, weight in enumerate((1.0, -2.0, 1.0)):
+                place = layout.place_of(index, point + step)
+                own[point, :, place] += weight / spacing * np.eye(layout.dim)
+        values.append(np.diff(line.points, n=2, axis=0).ravel() / spacing)
+        rows.append(own.reshape(-1, layout.size))
+    return np.concatenate(values), np.vstack(rows)
 
 
 def _scales(layout: Layout, reach: float) -> Vector:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.design.body_region import body_region
+from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.muscles.activation import Activation, activate
 from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
@@ -221,7 +222,8 @@ class _Design:
         for (index, _, lead), points in zip(pulled, laid, strict=True):
             sheathed = ((0, lead),) if lead and self.constraints.leads else ()
             cables.append(Cable(winch=winches[index].name, points=tuple(map(_point, points)), sheathed=sheathed))
-        return self.robot.with_network(winches, cables)
+        robot = self.robot.with_network(winches, cables)
+        return None if violations(robot, self.constraints, self.region) else robot
 
     def _winch(self, index: int, tree: Tree) -> Winch:
         return Winch(
