@@ -9,6 +9,8 @@ from jaxtyping import config
 
 from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
+from hydrostat.design.constraints_file import read_constraints
+from hydrostat.robot import load_robot
 
 ROOT = Path(__file__).parents[2]
 
@@ -67,3 +69,14 @@ def test_the_price_on_the_page_is_what_a_weak_cable_does(page: dict[str, Any]) -
     """Oracle: the equilibrium of the pulled robot."""
     real, priced = page["moved"] / page["pose"].tensions[0], page["best"].moves
     assert np.linalg.norm(real - priced) < 0.05 * np.linalg.norm(priced)
+
+
+def test_the_file_of_constraints_in_the_architecture_is_read(tmp_path: Path) -> None:
+    """Oracle: what its comments say."""
+    section = (ROOT / "ARCHITECTURE.md").read_text().split("## A file of constraints")[1]
+    path = tmp_path / "constraints.toml"
+    path.write_text(section.split("```toml\n")[1].split("```")[0])
+    read = read_constraints(path, load_robot(ROOT / "examples" / "starfish"))
+    assert (read.clearance, read.turn, read.slack, read.spool_ratio) == pytest.approx((0.006, 60.0, 0.010, 2.0))
+    assert (read.locked_winches, read.locked_cables, read.mirror) == (("left",), (0,), "x")
+    assert [len(zones) for zones in (read.winch_zones, read.keep_out, read.still)] == [1, 1, 1]
