@@ -15,8 +15,9 @@ class RouteOptions:
         hops: most edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
         trials: paths whose networks are solved before one is added.
-        starts: networks that are grown, each from another first cable.
-        exchanges: rounds in which each cable is taken out and the best is put in its place.
+        starts: networks that are grown, each from another first cable; if left out two for a flat body, one in space.
+        exchanges: most rounds in which each cable is taken out and the best is put in its place; the next one is begun
+            where the last one gained a fifth.
         steps: of refinement after each cable.
         polish: steps of refinement of a whole network.
         seed: nothing is drawn at random yet; kept with the results.
@@ -28,8 +29,12 @@ class RouteOptions:
     hops: int = 14
     lead_penalty: float = 0.3
     trials: int = 4
-    starts: int = 3
-    exchanges: int = 1
+    starts: int | None = None
+    exchanges: int = 3
     steps: int = 5
     polish: int = 40
     seed: int = 0
+
+    def starts_for(self, dim: int) -> int:
+        """Networks that are grown for a body of so many dimensions."""
+        return self.starts if self.starts is not None else {2: 2, 3: 1}[dim]

@@ -16,7 +16,7 @@ from hydrostat.design.route_options import RouteOptions
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certify import certify
-from hydrostat.design.routes.growth import Growth, without
+from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
@@ -89,7 +89,7 @@ class Search:
             complete = False
             if self.best is None:
                 raise
-        network, alternatives = self._finished()
+        network, alternatives = self._finished(complete)
         return Network(
             robot=network.robot,
             source=self.robot,
@@ -105,6 +105,8 @@ class Search:
         )
 
     def _search(self) -> None:
+        if self.constraints.mirror is not None and self.cables < 2:
+            raise InputError("1 cable: a mirrored network has its cables in pairs; ask for at least 2 cables")
         spacing = mean_edge(self.robot.body.mesh)
         region = body_region(self.robot.body, self.constraints.clearance)
         graph = route_graph(self.robot, region, self.constraints, spacing=spacing)
@@ -134,40 +136,62 @@ class Search:
             self._noted("via points moved", self.found[rank])
         self.found.sort(key=lambda trial: trial.cost)
         for round_ in range(self.options.exchanges):
-            if growth.enough(self.found[0], self.winches):
+            best = self.found[0]
+            if growth.enough(best, self.winches):
                 break
             self.progress("Exchanging cables", round_, self.options.exchanges)
-            better = growth.exchanged(self.found[0], winches=self.winches)
-            if better is self.found[0]:
+            better = growth.exchanged(best, winches=self.winches)
+            if better is best:
                 break
             self.found.insert(0, growth.polished(better))
             self._noted("cables exchanged, via points moved", self.found[0])
             self.found.sort(key=lambda trial: trial.cost)
+            if self.found[0].cost > (1 - _ANOTHER) * best.cost:
+                break
         self.progress("Exchanging cables", 1, 1)
 
     @property
     def _total(self) -> int:
-        return self.options.starts * self.cables
+        return self.options.starts_for(self.robot.body.mesh.dim) * self.cables
 
     def _beginning(self, region: Region) -> Layout:
         """What the search begins with: nothing, what is locked, or all that there is."""
         whole = layout_of(self.robot, self.constraints)
         if self.improve:
+            self._check_counts("to be improved", len(whole.stands), len(whole.lines))
             pushed = pushed_back(whole, region, 0.03 * self.robot.body.mesh.size)
-            if pushed is None:
+            told = (
+                None
+                if pushed is None
+                else violations(pushed.robot(digits=_DIGITS), self.constraints, region, source=self.robot)
+            )
+            if pushed is None or told:
                 raise InputError(
-                    "the robot's own network cannot be moved into what the constraints allow; relax them, or design "
-                    "without improving it"
+                    "the robot's own network cannot be moved into what the constraints allow"
+                    f"{f' ({told[0]})' if told else ''}; relax them, or design without improving it"
                 )
             return pushed
-        layout = whole
-        for number in reversed(range(len(whole.lines))):
-            if number not in self.constraints.locked_cables:
-                layout = without(layout, number) or replace(layout, lines=())
-        stands = [stand for index, stand in enumerate(layout.stands) if stand.fixed]
-        order = [stand.winch.name for stand in stands]
-        lines = tuple(replace(line, winch=order.index(layout.stands[line.winch].winch.name)) for line in layout.lines)
-        return replace(layout, stands=tuple(stands), lines=lines)
+        kept = [line for number, line in enumerate(whole.lines) if number in self.constraints.locked_cables]
+        pulling = {line.winch for line in kept}
+        stays = [
+            number
+            for number, stand in enumerate(whole.stands)
+            if number in pulling or stand.winch.name in self.constraints.locked_winches
+        ]
+        self._check_counts("locked", len(stays), len(kept))
+        return replace(
+            whole,
+            stands=tuple(whole.stands[number] for number in stays),
+            lines=tuple(replace(line, winch=stays.index(line.winch)) for line in kept),
+        )
+
+    def _check_counts(self, which: str, winches: int, cables: int) -> None:
+        for name, present, asked in (("winches", winches, self.winches), ("cables", cables, self.cables)):
+            if present > asked:
+                raise InputError(
+                    f"{present} {name} of the robot are {which}, more than the {asked} asked for; ask for at least "
+                    f"{present}"
+                )
 
     def _noted(self, words: str, trial: Trial) -> None:
         """A network on the way: the best so far is kept, to be returned if the search is interrupted."""
@@ -181,9 +205,9 @@ class Search:
             self.best = trial
         self.stages.append(Stage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error))
 
-    def _finished(self) -> tuple[Alternative, list[Alternative]]:
+    def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""
-        trials = self.found or [self.best]
+        trials = [*self.found, *([] if complete else [self.best])]
         judged = [judged for trial in trials if trial is not None and (judged := self.judged(trial)) is not None]
         if not judged:
             raise HydrostatError(
@@ -207,11 +231,11 @@ class Search:
         return None if pulls(robot, reached, self.constraints) else Alternative(robot=robot, reached=tuple(reached))
 
     def _certificate(self, network: Alternative) -> Certificate | None:
-        simulation = Simulation(network.robot)
-        trial = self.bench.trial(
-            layout_of(network.robot, self.constraints), simulation, [reached.pose for reached in network.reached]
-        )
-        return certify(self.proposals, trial)
+        stays = [self.robot.cables[number] for number in self.constraints.locked_cables]
+        locked = [number for number, cable in enumerate(network.robot.cables) if cable in stays]
+        layout = layout_of(network.robot, self.constraints, locked=locked)
+        poses = [reached.pose for reached in network.reached]
+        return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot), poses))
 
 
 def mean_edge(mesh: Mesh) -> float:
@@ -221,6 +245,9 @@ def mean_edge(mesh: Mesh) -> float:
 
 _DIGITS = 5
 """Coordinates to a hundredth of a millimetre, as nobody places a cable finer."""
+
+_ANOTHER = 0.2
+"""A round of exchanges that gains so much is followed by another."""
 
 _REFINED = 2
 """Networks that are refined to the end."""

@@ -47,19 +47,23 @@ class Growth:
         needed = cables - len(trial.layout.lines)
         if needed <= 0:
             return [trial]
-        count = max(options.trials, 2 * options.starts)
-        found = self._tried(trial, winches, needed, count)
-        return [self._short(seed) for seed in found[: options.starts]]
+        starts = options.starts_for(trial.layout.dim)
+        found = self._tried(trial, winches, needed, max(options.trials, _SEEDS * starts))
+        refined = [self._short(seed) for seed in found[: _SEEDS * starts]]
+        return sorted(refined, key=self._rated)[:starts]
 
     def grown(self, trial: Trial, *, winches: int, cables: int) -> Trial:
-        """The network with as many cables; fewer where no more can be built, or none is needed."""
+        """The network with as many cables; fewer where no more can be built, or none is needed, or none helps."""
+        best = trial
         while len(trial.layout.lines) < cables and not self.enough(trial, winches):
             found = self.with_one_more(trial, winches=winches, needed=cables - len(trial.layout.lines))
             if found is None:
                 break
             trial = found
+            if trial.cost <= _SPOILT * best.cost or len(best.layout.stands) < winches:
+                best = trial
             self.noted(_words(trial), trial)
-        return trial
+        return best
 
     def with_one_more(self, trial: Trial, *, winches: int, needed: int) -> Trial | None:
         """The best network with one cable more (two where it is mirrored); None if there is none."""
@@ -176,6 +180,9 @@ def _words(trial: Trial) -> str:
     return f"cable {len(layout.lines)}, pulled by {name}"
 
 
+_SEEDS = 3
+"""First cables that are refined for each that a network is grown from."""
+
 _GLANCE = 5
 """Steps of inverse kinematics that tell which of several networks is the best."""
 
@@ -190,6 +197,9 @@ _SHALLOW = 0.3
 
 _TURNED = 0.1
 """How much more a network costs whose cables turn by 1 rad."""
+
+_SPOILT = 3.0
+"""A cable may raise the error so many times, for refinement to bring it down again; else it is left out."""
 
 _WORTH = 0.01
 """An exchange must gain so much."""
