@@ -8,6 +8,7 @@ from hydrostat.design.network import Alternative, Network
 from hydrostat.design.progress import Progress
 from hydrostat.design.route_options import RouteOptions
 from hydrostat.design.routes.design_routes import Search
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Pose, Robot
 
 
@@ -38,10 +39,24 @@ def design_fewest(
     sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
     found: list[Network] = []
     front: dict[tuple[int, int], Alternative] = {}
-    for winches in range(1, cables + 1):
+    interrupted = False
+    least = max(1, _locked(robot, constraints))
+    for winches in range(least, cables + 1):
         most = min(cables, winches * constraints.cables_per_winch)
         search = Search(robot, poses, winches, most, constraints, sought, progress)
-        found.append(search.run())
+        try:
+            found.append(search.run())
+        except KeyboardInterrupt:
+            if not found:
+                raise
+            interrupted = True
+            break
+        except InputError:
+            raise
+        except HydrostatError:
+            if winches == cables and not found:
+                raise
+            continue
         for network in (*(search.judged(trial) for trial in search.sizes.values()), *_all(found[-1])):
             if network is not None:
                 counts = len(network.robot.winches), len(network.robot.cables)
@@ -58,8 +73,13 @@ def design_fewest(
         options=options,
         tried=sum(network.tried for network in found),
         seconds=sum(network.seconds for network in found),
-        complete=all(network.complete for network in found),
+        complete=not interrupted and all(network.complete for network in found),
     )
+
+
+def _locked(robot: Robot, constraints: Constraints) -> int:
+    """How many winches stay."""
+    return len({*constraints.locked_winches, *(robot.cables[number].winch for number in constraints.locked_cables)})
 
 
 def _all(network: Network) -> tuple[Alternative, ...]:

@@ -36,6 +36,7 @@ class Line:
         lead: so many of its first segments run in a sheath.
         slack: left by its stopper [m].
         ratio: of its spool to that of its winch.
+        make: a cable whose stiffness, smoothing and friction it has; None: the usual ones.
         kept: a cable that stays just as it is.
         twin: number of the line that it mirrors; None: of no other.
     """
@@ -45,6 +46,7 @@ class Line:
     lead: int = 0
     slack: float = 0.0
     ratio: float = 1.0
+    make: Cable | None = None
     kept: Cable | None = None
     twin: int | None = None
 
@@ -85,7 +87,8 @@ class Layout:
             points = (winch.at, *(_point(point, digits) for point in line.points[1:]))
             slack, ratio = (value if digits is None else round(value, digits) for value in (line.slack, line.ratio))
             cables.append(
-                Cable(
+                replace(
+                    line.make or Cable(winch=winch.name, points=points),
                     winch=winch.name,
                     points=points,
                     sheathed=((0, line.lead),) if line.lead else (),

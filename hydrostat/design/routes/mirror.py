@@ -40,8 +40,9 @@ def mirrored(layout: Layout) -> Layout:
     points = np.vstack([stands[number].winch.at, line.points[1:]])
     own = replace(line, points=points)
     image_line = Line(
-        twin, flipped(layout, points), lead=line.lead, slack=line.slack, ratio=line.ratio, twin=len(layout.lines) - 1
-    )
+        twin, flipped(layout, points), lead=line.lead, slack=line.slack, ratio=line.ratio, make=line.make,
+        twin=len(layout.lines) - 1,
+    )  # fmt: skip
     return replace(layout, stands=tuple(stands), lines=(*layout.lines[:-1], own, image_line))
 
 

@@ -57,6 +57,10 @@ class Proposals:
             moves.append(own - (own @ free) @ free.T)
             residuals.append(residual - free @ (free.T @ residual))
             owners.append(np.full(rows, index))
+            if self.graph.still.any():
+                moves.append(self._never(moves[-1]))
+                residuals.append(np.zeros(1))
+                owners.append(np.array([index]))
             ridges.append((_EFFORT * float(np.linalg.norm(residual)) / bench.constraints.tension_limit) ** 2)
         constraints = bench.constraints
         return price_paths(
@@ -66,12 +70,24 @@ class Proposals:
             np.concatenate(owners),
             ridge=np.maximum(ridges, 1e-24),
             most=constraints.tension_limit,
-            limits=PathLimits(hops=self.options.hops, turn=constraints.turn, longest=constraints.longest),
+            limits=PathLimits(hops=self.options.hops, turn=self._turn, longest=constraints.longest),
             count=count,
             lead_penalty=self.options.lead_penalty,
             leads=constraints.leads,
             winches=winches,
         )
+
+    @property
+    def _turn(self) -> float:
+        """The sharpest turn that via points at their spacing may have [degrees]."""
+        constraints = self.bench.constraints
+        if constraints.bend_radius == 0.0:
+            return constraints.turn
+        return min(constraints.turn, float(np.degrees(2 * np.arctan(0.5 * self.spacing / constraints.bend_radius))))
+
+    def _never(self, moves: np.ndarray) -> np.ndarray:
+        """A row in which still edges move so much that no bare part runs there: only leads may."""
+        return (_NEVER * np.abs(moves).max(initial=1e-12) * self.graph.still)[:, None]
 
     def grown(self, trial: Trial, *, winches: int, needed: int, count: int) -> list[Layout]:
         """Layouts with one cable more, that can be built, the most promising first.
@@ -86,7 +102,7 @@ class Proposals:
         missing = winches - len(layout.stands)
         found = []
         if missing > 0:
-            places = self._vacant(layout)
+            places = self._vacant(layout, alone=missing == 1)
             found += [(path, None) for path in self.priced(trial, count=count, winches=places)] if len(places) else []
         if needed > missing:
             free = {
@@ -97,7 +113,14 @@ class Proposals:
                 found += [(path, free[path.winch]) for path in paths]
         found.sort(key=lambda pair: -pair[0].gain)
         layouts = [self._with(layout, path, winch) for path, winch in found]
-        return [layout for layout in layouts if layout is not None]
+        most = len(layout.lines) + needed
+        return [added for added in layouts if added is not None and self._counts(added, winches, most)]
+
+    def _counts(self, layout: Layout, winches: int, cables: int) -> bool:
+        """Whether there are no more winches and cables than allowed: a mirrored cable brings another."""
+        pulled = np.bincount([line.winch for line in layout.lines], minlength=len(layout.stands))
+        fits = len(layout.stands) <= max(winches, 1) and len(layout.lines) <= cables
+        return fits and bool(pulled.max() <= layout.constraints.cables_per_winch)
 
     def _has_room(self, layout: Layout, winch: int) -> bool:
         return sum(line.winch == winch for line in layout.lines) < layout.constraints.cables_per_winch
@@ -107,9 +130,12 @@ class Proposals:
         places = self.graph.winch_places if stand.winch.mount is Mount.WORLD else np.flatnonzero(~self.graph.world)
         return int(places[np.argmin(np.linalg.norm(self.graph.points[places] - stand.winch.at, axis=1))])
 
-    def _vacant(self, layout: Layout) -> list[int]:
-        """Places where one more winch may stand."""
-        places = self.graph.winch_places
+    def _vacant(self, layout: Layout, *, alone: bool = False) -> list[int]:
+        """Places where one more winch may stand; in the mirror, where there can be no second one on its other side."""
+        places, mirror = self.graph.winch_places, layout.constraints.mirror
+        if alone and mirror is not None:
+            off = np.abs(self.graph.points[places, "xyz".index(mirror)])
+            places = places[2 * off < layout.constraints.winch_gap]
         for stand in layout.stands:
             gap = 1e-6 if stand.winch.mount is Mount.WORLD else layout.constraints.winch_gap
             away = np.linalg.norm(self.graph.points[places] - stand.winch.at, axis=1)
@@ -163,6 +189,9 @@ _EFFORT = 0.1
 _WEAK = 0.02
 """Winches that move the rows less than this share of the strongest are not counted on."""
 
+
+_NEVER = 1e5
+"""So many times the largest move of an edge."""
 
 _REACH = 0.03
 """What is farther than this share of the body's size from a limit does not feel it."""

@@ -9,6 +9,7 @@ from hydrostat.arrays import Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.zone import Zone
 from hydrostat.robot import Mount
 
 
@@ -67,10 +68,11 @@ class _Room:
         depths, ways = self.region.depths(places[inner]), self.region.inward(places[inner])
         for index, depth, way in zip(inner, depths, ways, strict=True):
             own = slice(dim * index, dim * (index + 1))
-            self._add(depth - self.constraints.winch_clearance - _HAIR, (own, -way))
+            need = max(self.constraints.winch_clearance, self.constraints.clearance)
+            self._add(depth - need - _HAIR, (own, -way))
             self._zones(places[index], own)
-            for other, stand in enumerate(layout.stands):
-                if other == index or stand.winch.mount is Mount.WORLD or (other in inner and other < index):
+            for other in range(len(layout.stands)):
+                if other == index or (other in inner and other < index):
                     continue
                 self._apart(places[index], own, places[other], slice(dim * other, dim * (other + 1)),
                     self.constraints.winch_gap)  # fmt: skip
@@ -87,21 +89,25 @@ class _Room:
         clearance, spots = self.constraints.clearance, _spots(self.layout, 0.5 * self.constraints.clearance)
         if not len(spots.shares):
             return
-        numbers = self.layout.numbers
-        starts, ends = (numbers[side[:, None] + np.arange(self.layout.dim)] for side in (spots.starts, spots.ends))
-        places = starts + spots.shares[:, None] * (ends - starts)
+        places = spots.places(self.layout.numbers, self.layout.dim)
         needs = np.where(spots.shares == 0.0, clearance + _HAIR, 0.6 * clearance)
-        lefts = self.region.depths(places) - needs
+        lefts = np.where(spots.entry, np.inf, self.region.depths(places) - needs)
         near = np.flatnonzero(lefts <= self.reach)
         if len(near):
             self._add_spots(spots.chosen(near), lefts[near], self.region.inward(places[near]))
-        for zones, seen in ((self.constraints.keep_out, np.ones(len(needs), dtype=bool)),
-                            (self.constraints.still, spots.bare)):  # fmt: skip
-            for zone in zones:
-                away = zone.distances(places) - _HAIR
-                near = np.flatnonzero(seen & (away <= self.reach))
-                if len(near):
-                    self._add_spots(spots.chosen(near), away[near], zone.away(places[near]))
+        for zone in self.constraints.keep_out:
+            self._outside(zone, spots)
+        for zone in self.constraints.still:
+            self._outside(zone, spots.chosen(np.flatnonzero(spots.bare)))
+
+    def _outside(self, zone: Zone, spots: "_Spots") -> None:
+        """Those places, and between them the ones nearest to the zone: a small zone would pass between two."""
+        near = _nearest(zone, spots, self.layout.numbers, self.layout.dim)
+        places = near.places(self.layout.numbers, self.layout.dim)
+        away = zone.distances(places) - _HAIR
+        close = np.flatnonzero(away <= self.reach)
+        if len(close):
+            self._add_spots(near.chosen(close), away[close], zone.away(places[close]))
 
     def _add_spots(self, spots: "_Spots", lefts: Vector, ways: Float[np.ndarray, "spots dim"]) -> None:
         """Places along cables must not move against `ways` farther than what is left."""
@@ -121,7 +127,9 @@ class _Room:
         places = np.concatenate([line.points[1:] for line in layout.lines])
         away = np.linalg.norm(places[:, None] - places[None], axis=2)
         shared = (away < 1e-6) & (owners[:, None] != owners)
-        for one, other in np.argwhere(np.triu((away < gap + self.reach) & ~shared, 1)):
+        stays = np.array([layout.lines[index].kept is not None for index in owners])
+        seen = ~shared & ~(stays[:, None] & stays)
+        for one, other in np.argwhere(np.triu((away < gap + self.reach) & seen, 1)):
             self._apart(places[one], where[one], places[other], where[other], gap)
         pulled = np.array([layout.lines[index].winch for index in owners])
         for number, stand in enumerate(layout.stands):
@@ -129,7 +137,8 @@ class _Room:
                 continue
             centre, own = np.array(stand.winch.at), slice(layout.dim * number, layout.dim * (number + 1))
             needs = np.where(pulled == number, gap, 2 * stand.winch.spool_radius)
-            for hole in np.flatnonzero(np.linalg.norm(places - centre, axis=1) < needs + self.reach):
+            free = ~(stays & stand.fixed)
+            for hole in np.flatnonzero(free & (np.linalg.norm(places - centre, axis=1) < needs + self.reach)):
                 self._apart(places[hole], where[hole], centre, own, float(needs[hole]))
 
     def _apart(self, one: Vector, where: slice, other: Vector, there: slice, gap: float) -> None:
@@ -180,12 +189,22 @@ class _Room:
 
 
 class _Spots(NamedTuple):
-    """Places along cables: on the way from one point of a cable to another, by where their numbers begin."""
+    """Places along cables: on the way from one point of a cable to another, by where their numbers begin.
+
+    `entry` are those that may be near the edge: outside the body, or near a winch that stays.
+    """
 
     starts: Int[np.ndarray, " spots"]
     ends: Int[np.ndarray, " spots"]
     shares: Vector
     bare: np.ndarray
+    entry: np.ndarray
+    widths: Vector
+
+    def places(self, numbers: Vector, dim: int) -> Float[np.ndarray, "spots dim"]:
+        """Where they are, by the numbers of the layout [m]."""
+        starts, ends = (numbers[side[:, None] + np.arange(dim)] for side in (self.starts, self.ends))
+        return starts + self.shares[:, None] * (ends - starts)
 
     def chosen(self, which: np.ndarray) -> "_Spots":
         """Some of them."""
@@ -194,21 +213,43 @@ class _Spots(NamedTuple):
 
 def _spots(layout: Layout, spacing: float) -> _Spots:
     """Every point of a cable but those that stay, and places about every `spacing` between them."""
-    starts, ends, shares, bare = [], [], [], []
+    starts, ends, shares, bare, entry, widths = [], [], [], [], [], []
     for index, line in enumerate(layout.lines):
         if line.kept is not None:
             continue
-        outside = layout.stands[line.winch].winch.mount is Mount.WORLD
+        stand = layout.stands[line.winch]
+        free = np.inf if stand.winch.mount is Mount.WORLD else layout.constraints.clearance if stand.fixed else 0.0
         lengths = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
         for point, length in enumerate(lengths):
             here, there = (layout.place_of(index, end).start for end in (point, point + 1))
-            count = 0 if outside and point == 0 else max(int(np.ceil(length / spacing)) - 1, 0)
+            count = int(np.clip(np.ceil(length / spacing) - 1, 1, _MOST))
             own = np.arange(1, count + 1) / (count + 1)
             starts += [there, *[here] * count]
             ends += [there] * (count + 1)
             shares += [0.0, *own]
             bare += [point + 1 > line.lead, *[point >= line.lead] * count]
-    return _Spots(np.array(starts, dtype=np.int64), np.array(ends, dtype=np.int64), np.array(shares), np.array(bare))
+            entry += [False, *((own * length < free) & (point == 0))]
+            widths += [0.0, *[1 / (count + 1)] * count]
+    return _Spots(
+        np.array(starts, dtype=np.int64), np.array(ends, dtype=np.int64), np.array(shares), np.array(bare, dtype=bool),
+        np.array(entry, dtype=bool), np.array(widths),
+    )  # fmt: skip
+
+
+def _nearest(zone: Zone, spots: _Spots, numbers: Vector, dim: int) -> _Spots:
+    """Each place, moved along its segment to where it is nearest to a zone; those in holes stay.
+
+    A place moves as far as to its neighbours, where a distance along a straight line has one dip as long as it is
+    nearer to one side of the zone than to others: by golden sections.
+    """
+    low, high = spots.shares - spots.widths, spots.shares + spots.widths
+    for _ in range(_SECTIONS):
+        left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        nearer = zone.distances(spots._replace(shares=left).places(numbers, dim)) < zone.distances(
+            spots._replace(shares=right).places(numbers, dim)
+        )
+        low, high = np.where(nearer, low, left), np.where(nearer, right, high)
+    return spots._replace(shares=0.5 * (low + high))
 
 
 _HAIR = 5e-5
@@ -218,6 +259,14 @@ _DEGREE = 0.5
 """Kept back from the largest turn."""
 
 _STEP = 1e-7
+
+_MOST = 500
+"""Places between two points: a layout that cannot be pushed back may have flown far apart."""
+
+_GOLDEN = 0.5 * (5**0.5 - 1)
+
+_SECTIONS = 16
+"""Leave a two-thousandth of where the nearest place may be."""
 
 
 def _unit(size: int, own: slice, sign: float) -> Vector:
