@@ -16,8 +16,8 @@ class RouteOptions:
         lead_penalty: share of the promised gain that a lead as long as the body costs.
         trials: paths whose networks are solved before one is added.
         starts: networks that are grown, each from another first cable; if left out two for a flat body, one in space.
-        exchanges: most rounds in which each cable is taken out and the best is put in its place; the next one is begun
-            where the last one gained a fifth.
+        exchanges: most cables that are taken out, one at a time, for the best to be put in their place; the last round
+            of all cables is followed by another where it gained a fifth.
         steps: of refinement after each cable.
         polish: steps of refinement of a whole network.
         seed: nothing is drawn at random yet; kept with the results.
@@ -30,7 +30,7 @@ class RouteOptions:
     lead_penalty: float = 0.3
     trials: int = 4
     starts: int | None = None
-    exchanges: int = 3
+    exchanges: int = 12
     steps: int = 5
     polish: int = 40
     seed: int = 0

@@ -135,12 +135,11 @@ class Search:
             self.found[rank] = growth.polished(trial)
             self._noted("via points moved", self.found[rank])
         self.found.sort(key=lambda trial: trial.cost)
-        for round_ in range(self.options.exchanges):
-            best = self.found[0]
-            if growth.enough(best, self.winches):
-                break
-            self.progress("Exchanging cables", round_, self.options.exchanges)
-            better = growth.exchanged(best, winches=self.winches)
+        left = self.options.exchanges
+        while left > 0 and not growth.enough(best := self.found[0], self.winches):
+            self.progress("Exchanging cables", self.options.exchanges - left, self.options.exchanges)
+            better = growth.exchanged(best, winches=self.winches, most=left)
+            left -= len(best.layout.lines)
             if better is best:
                 break
             self.found.insert(0, growth.polished(better))

@@ -95,9 +95,9 @@ class Growth:
         found = self.bench.reached(trial.layout, None, iterations=60)
         return found if found is not None else replace(trial, error=float("inf"))
 
-    def exchanged(self, trial: Trial, *, winches: int) -> Trial:
-        """The network after each cable was taken out in turn, and the best put in its place where that is better."""
-        for number in range(len(trial.layout.lines)):
+    def exchanged(self, trial: Trial, *, winches: int, most: int) -> Trial:
+        """The network after up to `most` cables were taken out in turn, and the best put in where that is better."""
+        for number in range(min(len(trial.layout.lines), most)):
             line = trial.layout.lines[number]
             if line.kept is not None or line.twin is not None or len(trial.layout.lines) < 2:
                 continue
