@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.robot import Cable, Mount, Robot, Winch
 
@@ -192,6 +192,6 @@ def _follow(full: np.ndarray, drop: np.ndarray, rows: slice, twin: slice, flip: 
     drop[rows] = True
 
 
-def _point(coordinates: Points | tuple[float, ...], digits: int | None) -> tuple[float, ...]:
+def _point(coordinates: Vector | tuple[float, ...], digits: int | None) -> tuple[float, ...]:
     values = (float(value) for value in coordinates)
     return tuple(value if digits is None else round(value, digits) for value in values)

@@ -1,0 +1,150 @@
+"""Layouts as numbers. Oracles: there and back, finite differences, mirror images, the robot that they came from."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.routes.begin import layout_of
+from hydrostat.design.routes.growth import without
+from hydrostat.design.routes.layout import Layout, Line, Stand
+from hydrostat.design.routes.mirror import flipped, mirrored
+from hydrostat.robot import Mount, Winch
+
+LOOSE = Constraints(slack=0.01, spool_ratio=2.0)
+OFF = ((0.05, 0.018), (0.09, 0.017), (0.13, 0.018))
+
+
+def layout(constraints: Constraints = LOOSE, **made: Any) -> Layout:
+    return layout_of(strip_robot(**made), constraints)
+
+
+def one_cable(*, at: tuple[float, float], mount: Mount = Mount.BODY, **limits: Any) -> Layout:
+    """A mirrored design with its first cable."""
+    constraints = Constraints(mirror="y", **limits)
+    winch = Winch(name="winch_1", at=at, mount=mount)
+    line = Line(0, np.array([at, *OFF]), lead=1, slack=0.002, ratio=1.2)
+    return Layout(strip_robot(), constraints, (Stand(winch),), (line,))
+
+
+def test_the_robot_of_a_layout_is_the_one_it_came_from() -> None:
+    for made in ({}, {"sheathed": ((0, 2),)}, {"slack": 0.003}, {"stiffness": 1e3}, {"mount": Mount.WORLD}):
+        robot = strip_robot(**made)
+        again = layout_of(robot, LOOSE).robot()
+        assert again.winches == robot.winches
+        assert again.cables == robot.cables
+
+
+def test_numbers_there_and_back() -> None:
+    start = layout()
+    numbers = start.numbers + np.random.default_rng(0).uniform(0.0, 1e-3, start.size)
+    moved = start.at(numbers)
+    assert np.array_equal(moved.numbers, numbers)
+    for index, line in enumerate(moved.lines):
+        assert np.array_equal(line.points[0], moved.stands[line.winch].winch.at)
+        for point in range(len(line.points)):
+            assert np.array_equal(numbers[moved.place_of(index, point)], line.points[point])
+
+
+def test_slack_is_never_negative() -> None:
+    start = layout()
+    numbers = start.numbers.copy()
+    numbers[start.starts[-2]] = -1e-3
+    assert start.at(numbers).lines[0].slack == 0.0
+
+
+def test_coordinates_are_rounded() -> None:
+    start = layout()
+    robot = start.at(start.numbers + 1.23456789e-4).robot(digits=5)
+    values = np.concatenate([np.ravel(cable.points) for cable in robot.cables])
+    assert np.array_equal(values, np.round(values, 5))
+    assert all(cable.points[0] == robot.winch(cable.winch).at for cable in robot.cables)
+
+
+def test_what_stays_has_no_number() -> None:
+    usual = layout(Constraints())
+    count = 2 * 2 + 2 * 2 * 6
+    assert usual.ties.shape == (usual.size, count)
+    assert layout().ties.shape[1] == count + 2 + 2
+    assert layout(Constraints(locked_winches=("up",))).ties.shape[1] == count - 2
+    assert layout(Constraints(locked_cables=(0,))).ties.shape[1] == count - 2 - 12
+    assert layout(Constraints(), mount=Mount.WORLD).ties.shape[1] == count - 2
+
+
+def test_a_cable_sheathed_in_the_middle_stays_with_its_winch() -> None:
+    start = layout(Constraints(), sheathed=((2, 4),))
+    moved = start.at(start.numbers + start.ties @ np.full(start.ties.shape[1], 1e-3)).robot()
+    assert moved.cables[0] == start.source.cables[0]
+    assert moved.winches[0] == start.source.winches[0]
+    assert moved.winches[1] != start.source.winches[1]
+
+
+def assert_symmetric(found: Layout) -> None:
+    for index, line in enumerate(found.lines):
+        if line.twin is not None:
+            twin = found.lines[line.twin]
+            assert flipped(found, twin.points) == pytest.approx(line.points, abs=1e-15)
+            assert (line.slack, line.ratio, line.lead) == (twin.slack, twin.ratio, twin.lead)
+            assert np.array_equal(line.points[0], found.stands[found.lines[index].winch].winch.at)
+
+
+@pytest.mark.parametrize("at", [(0.02, 0.012), (0.02, 0.004)])
+def test_mirrored_parts_follow_their_twins(at: tuple[float, float]) -> None:
+    """Beside the mirror there are two winches; near it there is one, which stays in it."""
+    both = mirrored(one_cable(at=at, winch_gap=0.02, slack=0.01, spool_ratio=2.0))
+    assert len(both.stands) == (2 if at[1] > 0.01 else 1)
+    assert len(both.lines) == 2
+    assert_symmetric(both)
+    free = both.ties.shape[1]
+    assert free == (2 if at[1] > 0.01 else 1) + 2 * 3 + 2
+    assert np.linalg.matrix_rank(both.ties) == free
+    moved = both.at(both.numbers + both.ties @ np.random.default_rng(1).uniform(0.0, 1e-3, free))
+    assert_symmetric(moved)
+    assert not np.allclose(moved.lines[0].points, both.lines[0].points)
+    if len(both.stands) == 1:
+        assert moved.stands[0].winch.at[1] == 0.0
+
+
+def test_a_second_pair_hangs_on_the_same_winches() -> None:
+    one = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
+    line = Line(1, np.array([one.stands[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
+    two = mirrored(replace(one, lines=(*one.lines, line)))
+    assert [line.winch for line in two.lines] == [0, 1, 1, 0]
+    assert [line.twin for line in two.lines] == [None, 0, None, 2]
+    assert_symmetric(two)
+    free = two.ties.shape[1]
+    moved = two.at(two.numbers + two.ties @ np.random.default_rng(2).uniform(0.0, 1e-3, free))
+    assert_symmetric(moved)
+
+
+def test_a_symmetric_robot_is_tied_together() -> None:
+    """As its own network is improved, a symmetric one stays so."""
+    made = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
+    again = layout_of(made.robot(), made.constraints)
+    assert [stand.twin for stand in again.stands] == [None, 0]
+    assert [line.twin for line in again.lines] == [None, 0]
+    assert np.array_equal(again.ties, made.ties)
+    alone = layout_of(strip_robot(), made.constraints)
+    assert [line.twin for line in alone.lines] == [None, None]
+    assert np.array_equal(alone.ties, layout_of(strip_robot(), Constraints()).ties)
+
+
+def test_without_a_cable_its_twin_and_idle_winches_go() -> None:
+    one = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
+    assert without(one, 0) is None
+    line = Line(1, np.array([one.stands[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
+    two = mirrored(replace(one, lines=(*one.lines, line)))
+    left = without(two, 0)
+    assert left is not None
+    assert len(left.stands) == 2
+    assert [line.twin for line in left.lines] == [None, 0]
+    assert_symmetric(left)
+    plain = without(layout(), 0)
+    assert plain is not None
+    assert [stand.winch.name for stand in plain.stands] == ["down"]
+    locked = without(layout(Constraints(locked_winches=("up",))), 0)
+    assert locked is not None
+    assert [stand.winch.name for stand in locked.stands] == ["up", "down"]
