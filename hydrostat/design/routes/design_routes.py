@@ -148,6 +148,7 @@ class Search:
             if self.found[0].cost > (1 - _ANOTHER) * best.cost:
                 break
         self.progress("Exchanging cables", 1, 1)
+        self.found[0] = growth.pruned(self.found[0])
 
     @property
     def _total(self) -> int:

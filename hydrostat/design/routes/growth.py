@@ -115,6 +115,20 @@ class Growth:
                 self.noted("a cable exchanged", trial)
         return trial
 
+    def pruned(self, trial: Trial) -> Trial:
+        """The network less cables that do not earn their place: without them the cost stays the same, or enough."""
+        for number in reversed(range(len(trial.layout.lines))):
+            line = trial.layout.lines[number]
+            others = [other for other in trial.layout.lines if other is not line and other.winch == line.winch]
+            if line.kept is not None or line.twin is not None or not others:
+                continue
+            rest = without(trial.layout, number)
+            found = None if rest is None else self.bench.reached(rest, None)
+            if found is not None and found.cost <= max((1 + _LOSS) * trial.cost, self._options(0).enough):
+                trial = found
+                self.noted("a cable that does nothing left out", trial)
+        return trial
+
     def enough(self, trial: Trial, winches: int) -> bool:
         """Whether nothing more is needed."""
         enough = self.proposals.options.enough * self.proposals.graph.size
@@ -200,6 +214,9 @@ _TURNED = 0.1
 
 _SPOILT = 3.0
 """A cable may raise the error so many times, for refinement to bring it down again; else it is left out."""
+
+_LOSS = 0.005
+"""A cable whose loss costs less than this share does not earn its place."""
 
 _WORTH = 0.01
 """An exchange must gain so much."""
