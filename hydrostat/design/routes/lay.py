@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Vector
+from hydrostat.design.region import Route
 from hydrostat.design.routes.layout import Line
 from hydrostat.design.routes.price import PricedPath
 from hydrostat.design.routes.route_graph import RouteGraph
@@ -36,7 +37,7 @@ def lay(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spaci
     return Line(winch, np.vstack([_straightened(way, graph, keep), run]), lead=len(_straightened(way, graph, keep)))
 
 
-def _smooth(route: Points, spacing: float) -> Points:
+def _smooth(route: Route, spacing: float) -> Route:
     """At equal distances, less jagged than the graph."""
     fine = resample(route, spacing / 4)
     for _ in range(4):
@@ -44,7 +45,7 @@ def _smooth(route: Points, spacing: float) -> Points:
     return resample(fine, spacing)
 
 
-def _straightened(way: Points, graph: RouteGraph, keep: int) -> Points:
+def _straightened(way: Route, graph: RouteGraph, keep: int) -> Route:
     """The first `keep` points of a way, then as few as see one another; without its end."""
     kept = list(range(keep))
     while kept[-1] < len(way) - 1:

@@ -1,0 +1,311 @@
+"""Whole designs by routes. Oracles: counts asked for, the checks of `buildable`, bodies that are symmetric, hashes."""
+
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from builders import mesh_body, strip_mesh, strip_robot
+
+from hydrostat.design import Constraints, Network, TreeOptions, design_cables
+from hydrostat.design.body_region import body_region
+from hydrostat.design.buildable import pulls, violations
+from hydrostat.design.network import RouteTrace
+from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.zone import Zone
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.ik import Limits, solve_ik
+from hydrostat.robot import Marker, Mount, Pin, Pose, Robot, Winch, robot_hash
+from hydrostat.simulation import Simulation
+
+UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
+DOWN = Pose(name="down", targets={"tip": (0.185, -0.05)})
+PINCH = Pose(name="pinch", targets={"tip": (0.085, 0.045), "low": (0.085, -0.045)})
+SMALL = RouteOptions(starts=1, exchanges=0, polish=4, trials=2, steps=3, hops=8)
+
+
+def strip() -> Robot:
+    """With two cables of its own: one above, one below the middle."""
+    return strip_robot(columns=10, rows=3)
+
+
+def bare() -> Robot:
+    return strip().with_network((), ())
+
+
+def plate() -> Robot:
+    """200 x 120 mm about the origin, held at its left side."""
+    mesh = strip_mesh(10, 8, size=(0.2, 0.12))
+    return replace(
+        bare(),
+        body=mesh_body(replace(mesh, nodes=mesh.nodes - np.array([0.1, 0.0]))),
+        pins=(Pin(box=((-0.101, -1.0), (-0.099, 1.0))),),
+        markers=(Marker(name="tip", at=(0.1, 0.04)), Marker(name="low", at=(0.1, -0.04))),
+    )
+
+
+@dataclass(frozen=True)
+class Case:
+    winches: int = 2
+    cables: int = 4
+    poses: tuple[Pose, ...] = (UP, DOWN)
+    robot: Robot = field(default_factory=bare)
+    improve: bool = False
+
+
+def near_the_edge() -> Robot:
+    """With one winch 2 mm inside the edge, and no cable."""
+    return strip().with_network([Winch(name="mine", at=(0.02, 0.023))], [])
+
+
+LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
+    "usual": (Case(), {}),
+    "still across": (Case(1, 2, (UP,)), {"still": (Zone(box=((0.05, -0.03), (0.1, 0.03))),)}),
+    "still and small": (Case(1, 2, (UP,)), {"still": (Zone(at=(0.1, 0.015), radius=0.006),)}),
+    "keep out": (Case(1, 2, (UP,)), {"keep_out": (Zone(at=(0.1, 0.015), radius=0.006),)}),
+    "keep out of a slot": (Case(1, 2, (UP,)), {"keep_out": (Zone(box=((0.09, 0.01), (0.094, 0.02))),)}),
+    "winch zones": (Case(2, 2), {"winch_zones": (Zone(box=((0.09, -0.01), (0.15, 0.01))),)}),
+    "winch clearance": (Case(2, 2), {"winch_clearance": 0.016}),
+    "winches as near to the edge as cables": (Case(2, 2), {"winch_clearance": 0.0}),
+    "winch gap": (Case(2, 2), {"winch_gap": 0.09}),
+    "hole gap": (Case(2, 3), {"hole_gap": 0.015}),
+    "turn": (Case(2, 3), {"turn": 20.0}),
+    "bend radius": (Case(2, 3), {"bend_radius": 0.06}),
+    "longest": (Case(2, 3), {"longest": 0.08}),
+    "clearance": (Case(2, 3), {"clearance": 0.012}),
+    "tension": (Case(2, 3), {"tension": 4.0}),
+    "torque": (Case(2, 3), {"torque": 0.05, "cables_per_winch": 2}),
+    "travel": (Case(2, 3), {"travel": 0.008}),
+    "release": (Case(2, 3), {"release": 0.01}),
+    "slack": (Case(2, 3), {"slack": 0.004}),
+    "spool ratio": (Case(2, 3), {"spool_ratio": 1.5}),
+    "no leads": (Case(2, 3), {"leads": False}),
+    "cables per winch": (Case(2, 4), {"cables_per_winch": 2}),
+    "mirror, one winch": (Case(1, 2, (PINCH,), plate()), {"mirror": "y"}),
+    "mirror, two winches": (Case(2, 4, (PINCH,), plate()), {"mirror": "y", "cables_per_winch": 2}),
+    "locked winch": (Case(2, 2, robot=strip()), {"locked_winches": ("up",)}),
+    "locked winch at the edge": (Case(1, 1, (UP,), near_the_edge()), {"locked_winches": ("mine",)}),
+    "locked cable": (Case(2, 3, robot=strip()), {"locked_cables": (1,)}),
+    "locked cable alone": (Case(1, 1, robot=strip()), {"locked_cables": (1,)}),
+    "world": (Case(1, 2, (UP,), strip_robot(columns=10, rows=3, mount=Mount.WORLD)), {"mount": Mount.WORLD}),
+    "improved": (Case(2, 2, robot=strip(), improve=True), {}),
+    "improved beside a locked cable": (Case(2, 2, robot=strip(), improve=True), {"locked_cables": (1,)}),
+}
+
+
+@cache
+def designed(name: str) -> Network:
+    case, limits = LIMITS[name]
+    return design_cables(
+        case.robot, case.poses, winches=case.winches, cables=case.cables, constraints=Constraints(**limits),
+        options=SMALL, improve=case.improve,
+    )  # fmt: skip
+
+
+def broken(network: Network) -> list[str]:
+    limits = network.constraints
+    region = body_region(network.robot.body, limits.clearance)
+    return [
+        *violations(network.robot, limits, region, source=network.source),
+        *pulls(network.robot, network.reached, limits),
+    ]
+
+
+def at_rest(robot: Robot, poses: tuple[Pose, ...]) -> float:
+    places = {marker.name: np.array(marker.at) for marker in robot.markers}
+    squares = [np.mean([np.sum((places[n] - at) ** 2) for n, at in pose.targets.items()]) for pose in poses]
+    return float(np.sqrt(np.mean(squares)))
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_every_constraint_is_kept(name: str, unchecked: None) -> None:
+    network, (case, _) = designed(name), LIMITS[name]
+    assert broken(network) == []
+    robot = network.robot
+    counts = {winch.name: sum(cable.winch == winch.name for cable in robot.cables) for winch in robot.winches}
+    assert len(robot.winches) == case.winches
+    assert case.winches <= len(robot.cables) <= case.cables
+    assert max(counts.values()) <= network.constraints.cables_per_winch
+    assert network.rms_error < at_rest(case.robot, case.poses)
+    assert network.complete
+    assert [reached.target for reached in network.reached] == list(case.poses)
+
+
+def test_every_constraint_has_a_case() -> None:
+    asked = {key for _, limits in LIMITS.values() for key in limits}
+    assert asked == set(Constraints.__dataclass_fields__) - {"spool_radius"}
+
+
+@pytest.mark.parametrize("name", ["usual", "tension", "mirror, two winches"])
+def test_the_error_told_is_what_its_user_finds(name: str, unchecked: None) -> None:
+    """Oracle: inverse kinematics of a fresh simulation."""
+    network = designed(name)
+    limits = Limits(tension=network.constraints.tension_limit)
+    for reached in network.reached:
+        fresh = solve_ik(Simulation(network.robot), reached.target, limits=limits)
+        assert reached.rms_error == pytest.approx(fresh.rms_error, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["usual", "hole gap", "release", "no leads"])
+def test_more_cables_do_no_harm(name: str, unchecked: None) -> None:
+    """Cables that spoil what there was are left out: by two cables the strip is brought within a few millimetres."""
+    assert designed(name).rms_error < 0.2 * at_rest(bare(), (UP, DOWN))
+
+
+def test_the_same_twice(unchecked: None) -> None:
+    again = designed.__wrapped__("usual")
+    first = designed("usual")
+    assert robot_hash(again.robot) == robot_hash(first.robot)
+    assert again.rms_error == first.rms_error
+    assert again.tried == first.tried
+    assert again.trace.certificate == first.trace.certificate  # type: ignore[union-attr]
+
+
+def test_what_is_locked_comes_back_as_it_was(unchecked: None) -> None:
+    own = strip()
+    assert designed("locked winch").robot.winch("up") == own.winch("up")
+    for name in ("locked cable", "locked cable alone", "improved beside a locked cable"):
+        robot = designed(name).robot
+        assert own.cables[1] in robot.cables
+        assert robot.winch("down") == own.winch("down")
+    assert designed("locked cable alone").robot.cables == own.cables[1:]
+
+
+def test_a_certificate_of_a_network_with_locked_cables(unchecked: None) -> None:
+    """Locks count the cables of the robot that was designed for, not those of the new network."""
+    trace = designed("locked cable alone").trace
+    assert isinstance(trace, RouteTrace)
+    assert trace.certificate is not None
+    assert trace.certificate.slope < 1e-4  # nothing may move, and the contraction is at its best
+    assert trace.certificate.further < designed("locked cable alone").rms_error
+
+
+@pytest.mark.parametrize("name", ["mirror, one winch", "mirror, two winches"])
+def test_symmetric_designs_are_symmetric(name: str, unchecked: None) -> None:
+    robot, flip = designed(name).robot, np.array([1.0, -1.0])
+    routes = [np.array(cable.points) for cable in robot.cables]
+    for route in routes:
+        assert any(other.shape == route.shape and np.abs(flip * other - route).max() < 1e-9 for other in routes)
+    places = np.array([winch.at for winch in robot.winches])
+    assert np.abs(np.sort(places[:, 1]) + np.sort(places[:, 1])[::-1]).max() < 1e-9
+
+
+def test_improving_a_symmetric_network_keeps_it_symmetric(unchecked: None) -> None:
+    start = designed("mirror, two winches")
+    limits = replace(start.constraints, clearance=0.006)
+    targets = {"tip": (0.08, 0.05), "low": (0.08, -0.05)}
+    network = design_cables(
+        start.robot, [Pose(name="other", targets=targets)], winches=2, cables=len(start.robot.cables),
+        constraints=limits, options=SMALL, improve=True,
+    )  # fmt: skip
+    assert broken(network) == []
+
+
+@pytest.mark.parametrize("poses", [(UP,), (UP, DOWN)])
+def test_improving_never_does_worse(poses: tuple[Pose, ...], unchecked: None) -> None:
+    """Oracle: the first stage, the robot's own network moved into the constraints, solved afresh."""
+    limits = Constraints()
+    network = design_cables(
+        strip(), poses, winches=2, cables=2, constraints=limits, options=replace(SMALL, polish=3), improve=True
+    )
+    stage = network.trace.stages[0]  # type: ignore[union-attr]
+    assert stage.words == "as it was"
+    reach = Limits(tension=limits.tension_limit)
+    errors = [solve_ik(Simulation(stage.robot), pose, limits=reach).rms_error for pose in poses]
+    assert network.rms_error <= float(np.sqrt(np.mean(np.square(errors)))) * (1 + 1e-6)
+
+
+def test_improving_keeps_what_cables_are_made_of(unchecked: None) -> None:
+    own = strip_robot(columns=10, rows=3, stiffness=2e3)
+    network = design_cables(own, [UP], winches=2, cables=2, options=replace(SMALL, polish=1), improve=True)
+    assert [cable.stiffness for cable in network.robot.cables] == [2e3, 4e3]
+
+
+class Stopped:
+    """Ctrl-C at one of the calls."""
+
+    def __init__(self, at: int) -> None:
+        self.at, self.calls = at, 0
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        assert 0 <= done <= total
+        self.calls += 1
+        if self.calls == self.at:
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("at", [1, 2])
+def test_ctrl_c_before_the_first_network(at: int, unchecked: None) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        design_cables(bare(), [UP, DOWN], winches=2, cables=2, options=SMALL, progress=Stopped(at))
+
+
+@pytest.mark.parametrize("at", [3, 4])
+def test_ctrl_c_returns_the_best_so_far(at: int, unchecked: None) -> None:
+    network = design_cables(bare(), [UP, DOWN], winches=2, cables=2, options=SMALL, progress=Stopped(at))
+    assert not network.complete
+    assert isinstance(network.trace, RouteTrace)
+    assert network.trace.certificate is None
+    assert broken(network) == []
+    assert network.rms_error <= 1.01 * min(stage.error for stage in network.trace.stages)
+
+
+def test_progress_comes_to_its_end(unchecked: None) -> None:
+    calls: list[tuple[str, int, int]] = []
+    design_cables(bare(), [UP], winches=1, cables=2, options=SMALL, progress=lambda *call: calls.append(call))
+    counts = [(done, total) for _, done, total in calls]
+    assert counts[-1][0] == counts[-1][1]
+
+
+def test_a_design_with_all_shapes_checked() -> None:
+    options = replace(SMALL, hops=5, polish=1, steps=1)
+    network = design_cables(bare(), [UP], winches=1, cables=2, constraints=Constraints(slack=0.002), options=options)
+    assert broken(network) == []
+
+
+def error_of(text: str, **asked: Any) -> None:
+    given: dict[str, Any] = {"robot": strip(), "poses": [UP], "winches": 2, "cables": 2, **asked}
+    with pytest.raises(HydrostatError) as caught:
+        design_cables(given.pop("robot"), given.pop("poses"), **given)
+    assert str(caught.value) == text
+    assert isinstance(caught.value, InputError)
+
+
+def test_what_is_asked_for_wrongly() -> None:
+    error_of("there is no pose to design for; add a [[pose]] to the robot", poses=[])
+    error_of('method = "magic": must be one of routes, trees', method="magic")
+    error_of('options of method "routes" must be RouteOptions, not TreeOptions', options=TreeOptions())
+    error_of('options of method "trees" must be TreeOptions, not RouteOptions', options=SMALL, method="trees")
+    error_of(
+        'method "trees" starts from nothing with a number of winches; use method "routes"',
+        method="trees", improve=True,
+    )  # fmt: skip
+    error_of('winches must be a whole number or "auto", not "two"'.replace('"two"', "'two'"), winches="two")
+    error_of("cables must be a whole number, not True", cables=True)
+    error_of("3 winches and 2 cables: there must be at least one winch, and a cable for each", winches=3)
+    error_of(
+        "2 winches pull at most 4 cables, not 5; ask for more winches, or raise cables_per_winch",
+        cables=5, constraints=Constraints(cables_per_winch=2),
+    )  # fmt: skip
+    error_of(
+        "2 cables of the robot are locked, more than the 1 asked for; ask for at least 2".replace("cables", "winches"),
+        winches=1, cables=1, constraints=Constraints(locked_cables=(0, 1)),
+    )  # fmt: skip
+    error_of(
+        "2 winches of the robot are to be improved, more than the 1 asked for; ask for at least 2",
+        winches=1, improve=True,
+    )  # fmt: skip
+    error_of(
+        "1 cable: a mirrored network has its cables in pairs; ask for at least 2 cables",
+        robot=plate(), poses=[PINCH], winches=1, cables=1, constraints=Constraints(mirror="y"),
+    )  # fmt: skip
+
+
+def test_a_network_that_cannot_be_improved_says_why() -> None:
+    """A cable sheathed in the middle stays, and its winch stands 10 mm inside the edge."""
+    error_of(
+        "the robot's own network cannot be moved into what the constraints allow (winch[0] up stands 10 mm inside the "
+        "edge, less than the winch_clearance of 12 mm); relax them, or design without improving it",
+        robot=strip_robot(columns=10, rows=3, sheathed=((2, 4),)), improve=True,
+    )  # fmt: skip
