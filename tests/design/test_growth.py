@@ -1,0 +1,64 @@
+"""The first cable. Oracle: brute force, every straight pair of via points solved as a network of its own."""
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.design.body_region import body_region
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.routes.bench import Bench
+from hydrostat.design.routes.growth import Growth
+from hydrostat.design.routes.layout import Layout, Line, Stand
+from hydrostat.design.routes.propose import Proposals
+from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.robot import Pose, Winch
+
+LIMITS = Constraints(winch_clearance=0.006, leads=False)
+
+
+def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -> None:
+    """Each of one segment, from every place where a winch may stand; the grown one may be of up to two hops."""
+    robot = strip_robot(columns=6, rows=2).with_network((), ())
+    bench = Bench(robot, [Pose(name="up", targets={"tip": (0.199, 0.006)})], LIMITS)
+    graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    # Far apart, so that paths of two hops stay straight and no point is moved.
+    growth = Growth(Proposals(bench, graph, RouteOptions(hops=2, trials=6, steps=0, starts=1), 0.06), lambda *_: None)
+    start = growth.bare(Layout(robot, LIMITS, (), ()))
+    assert start is not None
+    (grown, *_) = growth.seeds(start, winches=1, cables=1)
+    joined = {tuple(pair) for pair in graph.edges.tolist()}
+    errors = []
+    for first, last in permutations(range(len(graph.points)), 2):
+        if first not in graph.winch_places or (min(first, last), max(first, last)) not in joined:
+            continue
+        stand = Stand(Winch(name="one", at=tuple(map(float, graph.points[first]))))
+        line = Line(0, graph.points[[first, last]])
+        found = bench.reached(Layout(robot, LIMITS, (stand,), (line,)), start, iterations=6)
+        if found is not None:
+            errors.append(found.error)
+    assert len(errors) > 20
+    assert grown.cost <= 1.05 * min(errors)
+    assert grown.error < 0.5 * start.error
+
+
+@pytest.mark.parametrize("cables", [1, 2])
+def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
+    robot = strip_robot(columns=6, rows=2).with_network((), ())
+    bench = Bench(robot, [Pose(name="up", targets={"tip": (0.18, 0.06)})], LIMITS)
+    graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    noted: list[int] = []
+    growth = Growth(
+        Proposals(bench, graph, RouteOptions(hops=4, trials=2, steps=1, starts=1), 0.05),
+        lambda _, trial: noted.append(len(trial.layout.lines)),
+    )
+    start = growth.bare(Layout(robot, LIMITS, (), ()))
+    assert start is not None
+    (seed, *_) = growth.seeds(start, winches=1, cables=cables)
+    grown = growth.grown(seed, winches=1, cables=cables)
+    assert len(grown.layout.stands) == 1
+    assert 1 <= len(grown.layout.lines) <= cables
+    assert noted == list(range(2, cables + 1))
+    assert np.isfinite(growth.truly(grown).error)
