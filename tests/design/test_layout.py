@@ -31,7 +31,14 @@ def one_cable(*, at: tuple[float, float], mount: Mount = Mount.BODY, **limits: A
 
 
 def test_the_robot_of_a_layout_is_the_one_it_came_from() -> None:
-    for made in ({}, {"sheathed": ((0, 2),)}, {"slack": 0.003}, {"stiffness": 1e3}, {"mount": Mount.WORLD}):
+    makes: tuple[dict[str, Any], ...] = (
+        {},
+        {"sheathed": ((0, 2),)},
+        {"slack": 0.003},
+        {"stiffness": 1e3},
+        {"mount": Mount.WORLD},
+    )
+    for made in makes:
         robot = strip_robot(**made)
         again = layout_of(robot, LOOSE).robot()
         assert again.winches == robot.winches
