@@ -206,10 +206,10 @@ _ROUND = 8
 _IDLE = 0.02
 """A round that gains less ends the refinement."""
 
-_SHALLOW = 0.3
+_SHALLOW = 2.0
 """How much more a network costs whose winches are at the edge."""
 
-_TURNED = 0.1
+_TURNED = 0.2
 """How much more a network costs whose cables turn by 1 rad."""
 
 _SPOILT = 3.0

@@ -103,7 +103,9 @@ class Proposals:
         found = []
         if missing > 0:
             places = self._vacant(layout, alone=missing == 1)
-            found += [(path, None) for path in self.priced(trial, count=count, winches=places)] if len(places) else []
+            paths = self.priced(trial, count=_CHOICE * count, winches=places) if places else []
+            paths.sort(key=lambda path: -path.gain * self._depth(path.winch))
+            found += [(path, None) for path in paths[:count]]
         if needed > missing:
             free = {
                 self._near(stand): index for index, stand in enumerate(layout.stands) if self._has_room(layout, index)
@@ -121,6 +123,13 @@ class Proposals:
         pulled = np.bincount([line.winch for line in layout.lines], minlength=len(layout.stands))
         fits = len(layout.stands) <= max(winches, 1) and len(layout.lines) <= cables
         return fits and bool(pulled.max() <= layout.constraints.cables_per_winch)
+
+    def _depth(self, place: int) -> float:
+        """How well a winch is embedded at a graph point, up to 1 (R12)."""
+        if self.graph.world[place]:
+            return 1.0
+        depth = float(self.graph.region.depths(self.graph.points[place : place + 1])[0])
+        return _EDGE + (1 - _EDGE) * min(depth / self.deepest, 1.0)
 
     def _has_room(self, layout: Layout, winch: int) -> bool:
         return sum(line.winch == winch for line in layout.lines) < layout.constraints.cables_per_winch
@@ -185,6 +194,12 @@ def _span(moves: np.ndarray) -> np.ndarray:
 
 _EFFORT = 0.1
 """Share of the residual that the tension limit is worth."""
+
+_CHOICE = 4
+"""So many paths are priced for each that is tried, for the winches of some are deeper in the body."""
+
+_EDGE = 0.1
+"""What the gain of a path counts whose winch is at the edge of the body."""
 
 _WEAK = 0.02
 """Winches that move the rows less than this share of the strongest are not counted on."""
