@@ -2,10 +2,14 @@
 
 from dataclasses import dataclass
 
+from hydrostat.errors import InputError
+
 
 @dataclass(frozen=True, kw_only=True)
 class RouteOptions:
     """How the search for routes works.
+
+    Raises InputError for a number out of its range.
 
     Attributes:
         enough: rms error, as a fraction of the body's size, at which nothing more is sought.
@@ -35,6 +39,23 @@ class RouteOptions:
     polish: int = 40
     seed: int = 0
 
+    def __post_init__(self) -> None:
+        for name, least in _LEAST.items():
+            value = getattr(self, name)
+            if value is None and name in ("starts", "tolerance"):
+                continue
+            whole = isinstance(least, int)
+            if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)) or not value >= least:
+                kind = "a whole number" if whole else "a number"
+                raise InputError(f"RouteOptions.{name} must be {kind} of {least:g} or more, not {value!r}")
+
     def starts_for(self, dim: int) -> int:
         """Networks that are grown for a body of so many dimensions."""
         return self.starts if self.starts is not None else {2: 2, 3: 1}[dim]
+
+
+_LEAST = {
+    "enough": 0.0, "tolerance": 1e-6, "spacing": 0.5, "hops": 1, "lead_penalty": 0.0, "trials": 1, "starts": 1,
+    "exchanges": 0, "steps": 0, "polish": 0, "seed": 0,
+}  # fmt: skip
+"""Of each option; whole numbers for those that are counts."""

@@ -309,3 +309,18 @@ def test_a_network_that_cannot_be_improved_says_why() -> None:
         "edge, less than the winch_clearance of 12 mm); relax them, or design without improving it",
         robot=strip_robot(columns=10, rows=3, sheathed=((2, 4),)), improve=True,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"starts": 0}, "RouteOptions.starts must be a whole number of 1 or more, not 0"),
+        ({"exchanges": 1.5}, "RouteOptions.exchanges must be a whole number of 0 or more, not 1.5"),
+        ({"tolerance": float("nan")}, "RouteOptions.tolerance must be a number of 1e-06 or more, not nan"),
+        ({"spacing": "2"}, "RouteOptions.spacing must be a number of 0.5 or more, not '2'"),
+    ],
+)
+def test_options_out_of_range(unchecked: None, wrong: dict[str, object], words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        RouteOptions(**wrong)  # type: ignore[arg-type]
+    assert str(caught.value) == words

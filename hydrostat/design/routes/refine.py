@@ -232,7 +232,10 @@ def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
         step = least_squares(np.eye(ties.shape[1]), np.zeros(ties.shape[1]), rows, limits.room)
         if step is None:
             return None
-        layout = layout.at(layout.numbers + ties @ step)
+        moved = ties @ step
+        if np.abs(moved).max(initial=0.0) > layout.source.body.mesh.size:
+            return None
+        layout = layout.at(layout.numbers + moved)
     limits = room(layout, region, reach=0.0)
     return layout if not len(limits.room) or limits.room.min() >= -_CLOSE else None
 
