@@ -11,9 +11,11 @@ import typer
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.design_results import STALE, forget_kit, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import AUTO, Limits, wanted_constraints, wanted_options, winch_count
+from hydrostat.cli.one_interrupt import one_interrupt
 from hydrostat.cli.prepare import read_robot
 from hydrostat.cli.result_folder import result_folder
 from hydrostat.errors import InputError
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.design import Network
@@ -105,7 +107,7 @@ def design(
     asked: dict[str, Any] = {"winches": count, "cables": cables, "method": method, "options": options}
     asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
-    with progress_bar() as progress:
+    with progress_bar() as progress, one_interrupt():
         try:
             network = design_cables(source, poses, progress=progress, **asked)
         except KeyboardInterrupt:
@@ -118,6 +120,9 @@ def design(
         warnings = write_kit(network.robot, out / "pattern") if kit else ()
         progress("Writing results", 1, 1)
     print_poses(network, time.perf_counter() - began)
+    if isinstance(count, int) and (len(network.robot.winches), len(network.robot.cables)) != (count, cables):
+        asked_for = f"fewer than the {counted(count, 'winch')} and {counted(cables, 'cable')} asked for"
+        print(f"{asked_for}: more would not help, or could not be built")
     if count == AUTO:
         print_front(network)
     for warning in warnings:
@@ -136,4 +141,6 @@ def _tell_next(network: "Network", source: "Robot", out: Path, *, kit: bool) -> 
         print(f"Laser pattern: {out / 'pattern' / 'pattern.svg'} and pattern.dxf")
     elif source.body.mesh.dim == 2:
         print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))} --out {quote(str(out / 'pattern'))}")
+    limit = f"{network.constraints.tension_limit:g}N"
+    print(f"Its poses keep to {limit}: hydrostat pose {quote(str(out / 'robot'))} --tension {limit} --out DIR")
     print(f"Open {out / 'report.html'}")

@@ -6,6 +6,8 @@ from math import isfinite
 from numbers import Integral, Real
 from typing import NoReturn, TypeGuard
 
+import numpy as np
+
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount, Robot
@@ -117,6 +119,14 @@ class Constraints:
                     raise InputError(
                         f"constraints: {field}[{place}] has {zone.dim} dimensions, the body {mesh.dim}; "
                         f"give its points {mesh.dim} coordinates"
+                    )
+                if (
+                    zone.distances(mesh.nodes).min()
+                    > np.linalg.norm(np.ptp(mesh.nodes[mesh.edges], axis=1), axis=1).max()
+                ):
+                    raise InputError(
+                        f"constraints: {field}[{place}] does not touch the body, so it would change nothing; "
+                        "check its place and its unit"
                     )
         for place, name in enumerate(self.locked_winches):
             try:

@@ -44,7 +44,8 @@ def design_cables(
         method: "routes" prices routes by the pose error and moves them to where it is least; "trees" is the thesis's.
         constraints: what can be built.
         options: of the method: `RouteOptions` or `TreeOptions`.
-        improve: begin with the robot's own winches and cables, and move and exchange those that are not locked.
+        improve: begin with the robot's own winches and cables, and move and exchange those that are not locked; what
+            travel, release, slack and spools these have is allowed.
         progress: called as the work goes on.
 
     Raises:
@@ -53,6 +54,8 @@ def design_cables(
     """
     poses = list(poses)
     given = constraints or Constraints()
+    if improve:
+        given = _with_own(given, robot)
     _check(robot, poses, winches, cables, given)
     given.check(robot)
     if method not in METHODS:
@@ -64,7 +67,7 @@ def design_cables(
             raise InputError(f'options of method "trees" must be TreeOptions, not {type(options).__name__}')
         if improve or not isinstance(winches, int):
             raise InputError('method "trees" starts from nothing with a number of winches; use method "routes"')
-        _check_trees(given)
+        _check_trees(robot, given)
         return design_trees(
             robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told
         )
@@ -72,6 +75,8 @@ def design_cables(
     if not isinstance(options, RouteOptions):
         raise InputError(f'options of method "routes" must be RouteOptions, not {type(options).__name__}')
     if not isinstance(winches, int):
+        if improve:
+            raise InputError('winches = "auto" starts from nothing; give a number of winches to improve a network')
         return design_fewest(robot, poses, cables=cables, constraints=given, options=options, progress=told)
     return design_routes(
         robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told, improve=improve
@@ -82,8 +87,15 @@ def _check(robot: Robot, poses: Sequence[Pose], winches: int | str, cables: int,
     if not poses:
         raise InputError("there is no pose to design for; add a [[pose]] to the robot")
     _check_counts(winches, cables, constraints)
-    markers = [marker.name for marker in robot.markers]
+    markers, dim = [marker.name for marker in robot.markers], robot.body.mesh.dim
     for pose in poses:
+        if not isinstance(pose, Pose):
+            raise InputError(f"poses must be Pose records, such as robot.poses.values(), not {pose!r}")
+        for name, place in pose.targets.items():
+            if len(place) != dim:
+                raise InputError(
+                    f'pose "{pose.name}": the target of {name} has {len(place)} coordinates, the body {dim}'
+                )
         for name in pose.targets:
             if name not in markers:
                 known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
@@ -109,8 +121,22 @@ def _check_counts(winches: int | str, cables: int, constraints: Constraints) -> 
         )
 
 
-def _check_trees(constraints: Constraints) -> None:
+def _with_own(constraints: Constraints, robot: Robot) -> Constraints:
+    """Constraints that allow what the robot's own winches and stoppers have: travel, release, slack, spools."""
+    ratios = [max(ratio, 1 / ratio) for ratio in robot.spool_ratios.tolist()]
+    return replace(
+        constraints,
+        travel=max([constraints.travel, *(winch.travel for winch in robot.winches)]),
+        release=max([constraints.release, *(winch.release for winch in robot.winches)]),
+        slack=max([constraints.slack, *(cable.slack for cable in robot.cables)]),
+        spool_ratio=max([constraints.spool_ratio, *ratios]),
+    )
+
+
+def _check_trees(robot: Robot, constraints: Constraints) -> None:
     """Refuse what the thesis's way does not know."""
+    if robot.body.mesh.dim != 2:
+        raise InputError('method "trees" designs for flat bodies only, this body lies in space; use method "routes"')
     usual = Constraints()
     asked = [name for name in _ROUTES_ONLY if getattr(constraints, name) != getattr(usual, name)]
     if asked:

@@ -53,8 +53,9 @@ class Certificate:
 
     Attributes:
         further: rms error [m] that one more cable, with a winch of its own along the best path of all, promises.
-        paths: paths that were priced for it.
-        slope: the steepest fall of the error along an allowed move of a via point [m/m].
+        paths: states of the dynamic program that found it: each the best few paths of so many edges that end so.
+        slope: the steepest fall of the error along one number of the network, such as a coordinate of a via point, that
+            the limits allow to move [m/m].
     """
 
     further: float

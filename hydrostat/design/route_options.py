@@ -36,7 +36,7 @@ class RouteOptions:
     starts: int | None = None
     exchanges: int = 12
     steps: int = 5
-    polish: int = 40
+    polish: int = 60
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -55,7 +55,7 @@ class RouteOptions:
 
 
 _LEAST = {
-    "enough": 0.0, "tolerance": 1e-6, "spacing": 0.5, "hops": 1, "lead_penalty": 0.0, "trials": 1, "starts": 1,
+    "enough": 0.0, "tolerance": 0.0, "spacing": 0.5, "hops": 1, "lead_penalty": 0.0, "trials": 1, "starts": 1,
     "exchanges": 0, "steps": 0, "polish": 0, "seed": 0,
 }  # fmt: skip
 """Of each option; whole numbers for those that are counts."""

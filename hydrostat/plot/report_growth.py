@@ -99,8 +99,9 @@ def certificate_words(error: float, certificate: Certificate | None) -> str:
         else f"promises nothing beyond {_told(error)}"
     )
     return (
-        f"One more cable with a winch of its own, along the best of {certificate.paths:,} paths, {gain}. No small move "
-        f"of a via point lowers the error by more than {certificate.slope:.2g} mm for each millimetre."
+        f"One more cable with a winch of its own, along the best path found by pricing "
+        f"{certificate.paths:,} states, {gain}. Moving one via point along one axis lowers the error by at most "
+        f"{certificate.slope:.2g} mm for each millimetre."
     )
 
 

@@ -12,7 +12,7 @@ from hydrostat.simulation.solved_pose import SolvedPose
 
 @dataclass(frozen=True, eq=False)
 class RigSlopes:
-    """Slopes of some numbers; a row for each coordinate of each marker asked for, then one for the tension of each cable.
+    """Slopes of some numbers: a row for each coordinate of each marker asked for, then one for each tension.
 
     Attributes:
         contractions: by the contraction of each winch [m/m, N/m].

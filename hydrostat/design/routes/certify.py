@@ -1,5 +1,7 @@
 """`certify`: what first-order optimality says of a network."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.optimize import nnls
 
@@ -16,7 +18,8 @@ def certify(proposals: Proposals, trial: Trial) -> Certificate:
     Both are exact to first order at the equilibria of the poses; the search for the best path keeps a few paths for
     each edge, so what it finds is a lower bound of what the best of all paths would gain.
     """
-    paths = proposals.priced(trial, count=1)
+    unbiased = replace(proposals, options=replace(proposals.options, lead_penalty=0.0))
+    paths = unbiased.priced(trial, count=1)
     gain = paths[0].gain if paths else 0.0
     model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=_HOLDS)
     return Certificate(

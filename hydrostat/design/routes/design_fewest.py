@@ -41,6 +41,12 @@ def design_fewest(
     front: dict[tuple[int, int], Alternative] = {}
     interrupted = False
     least = max(1, _locked(robot, constraints))
+    if constraints.mirror is not None and constraints.cables_per_winch == 1:
+        least = max(least, 2)
+    if least > cables:
+        raise InputError(
+            f"{least} winches are needed at the least, for what is locked or mirrored, but there may be {cables} cables"
+        )
     for winches in range(least, cables + 1):
         most = min(cables, winches * constraints.cables_per_winch)
         search = Search(robot, poses, winches, most, constraints, sought, progress)
@@ -64,7 +70,7 @@ def design_fewest(
                     front[counts] = network
         if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
             break
-    best = found[-1] if found[-1].complete else min(found, key=lambda network: network.rms_error)
+    best = found[-1]
     if any(reached.rms_error > tolerance for reached in best.reached):
         best = min(found, key=lambda network: network.rms_error)
     return replace(

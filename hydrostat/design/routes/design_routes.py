@@ -89,14 +89,19 @@ class Search:
             complete = False
             if self.best is None:
                 raise
-        network, alternatives = self._finished(complete)
+        try:
+            network, alternatives = self._finished(complete)
+            certificate = self._certificate(network) if complete else None
+        except KeyboardInterrupt:
+            complete, certificate, self.found = False, None, self.found[:1]
+            network, alternatives = self._finished(complete)
         return Network(
             robot=network.robot,
             source=self.robot,
             method="routes",
             reached=network.reached,
             alternatives=tuple(alternatives),
-            trace=RouteTrace(stages=tuple(self.stages), certificate=self._certificate(network) if complete else None),
+            trace=RouteTrace(stages=tuple(self.stages), certificate=certificate),
             constraints=self.constraints,
             options=self.options,
             tried=self.bench.solves,
@@ -157,6 +162,8 @@ class Search:
     def _beginning(self, region: Region) -> Layout:
         """What the search begins with: nothing, what is locked, or all that there is."""
         whole = layout_of(self.robot, self.constraints)
+        if self.improve and not whole.lines:
+            raise InputError("the robot has no cables to improve; design without improving it")
         if self.improve:
             self._check_counts("to be improved", len(whole.stands), len(whole.lines))
             pushed = pushed_back(whole, region, 0.03 * self.robot.body.mesh.size)
@@ -201,7 +208,7 @@ class Search:
         size = len(trial.layout.stands), len(trial.layout.lines)
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
-        if self.best is None or (len(trial.layout.lines), -trial.cost) > (len(self.best.layout.lines), -self.best.cost):
+        if self.best is None or trial.cost < self.best.cost:
             self.best = trial
         self.stages.append(Stage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error))
 

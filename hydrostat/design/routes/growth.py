@@ -206,7 +206,7 @@ _ROUND = 8
 _IDLE = 0.02
 """A round that gains less ends the refinement."""
 
-_SHALLOW = 2.0
+_SHALLOW = 0.5
 """How much more a network costs whose winches are at the edge."""
 
 _TURNED = 0.2

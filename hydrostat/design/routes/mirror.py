@@ -9,10 +9,11 @@ from hydrostat.design.routes.layout import Layout, Line, Stand
 from hydrostat.robot import Mount
 
 
-def mirrored(layout: Layout) -> Layout:
+def mirrored(layout: Layout) -> Layout | None:
     """The layout with the mirror image of its last line, and of that line's winch where that has none yet.
 
-    A new winch nearer to the mirror than half the gap that two winches keep is put into it and pulls both lines.
+    A new winch nearer to the mirror than half the gap that two winches keep is put into it and pulls both lines. None
+    where that winch is locked, or where the world has no winch for the other side.
     """
     line = layout.lines[-1]
     number, stand = line.winch, layout.stands[line.winch]
@@ -24,9 +25,21 @@ def mirrored(layout: Layout) -> Layout:
         image = flipped(layout, np.array([stand.winch.at]))[0]
         gap = float(np.linalg.norm(image - stand.winch.at))
         other = _standing(stands, image, number)
-        if other is not None:
+        world = stand.winch.mount is Mount.WORLD
+        if gap < 1e-6:
+            stands[number] = replace(stand, twin=number)
+            twin = number
+        elif other is not None:
             twin = other
-        elif gap < layout.constraints.winch_gap and stand.winch.mount is Mount.BODY:
+        elif world:
+            name = _world_winch(layout, image)
+            if name is None:
+                return None
+            twin = len(stands)
+            stands.append(Stand(replace(stand.winch, name=name, at=tuple(map(float, image))), twin=number))
+        elif gap < layout.constraints.winch_gap:
+            if stand.fixed:
+                return None
             middle = tuple(float(value) for value in 0.5 * (image + stand.winch.at))
             stands[number] = replace(stand, winch=replace(stand.winch, at=middle), twin=number)
             twin = number
@@ -54,9 +67,21 @@ def flipped(layout: Layout, points: Points) -> Points:
     return points * flip
 
 
+def _world_winch(layout: Layout, place: np.ndarray) -> str | None:
+    """Name of the robot's own winch at a place in the world; None if there is none."""
+    for winch in layout.source.winches:
+        if winch.mount is Mount.WORLD and np.linalg.norm(np.subtract(winch.at, place)) < _SAME_PLACE:
+            return winch.name
+    return None
+
+
 def _standing(stands: list[Stand], place: np.ndarray, but: int) -> int | None:
     """A winch that stands at a place already."""
     for index, stand in enumerate(stands):
         if index != but and np.linalg.norm(np.subtract(stand.winch.at, place)) < 1e-6:
             return index
     return None
+
+
+_SAME_PLACE = 1e-4
+"""Winches of the two sides may miss each other's image by so much [m]."""

@@ -104,8 +104,9 @@ class Proposals:
         if missing > 0:
             places = self._vacant(layout, alone=missing == 1)
             paths = self.priced(trial, count=_CHOICE * count, winches=places) if places else []
-            paths.sort(key=lambda path: -path.gain * self._depth(path.winch))
-            found += [(path, None) for path in paths[:count]]
+            deep = sorted(paths, key=lambda path: -path.gain * self._depth(path.winch))[:count]
+            others = [path for path in paths if path not in deep][: count // 2]
+            found += [(path, None) for path in (*deep, *others)]
         if needed > missing:
             free = {
                 self._near(stand): index for index, stand in enumerate(layout.stands) if self._has_room(layout, index)
@@ -162,7 +163,10 @@ class Proposals:
             return None
         added = replace(layout, stands=stands, lines=(*layout.lines, line))
         if layout.constraints.mirror is not None:
-            added = mirrored(added)
+            image = mirrored(added)
+            if image is None:
+                return None
+            added = image
         return pushed_back(added, self.graph.region, _REACH * self.graph.size)
 
     def _stand(self, layout: Layout, place: int) -> Stand:
