@@ -157,7 +157,7 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
         "cable[0] between points 2 and 3 passes through keep_out[0], 0.1 mm deep",
     ),
     "keep_out of a point": (
-        {"keep_out": (Zone(at=(0.2, 0.2), radius=0.001), Zone(box=((0.16, 0.0), (0.18, 0.04))))},
+        {"keep_out": (Zone(at=(0.2, 0.05), radius=0.001), Zone(box=((0.16, 0.0), (0.18, 0.04))))},
         {"up": moved(UP, 3, 0.16 - HAIR, 0.03)},
         {"up": moved(UP, 3, 0.16 + HAIR, 0.03)},
         "cable[0] between points 2 and 3 passes through keep_out[1], 0.1 mm deep",

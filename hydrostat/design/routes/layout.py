@@ -9,6 +9,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.robot import Cable, Mount, Robot, Winch
+from hydrostat.robot.robot import LARGEST_STEP
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +132,6 @@ class Layout:
             for stand, place in zip(self.stands, places, strict=True)
         )
         lines = []
-        most = max([self.constraints.spool_ratio, *(max(line.ratio, 1 / line.ratio) for line in self.lines)])
         for index, line in enumerate(self.lines):
             own = numbers[self.starts[index] : self.starts[index] + dim * (len(line.points) - 1)].reshape(-1, dim)
             lines.append(
@@ -139,7 +139,7 @@ class Layout:
                     line,
                     points=np.vstack([places[line.winch], own]),
                     slack=max(float(numbers[slacks + index]), 0.0),
-                    ratio=float(np.clip(numbers[ratios + index], 1 / most, most)),
+                    ratio=float(np.clip(numbers[ratios + index], 1 / LARGEST_STEP, LARGEST_STEP)),
                 )
             )
         return replace(self, stands=stands, lines=tuple(lines))
