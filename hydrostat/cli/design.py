@@ -107,12 +107,13 @@ def design(
     asked: dict[str, Any] = {"winches": count, "cables": cables, "method": method, "options": options}
     asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
-    with progress_bar() as progress, one_interrupt():
+    with progress_bar() as progress, one_interrupt() as pass_over:
         try:
             network = design_cables(source, poses, progress=progress, **asked)
         except KeyboardInterrupt:
             print("hydrostat: stopped before there was a network; nothing is written", file=sys.stderr)
             raise typer.Exit(130) from None
+        pass_over()
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE) as folder:
             write_results(network, folder)
@@ -120,7 +121,8 @@ def design(
         warnings = write_kit(network.robot, out / "pattern") if kit else ()
         progress("Writing results", 1, 1)
     print_poses(network, time.perf_counter() - began)
-    if isinstance(count, int) and (len(network.robot.winches), len(network.robot.cables)) != (count, cables):
+    found = len(network.robot.winches), len(network.robot.cables)
+    if network.complete and isinstance(count, int) and found != (count, cables):
         asked_for = f"fewer than the {counted(count, 'winch')} and {counted(cables, 'cable')} asked for"
         print(f"{asked_for}: more would not help, or could not be built")
     if count == AUTO:

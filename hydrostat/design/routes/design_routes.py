@@ -3,6 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -113,12 +114,11 @@ class Search:
         if self.constraints.mirror is not None and self.cables < 2:
             raise InputError("1 cable: a mirrored network has its cables in pairs; ask for at least 2 cables")
         spacing = mean_edge(self.robot.body.mesh)
-        region = body_region(self.robot.body, self.constraints.clearance)
-        graph = route_graph(self.robot, region, self.constraints, spacing=spacing)
+        graph = route_graph(self.robot, self.region, self.constraints, spacing=spacing)
         self.proposals = Proposals(self.bench, graph, self.options, self.options.spacing * spacing)
         growth = Growth(self.proposals, self._noted)
         self.progress("Growing networks", 0, self._total)
-        begun = growth.bare(self._beginning(region))
+        begun = growth.bare(self._beginning())
         if begun is None:
             raise HydrostatError("the network to begin with has no equilibrium in reach of its poses; start without it")
         if begun.layout.lines:
@@ -155,22 +155,27 @@ class Search:
         self.progress("Exchanging cables", 1, 1)
         self.found[0] = growth.pruned(self.found[0])
 
+    @cached_property
+    def region(self) -> Region:
+        """Where cables may be."""
+        return body_region(self.robot.body, self.constraints.clearance)
+
     @property
     def _total(self) -> int:
         return self.options.starts_for(self.robot.body.mesh.dim) * self.cables
 
-    def _beginning(self, region: Region) -> Layout:
+    def _beginning(self) -> Layout:
         """What the search begins with: nothing, what is locked, or all that there is."""
         whole = layout_of(self.robot, self.constraints)
         if self.improve and not whole.lines:
             raise InputError("the robot has no cables to improve; design without improving it")
         if self.improve:
             self._check_counts("to be improved", len(whole.stands), len(whole.lines))
-            pushed = pushed_back(whole, region, 0.03 * self.robot.body.mesh.size)
+            pushed = pushed_back(whole, self.region, 0.03 * self.robot.body.mesh.size)
             told = (
                 None
                 if pushed is None
-                else violations(pushed.robot(digits=_DIGITS), self.constraints, region, source=self.robot)
+                else violations(pushed.robot(digits=_DIGITS), self.constraints, self.region, source=self.robot)
             )
             if pushed is None or told:
                 raise InputError(
@@ -226,8 +231,7 @@ class Search:
     def judged(self, trial: Trial) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
         robot = trial.layout.robot(digits=_DIGITS)
-        region = body_region(self.robot.body, self.constraints.clearance)
-        if violations(robot, self.constraints, region, source=self.robot):
+        if violations(robot, self.constraints, self.region, source=self.robot):
             return None
         simulation = Simulation(robot)
         limits = Limits(tension=self.constraints.tension_limit)

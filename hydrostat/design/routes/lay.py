@@ -34,7 +34,8 @@ def lay(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spaci
         return Line(winch, run)
     way = np.vstack([place, lead[1:], run[:1]])
     keep = 2 if graph.world[winch_point] else 1
-    return Line(winch, np.vstack([_straightened(way, graph, keep), run]), lead=len(_straightened(way, graph, keep)))
+    straight = _straightened(way, graph, keep)
+    return Line(winch, np.vstack([straight, run]), lead=len(straight))
 
 
 def _smooth(route: Route, spacing: float) -> Route:
