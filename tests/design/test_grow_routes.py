@@ -6,7 +6,8 @@ import shapely
 from builders import strip_robot
 
 from hydrostat.design.body_region import body_region
-from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, length, resample, strongest
+from hydrostat.design.polyline import length, resample
+from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, strongest
 
 LIMITS = GrowthLimits(distance=0.5, steps=20, turn=60.0, spacing=1.0)
 

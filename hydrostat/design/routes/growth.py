@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrostat.arrays import Points
+from hydrostat.design.polyline import turns
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
@@ -145,7 +145,7 @@ class Growth:
         inner = [stand.winch.at for stand in layout.stands if stand.winch.mount is Mount.BODY]
         depths = self.proposals.graph.region.depths(np.array(inner)) if inner else np.zeros(0)
         shallow = np.maximum(1.0 - depths / self.proposals.deepest, 0.0).mean() if inner else 0.0
-        turned = np.mean([total_turn(line.points) for line in layout.lines])
+        turned = np.mean([turns(line.points).sum() for line in layout.lines])
         return trial.cost * (1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned))
 
     def _short(self, trial: Trial) -> Trial:
@@ -154,13 +154,6 @@ class Growth:
     def _options(self, steps: int) -> RefineOptions:
         enough = self.proposals.options.enough * self.proposals.graph.size
         return RefineOptions(iterations=steps, enough=enough)
-
-
-def total_turn(points: Points) -> float:
-    """Sum of the turns of a polyline [rad]."""
-    spans = np.diff(points, axis=0)
-    units = spans / np.maximum(np.linalg.norm(spans, axis=1), 1e-300)[:, None]
-    return float(np.arccos(np.clip((units[:-1] * units[1:]).sum(axis=1), -1.0, 1.0)).sum())
 
 
 def without(layout: Layout, number: int) -> Layout | None:

@@ -3,11 +3,11 @@
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.design.polyline import resample
 from hydrostat.design.region import Route
 from hydrostat.design.routes.layout import Line
 from hydrostat.design.routes.price import PricedPath
 from hydrostat.design.routes.route_graph import RouteGraph
-from hydrostat.design.trees.grow_routes import resample
 
 
 def lay(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spacing: float) -> Line | None:

@@ -16,10 +16,11 @@ from hydrostat.design.muscles.activation import Activation, activate
 from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
 from hydrostat.design.muscles.orientation import wanted_directions
 from hydrostat.design.network import Network, TreeTrace
+from hydrostat.design.polyline import length, sharpest_turn
 from hydrostat.design.progress import Progress
 from hydrostat.design.region import Route
 from hydrostat.design.tree_options import TreeOptions
-from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, length, sharpest_turn, strongest
+from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, strongest
 from hydrostat.design.trees.judge import judge
 from hydrostat.design.trees.prune import prune
 from hydrostat.design.trees.via_points import keep_apart

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Vector
+from hydrostat.design.polyline import resample
 from hydrostat.design.region import Region, Route
 
 FibreEnds = Float[np.ndarray, "fibres 2 dim"]
@@ -116,24 +117,3 @@ def lay_route(route: Route, region: Region, spacing: float) -> Route | None:
         smooth[1:-1] = 0.25 * smooth[:-2] + 0.5 * smooth[1:-1] + 0.25 * smooth[2:]
     laid = region.push_inside(resample(region.push_inside(smooth), spacing))
     return laid if len(laid) >= 2 and region.holds(laid) else None
-
-
-def resample(route: Route, spacing: float) -> Route:
-    """Points at equal distances along a polyline, both ends kept."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(route, axis=0), axis=1))])
-    count = max(round(along[-1] / spacing), 1)
-    places = np.linspace(0.0, along[-1], count + 1)
-    return np.column_stack([np.interp(places, along, route[:, axis]) for axis in range(route.shape[1])])
-
-
-def length(route: Route) -> float:
-    """Length of a polyline [m]."""
-    return float(np.linalg.norm(np.diff(route, axis=0), axis=1).sum())
-
-
-def sharpest_turn(route: Route) -> float:
-    """Largest angle between one segment of a polyline and the next [degrees]."""
-    spans = np.diff(route, axis=0)
-    if len(spans) < 2:
-        return 0.0
-    return float(np.degrees(np.arccos(np.clip(_cosines(spans[:-1], spans[1:]), -1.0, 1.0))).max())
