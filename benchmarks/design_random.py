@@ -68,7 +68,7 @@ class Ground:
 def ground(robot: Robot, constraints: Constraints) -> Ground:
     """The same as routes are found on."""
     mesh = robot.body.mesh
-    edge = float(np.linalg.norm(np.diff(mesh.nodes[mesh.edges], axis=1), axis=2).mean())
+    edge = float(mesh.edge_lengths.mean())
     region = body_region(robot.body, constraints.clearance)
     graph = route_graph(robot, region, constraints, spacing=edge)
     return Ground(robot, constraints, region, graph, RouteOptions().spacing * edge)

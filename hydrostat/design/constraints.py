@@ -6,8 +6,6 @@ from math import isfinite
 from numbers import Integral, Real
 from typing import NoReturn, TypeGuard
 
-import numpy as np
-
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount, Robot
@@ -120,10 +118,7 @@ class Constraints:
                         f"constraints: {field}[{place}] has {zone.dim} dimensions, the body {mesh.dim}; "
                         f"give its points {mesh.dim} coordinates"
                     )
-                if (
-                    zone.distances(mesh.nodes).min()
-                    > np.linalg.norm(np.ptp(mesh.nodes[mesh.edges], axis=1), axis=1).max()
-                ):
+                if zone.distances(mesh.nodes).min() > mesh.edge_lengths.max():
                     raise InputError(
                         f"constraints: {field}[{place}] does not touch the body, so it would change nothing; "
                         "check its place and its unit"

@@ -103,3 +103,8 @@ class Mesh:
     def size(self) -> float:
         """Longest side of the bounding box [m]."""
         return float(np.ptp(self.nodes, axis=0).max())
+
+    @cached_property
+    def edge_lengths(self) -> Float[np.ndarray, " edges"]:
+        """Length of each edge at rest [m]."""
+        return np.linalg.norm(np.diff(self.nodes[self.edges], axis=1)[:, 0], axis=1)

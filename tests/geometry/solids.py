@@ -124,9 +124,3 @@ def assert_proper(mesh: Mesh) -> None:
     faces = np.concatenate([np.delete(mesh.elements, corner, axis=1) for corner in range(4)])
     assert np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)[1].max() <= 2
     assert (mesh.volumes > 0).all()
-
-
-def mean_edge(mesh: Mesh) -> float:
-    """Mean length of the edges [m]."""
-    ends = mesh.nodes[mesh.edges]
-    return float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).mean())

@@ -19,7 +19,6 @@ from solids import (
     euler,
     hollow,
     make,
-    mean_edge,
     mirrored,
     moved,
     ring,
@@ -72,7 +71,7 @@ def test_meshes_are_good(name: str) -> None:
 def test_edges_are_as_long_as_asked_for(name: str) -> None:
     """Bodies of few elements have many outer edges, which are shorter."""
     maker, element_size = BODIES[name]
-    assert mean_edge(tetrahedralise(maker(), element_size)) == pytest.approx(element_size, rel=0.15)
+    assert tetrahedralise(maker(), element_size).edge_lengths.mean() == pytest.approx(element_size, rel=0.15)
 
 
 def test_volume_area_and_distance_converge_with_order_two() -> None:

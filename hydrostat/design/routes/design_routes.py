@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
-import numpy as np
-
 from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.constraints import Constraints
@@ -23,7 +21,6 @@ from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
-from hydrostat.geometry.mesh import Mesh
 from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
@@ -113,7 +110,7 @@ class Search:
     def _search(self) -> None:
         if self.constraints.mirror is not None and self.cables < 2:
             raise InputError("1 cable: a mirrored network has its cables in pairs; ask for at least 2 cables")
-        spacing = mean_edge(self.robot.body.mesh)
+        spacing = float(self.robot.body.mesh.edge_lengths.mean())
         graph = route_graph(self.robot, self.region, self.constraints, spacing=spacing)
         self.proposals = Proposals(self.bench, graph, self.options, self.options.spacing * spacing)
         growth = Growth(self.proposals, self._noted)
@@ -247,11 +244,6 @@ class Search:
         layout = layout_of(network.robot, self.constraints, locked=locked)
         poses = [reached.pose for reached in network.reached]
         return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot), poses))
-
-
-def mean_edge(mesh: Mesh) -> float:
-    """Mean length of a mesh edge [m]."""
-    return float(np.linalg.norm(np.diff(mesh.nodes[mesh.edges], axis=1)[:, 0], axis=1).mean())
 
 
 _DIGITS = 5

@@ -93,8 +93,7 @@ class _Design:
         self.winches, self.cables = winches, cables
         self.mesh = robot.body.mesh
         self.region = body_region(robot.body, constraints.clearance)
-        spans = np.diff(self.mesh.nodes[self.mesh.edges], axis=1)[:, 0]
-        self.spacing = float(np.linalg.norm(spans, axis=1).mean())
+        self.spacing = float(self.mesh.edge_lengths.mean())
 
     def run(self) -> Network:
         began = time.process_time()
