@@ -1,11 +1,11 @@
 """What a robot is built from: drawings at true scale, in millimetres."""
 
-from hydrostat.fabrication.dxf_writer import pattern_dxf
 from hydrostat.fabrication.kit import export_kit
-from hydrostat.fabrication.options import Corner, PatternOptions
-from hydrostat.fabrication.pattern import Panel, Pattern, plush_pattern
-from hydrostat.fabrication.shape import Circle, Layer, Line, Part, Shape
-from hydrostat.fabrication.svg_writer import pattern_svg
+from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
+from hydrostat.fabrication.patterns.pattern import Panel, Pattern, plush_pattern
+from hydrostat.fabrication.patterns.pattern_options import Corner, PatternOptions
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Part, Shape
+from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 
 __all__ = [
     "Circle",

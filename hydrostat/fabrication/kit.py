@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from hydrostat.fabrication.dxf_writer import pattern_dxf
-from hydrostat.fabrication.options import PatternOptions
-from hydrostat.fabrication.pattern import plush_pattern
-from hydrostat.fabrication.svg_writer import pattern_svg
+from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
+from hydrostat.fabrication.patterns.pattern import plush_pattern
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.robot import Robot
 from hydrostat.robot.write import replace_file
 

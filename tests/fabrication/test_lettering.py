@@ -1,7 +1,7 @@
 import pytest
 
-from hydrostat.fabrication.lettering import Lettering
-from hydrostat.fabrication.stroke_font import CAP_HEIGHT, GLYPHS, UNKNOWN
+from hydrostat.fabrication.patterns.lettering import Lettering
+from hydrostat.fabrication.patterns.stroke_font import CAP_HEIGHT, GLYPHS, UNKNOWN
 
 
 def test_every_glyph_fits_its_box_and_is_its_own():

@@ -7,8 +7,8 @@ from builders import strip_robot
 
 from hydrostat.cli.contractions import check_contraction
 from hydrostat.errors import InputError
-from hydrostat.fabrication.marks import winch_marks
-from hydrostat.fabrication.shape import Circle
+from hydrostat.fabrication.patterns.marks import winch_marks
+from hydrostat.fabrication.patterns.shape import Circle
 from hydrostat.plot import winch_stops
 from hydrostat.plot.robot_tables import cable_table
 from hydrostat.robot import Robot, find_risks

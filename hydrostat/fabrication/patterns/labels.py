@@ -3,11 +3,11 @@
 import numpy as np
 from shapely import LineString, Point, Polygon, transform
 
-from hydrostat.fabrication.free_space import FreeSpace
-from hydrostat.fabrication.lettering import Lettering
-from hydrostat.fabrication.marks import place
-from hydrostat.fabrication.options import PatternOptions
-from hydrostat.fabrication.shape import Layer, Line, Part, Place, Shape
+from hydrostat.fabrication.patterns.free_space import FreeSpace
+from hydrostat.fabrication.patterns.lettering import Lettering
+from hydrostat.fabrication.patterns.marks import place
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape
 from hydrostat.robot import Robot
 
 _NAMES = (4.0, 3.0)

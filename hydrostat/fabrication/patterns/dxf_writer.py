@@ -9,8 +9,8 @@ from ezdxf.document import Drawing
 from ezdxf.layouts.layout import Modelspace
 from ezdxf.units import MM
 
-from hydrostat.fabrication.pattern import Pattern
-from hydrostat.fabrication.shape import Circle, Layer, Shape
+from hydrostat.fabrication.patterns.pattern import Pattern
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 
 _COLOURS = {Layer.MARK: colors.WHITE, Layer.PINHOLE: colors.BLUE, Layer.CUT: colors.RED}
 """Index 7 is black on paper and white on a dark screen."""

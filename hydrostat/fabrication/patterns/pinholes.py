@@ -8,8 +8,8 @@ import numpy as np
 import shapely
 from shapely import Polygon
 
-from hydrostat.fabrication.options import PatternOptions
-from hydrostat.fabrication.shape import Circle, Layer, Part, Place
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Part, Place
 from hydrostat.robot import Mount, Robot
 
 _SAME = 0.01

@@ -7,7 +7,7 @@ from shapely import MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.options import PatternOptions
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.robot import Body
 
 _STEPS = 24

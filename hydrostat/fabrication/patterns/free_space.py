@@ -7,7 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from hydrostat.fabrication.shape import Place, Shape
+from hydrostat.fabrication.patterns.shape import Place, Shape
 
 _CLEARANCE = 1.2
 """Empty cloth kept round whatever is placed [mm]."""

@@ -3,8 +3,8 @@
 import unicodedata
 from dataclasses import dataclass
 
-from hydrostat.fabrication.shape import Layer, Line, Part, Place
-from hydrostat.fabrication.stroke_font import CAP_HEIGHT, GLYPHS, UNKNOWN
+from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place
+from hydrostat.fabrication.patterns.stroke_font import CAP_HEIGHT, GLYPHS, UNKNOWN
 
 _SPACE = 3.0
 _BETWEEN = 2.0

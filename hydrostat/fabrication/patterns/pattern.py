@@ -6,13 +6,13 @@ import numpy as np
 import shapely
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.labels import PanelLabels
-from hydrostat.fabrication.lettering import Lettering
-from hydrostat.fabrication.marks import cable_marks, marker_marks, opening_mark, seam_marks, winch_marks
-from hydrostat.fabrication.options import PatternOptions
-from hydrostat.fabrication.pinholes import find_pinholes, pinhole_problems
-from hydrostat.fabrication.shape import Layer, Line, Part, Place, Shape, trace
-from hydrostat.fabrication.skin import Skin, flat_skin
+from hydrostat.fabrication.patterns.labels import PanelLabels
+from hydrostat.fabrication.patterns.lettering import Lettering
+from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, opening_mark, seam_marks, winch_marks
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.pinholes import find_pinholes, pinhole_problems
+from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.skin import Skin, flat_skin
 from hydrostat.robot import Point, Robot
 
 _RULER = 100.0

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterable
 from xml.sax.saxutils import escape
 
-from hydrostat.fabrication.pattern import Pattern
-from hydrostat.fabrication.shape import Circle, Layer, Shape
+from hydrostat.fabrication.patterns.pattern import Pattern
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 
 COLOURS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"}
 """Stroke of each layer: LightBurn and its like tell operations apart by these."""

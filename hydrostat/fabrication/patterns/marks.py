@@ -8,9 +8,9 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from hydrostat.fabrication.pinholes import Pinhole
-from hydrostat.fabrication.shape import Circle, Layer, Line, Part, Place, Shape, trace
-from hydrostat.fabrication.skin import Skin
+from hydrostat.fabrication.patterns.pinholes import Pinhole
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.skin import Skin
 from hydrostat.robot import Cable, Robot
 
 _NOTCH_SPACING = 80.0

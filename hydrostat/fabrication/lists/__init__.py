@@ -1,0 +1,1 @@
+"""What to cut, to stitch, to buy, and whether motors and lines are strong enough."""

@@ -1,0 +1,1 @@
+"""Moulds for bodies of foam."""

@@ -1,0 +1,1 @@
+"""Pages of paper: the assembly sheet and the pattern in tiles, with their drawings."""

@@ -1,0 +1,172 @@
+"""Parts described by how they are made of simple shapes, so that one description gives both triangles and true STEP.
+
+    plate = Box((40, 30, 3)) - Cylinder(3, 1.7).moved(20, 15, 0)
+
+`solid_of` makes triangles of a construction; `step.py` makes a model of true cylinders and planes. All in millimetres.
+"""
+
+from dataclasses import dataclass
+from functools import singledispatch
+
+import numpy as np
+from manifold3d import CrossSection, Manifold
+
+Corner = tuple[float, float]
+"""A corner of a profile [mm]."""
+
+_SAG = 0.02
+"""How far a round side is at most from its true place [mm]."""
+
+
+class Construction:
+    """Anything made of shapes; `+` joins, `-` takes away, `&` keeps what both have."""
+
+    def __add__(self, other: "Construction") -> "Joined":
+        return Joined(self, other)
+
+    def __sub__(self, other: "Construction") -> "Cut":
+        return Cut(self, other)
+
+    def __and__(self, other: "Construction") -> "Common":
+        return Common(self, other)
+
+    def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> "Moved":
+        """The same elsewhere [mm]."""
+        return Moved(self, (x, y, z))
+
+    def turned(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> "Turned":
+        """The same turned about the x axis, then y, then z of space [degrees]."""
+        return Turned(self, (x, y, z))
+
+
+@dataclass(frozen=True)
+class Box(Construction):
+    """A box with a corner at the origin, sides along the axes [mm]."""
+
+    size: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Cylinder(Construction):
+    """A cylinder, or a cone with another radius at the top, on the z axis, from z = 0 upwards [mm]."""
+
+    height: float
+    radius: float
+    top: float | None = None
+
+
+@dataclass(frozen=True)
+class Prism(Construction):
+    """A polygon in the plane, counter-clockwise, raised from z = 0 upwards [mm]."""
+
+    profile: tuple[Corner, ...]
+    height: float
+
+
+@dataclass(frozen=True)
+class Turning(Construction):
+    """A polygon of (radius, height) corners, counter-clockwise, turned once round the z axis [mm]."""
+
+    profile: tuple[Corner, ...]
+
+
+@dataclass(frozen=True)
+class Joined(Construction):
+    """What either has."""
+
+    one: Construction
+    other: Construction
+
+
+@dataclass(frozen=True)
+class Cut(Construction):
+    """What the first has and the other has not."""
+
+    one: Construction
+    other: Construction
+
+
+@dataclass(frozen=True)
+class Common(Construction):
+    """What both have."""
+
+    one: Construction
+    other: Construction
+
+
+@dataclass(frozen=True)
+class Moved(Construction):
+    """A shape, shifted [mm]."""
+
+    shape: Construction
+    by: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Turned(Construction):
+    """A shape, turned about the x axis, then y, then z of space [degrees]."""
+
+    shape: Construction
+    by: tuple[float, float, float]
+
+
+def segments(radius: float) -> int:
+    """Sides of a polygon for a circle [mm] that is nowhere further than 0.02 mm from it; a multiple of 8."""
+    half_angle = np.arccos(max(1 - _SAG / max(radius, 1e-9), 0.0))
+    return int(8 * np.ceil(max(np.pi / half_angle, 16.0) / 8))
+
+
+@singledispatch
+def solid_of(construction: Construction) -> Manifold:
+    """The triangles of a construction.
+
+    Corners of round sides are on the true circle: a shaft is at most 0.02 mm too thin, a bore as much too narrow.
+    """
+    raise TypeError(f"no solid is known for {type(construction).__name__}")
+
+
+@solid_of.register
+def _(shape: Box) -> Manifold:
+    return Manifold.cube(shape.size)
+
+
+@solid_of.register
+def _(shape: Cylinder) -> Manifold:
+    top = shape.radius if shape.top is None else shape.top
+    return Manifold.cylinder(shape.height, shape.radius, top, segments(max(shape.radius, top)))
+
+
+@solid_of.register
+def _(shape: Prism) -> Manifold:
+    return Manifold.extrude(CrossSection([np.array(shape.profile)]), shape.height)
+
+
+@solid_of.register
+def _(shape: Turning) -> Manifold:
+    widest = max(radius for radius, _ in shape.profile)
+    return Manifold.revolve(CrossSection([np.array(shape.profile)]), segments(widest))
+
+
+@solid_of.register
+def _(shape: Joined) -> Manifold:
+    return solid_of(shape.one) + solid_of(shape.other)
+
+
+@solid_of.register
+def _(shape: Cut) -> Manifold:
+    return solid_of(shape.one) - solid_of(shape.other)
+
+
+@solid_of.register
+def _(shape: Common) -> Manifold:
+    return solid_of(shape.one) ^ solid_of(shape.other)
+
+
+@solid_of.register
+def _(shape: Moved) -> Manifold:
+    return solid_of(shape.shape).translate(shape.by)
+
+
+@solid_of.register
+def _(shape: Turned) -> Manifold:
+    return solid_of(shape.shape).rotate(shape.by)
