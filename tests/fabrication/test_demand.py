@@ -1,0 +1,56 @@
+"""What poses ask of motors and cables, against the equilibria themselves."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from plush_robots import crossed
+
+import hydrostat as hs
+from hydrostat.fabrication.demand import find_demand
+
+
+def _posed(robot: hs.Robot, reach: float) -> hs.Robot:
+    """The robot with a pose that its winch makes by taking in `reach` [m]."""
+    made = hs.Simulation(robot).solve({"pull": reach})
+    targets = {name: tuple(place.tolist()) for name, place in made.markers.items()}
+    return replace(robot, poses={"made": hs.Pose(name="made", targets=targets)})
+
+
+def test_loads_are_those_of_the_pose_that_is_reached():
+    robot = _posed(crossed(), 0.006)
+    made = hs.Simulation(robot).solve({"pull": 0.006})
+    demand = find_demand(robot)
+    assert demand.poses == ('pose "made"',)
+    np.testing.assert_allclose(demand.tensions, made.tensions, rtol=1e-3)
+    np.testing.assert_allclose(demand.taken, [[0.0, 0.006]], atol=1e-5)
+    np.testing.assert_allclose(demand.torques, [0.006 * made.tensions.sum()], rtol=1e-3)
+
+
+def test_a_step_of_its_own_is_the_lever_of_its_cable():
+    robot = crossed()
+    stepped = replace(robot, cables=(robot.cables[0], replace(robot.cables[1], spool_radius=0.009)))
+    robot = _posed(stepped, 0.006)
+    tensions = hs.Simulation(robot).solve({"pull": 0.006}).tensions
+    np.testing.assert_allclose(find_demand(robot).torques, [0.006 * tensions[0] + 0.009 * tensions[1]], rtol=1e-3)
+
+
+def test_without_poses_each_winch_pulls_alone_as_far_as_it_goes():
+    robot = replace(crossed(), winches=(replace(crossed().winches[0], travel=0.008),))
+    demand = find_demand(robot)
+    full = hs.Simulation(robot).solve({"pull": 0.008})
+    assert demand.poses == ('winch "pull" at its full travel',)
+    np.testing.assert_allclose(demand.tensions, full.tensions, rtol=1e-6)
+
+
+def test_with_friction_winches_are_pulled_too():
+    robot = _posed(crossed(), 0.004)
+    rough = replace(robot, cables=tuple(replace(cable, friction=0.1) for cable in robot.cables))
+    assert find_demand(rough).poses == ('winch "pull" at its full travel',)
+
+
+def test_a_robot_without_cables_asks_for_nothing():
+    robot = replace(crossed(), cables=())
+    demand = find_demand(robot)
+    assert demand.tensions.shape == (0,)
+    assert demand.torques == pytest.approx([0.0])
