@@ -23,3 +23,8 @@ def unchecked() -> Iterator[None]:
     config.update("jaxtyping_disable", True)
     yield
     config.update("jaxtyping_disable", False)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """A flag for tests that compare with reference files."""
+    parser.addoption("--refresh-references", action="store_true", help="write the reference files anew")

@@ -23,7 +23,9 @@ SCALE = 0.1
 _SVG = "{http://www.w3.org/2000/svg}"
 
 
-def pattern_checks(robot: Robot, pattern: Pattern, svg: bytes, dxf: bytes, options: PatternOptions) -> tuple[Check, ...]:
+def pattern_checks(
+    robot: Robot, pattern: Pattern, svg: bytes, dxf: bytes, options: PatternOptions
+) -> tuple[Check, ...]:
     """Holes and scale of the SVG, and whether the DXF shows the same.
 
     Args:
@@ -103,9 +105,7 @@ def _circles_of_dxf(dxf: bytes) -> Float[np.ndarray, "holes 3"]:
     from ezdxf.filemanagement import read
 
     space = read(io.StringIO(dxf.decode())).modelspace()
-    found = [
-        (*item.dxf.center.vec2, item.dxf.radius) for item in space.query("CIRCLE") if item.dxf.layer == "PINHOLE"
-    ]
+    found = [(*item.dxf.center.vec2, item.dxf.radius) for item in space.query("CIRCLE") if item.dxf.layer == "PINHOLE"]
     return np.array(found, dtype=float).reshape(-1, 3)
 
 
