@@ -1,0 +1,180 @@
+"""`stopper`: the clamp in two pieces that ends a cable and is adjusted with a screwdriver (thesis, Fig 3.3)."""
+
+import math
+from dataclasses import dataclass
+
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.screws import M2X6
+from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, solid_of
+from hydrostat.fabrication.solids.printed import Printed
+
+PRELOAD = 50.0
+"""What the screw keeps pressing with [N], assumed: 0.05 N m of a small screwdriver give about 80 N by T = K F d with
+K = 0.3 in plastic, of which creep of PLA takes a third. Measured on none, check yours."""
+
+FRICTION = 0.1
+"""Of braided polyethylene on plastic: the lower end of 0.1 to 0.2 that is commonly given for UHMWPE."""
+
+_POST = 2.4
+_KEY = 1.9
+_FLAT = 1.6
+"""Radius of the post that the cable goes round, of the key above it, and how far the flat of the key is from the axis
+[mm]."""
+
+_ROOM = 0.8
+"""How much wider than the cable the holes and the track are [mm]."""
+
+_LID = 2.6
+_KEY_HEIGHT = 1.2
+_RIM = 1.0
+_RIB = 0.8
+"""Thickness of the lid, height of the key in it, width of the rim behind the track, width of a rib [mm]."""
+
+_FLOOR = 0.8
+_TIP = 0.4
+"""Below the point of the screw: plastic, and air [mm]."""
+
+_OFF_CENTRE = 0.8
+"""How far the middle of the button is from the screw towards the cable, so that it is pulled flat [mm]."""
+
+_EXIT = 300.0
+"""Where the cable leaves, counted round the post from where it comes up [degrees]."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Stopper:
+    """A clamp for the end of a cable.
+
+    Attributes:
+        printed: the base, which lies on the cloth, and the lid.
+        assembly: both with the screw, closed on a cable that is pressed to half its thickness; the cloth is at z = 0.
+        screw: that closes it, as it is bought.
+        hold: tension at which the cable begins to slip, estimated [N].
+    """
+
+    printed: tuple[Printed, ...]
+    assembly: Assembly
+    screw: str
+    hold: float
+
+
+def stopper(options: PartOptions) -> Stopper:
+    """The stopper for a cable: a button in two pieces, closed by one countersunk screw.
+
+    The cable comes up from the cloth beside the screw (it is laid in through the slot, nothing is threaded), goes 300
+    degrees round the post of the screw between ribs of base and lid that bend it up and down, and leaves through the
+    notch. Loosen by half a turn, pull the cable, tighten. The post is the key that keeps the lid from turning along.
+
+    How much it holds is `holding_force` at `PRELOAD` and `FRICTION`. The ribs are not counted: they spread the pressure
+    evenly on a print that is not even, and what the braid gains by biting into them is unknown.
+    """
+    rib = max(0.4, options.cable)
+    base, lid = _base(options, rib), _lid(options, rib)
+    lid_up = lid.turned(x=180).moved(0, 0, _LID)
+    closed = _deck() + rib + options.cable / 2
+    printed = (
+        Printed(
+            name="stopper_base",
+            title="Stopper base",
+            solid=solid_of(base),
+            note="Flat side on the bed, no support, 0.12 mm layers, all walls (100 % infill).",
+            model=base,
+        ),
+        Printed(
+            name="stopper_lid",
+            title="Stopper lid",
+            solid=solid_of(lid_up),
+            note="Outer side on the bed, ribs up, no support, 0.12 mm layers, all walls (100 % infill).",
+            model=lid_up,
+        ),
+    )
+    pieces = (
+        Placed(name="stopper_base", title="Stopper base", solid=solid_of(base)),
+        Placed(name="stopper_lid", title="Stopper lid", solid=solid_of(lid.moved(0, 0, closed)), pulled=(0, 0, 6)),
+        Placed(
+            name="stopper_screw",
+            title=M2X6.title,
+            solid=solid_of(M2X6.envelope.moved(0, 0, closed + _LID)),
+            pulled=(0, 0, 14),
+            printed=False,
+        ),
+    )
+    return Stopper(
+        printed=printed, assembly=Assembly(name="stopper", pieces=pieces), screw=M2X6.title, hold=holding_force()
+    )
+
+
+def holding_force(preload: float = PRELOAD, friction: float = FRICTION, *, wrap: float = math.radians(_EXIT)) -> float:
+    """Tension at which a cable begins to slip [N].
+
+    Along the wrap [rad] both faces rub with friction times the pressure q of the screw, and the post as a capstan does:
+    dT/dphi = 2 mu q r + mu T with q r = F / wrap and no tension at the loose end, so T = 2 F (exp(mu wrap) - 1) / wrap.
+    The quarter turn from the hole into the track multiplies it by exp(mu pi / 2).
+    """
+    clamped = 2 * preload * math.expm1(friction * wrap) / wrap
+    return clamped * math.exp(friction * math.pi / 2)
+
+
+def _deck() -> float:
+    """Height of the floor of the track above the cloth [mm]."""
+    return _FLOOR + _TIP + M2X6.length - _LID - 0.4
+
+
+def _track(options: PartOptions) -> float:
+    """Outer radius of the track [mm]."""
+    return _POST + options.cable + 1.0
+
+
+def _button(options: PartOptions, height: float) -> Construction:
+    """The outline of both pieces: a disc about a point between the screw and the cable."""
+    return Cylinder(height, _OFF_CENTRE + _track(options) + _RIM).moved(_OFF_CENTRE, 0, 0)
+
+
+def _steps(options: PartOptions) -> list[float]:
+    """Angles of the ribs [degrees]; those of base and lid take turns, with room for the cable between them."""
+    apart = (_RIB + 1.3 * options.cable) / (_POST + options.cable / 2)
+    first, last = 50.0, _EXIT - 10
+    count = max(2, math.floor(math.radians(last - first) / apart))
+    return [first + (last - first) * k / count for k in range(count + 1)]
+
+
+def _ribs(options: PartOptions, angles: list[float], height: float, inside: float) -> list[Construction]:
+    length = _track(options) - inside
+    rib = Box((length, _RIB, height)).moved(inside, -_RIB / 2, 0)
+    return [rib.turned(z=angle) for angle in angles]
+
+
+def _key(radius: float, flat: float, height: float) -> Construction:
+    """A post with one flat, on the side away from the cable."""
+    return Cylinder(height, radius) & Box((2 * radius + 2, 4 * radius, height)).moved(-flat, -2 * radius, 0)
+
+
+def _base(options: PartOptions, rib: float) -> Construction:
+    deck, track = _deck(), _track(options)
+    hole = options.cable + _ROOM
+    x = _POST + hole / 2
+    body: Construction = _button(options, deck + rib) - Cylinder(rib + 1, track).moved(0, 0, deck)
+    for each in _ribs(options, _steps(options)[::2], rib, _POST - 0.2):
+        body = body + each.moved(0, 0, deck)
+    body = body + Cylinder(rib, _POST).moved(0, 0, deck) + _key(_KEY, _FLAT, rib + _KEY_HEIGHT - 0.2).moved(0, 0, deck)
+    body = body - Cylinder(20, M2X6.pilot / 2).moved(0, 0, _FLOOR)
+    body = body - Cylinder(20, hole / 2).moved(x, 0, -1)
+    body = body - Cylinder(0.6, hole / 2 + 0.6, hole / 2).moved(x, 0, 0)
+    body = body - Cylinder(0.4, hole / 2, hole / 2 + 0.4).moved(x, 0, deck - 0.4)
+    slot = options.cable + 0.4
+    body = body - Box((20, slot, 30)).moved(x, -slot / 2, -1)
+    notch = Box((20, hole, 20)).moved(_POST, -hole / 2, deck)
+    return body - notch.turned(z=_EXIT)
+
+
+def _lid(options: PartOptions, rib: float) -> Construction:
+    """With its lower face at z = 0, as it lies on the base; ribs hang below."""
+    free = options.fit
+    body: Construction = _button(options, _LID)
+    for each in _ribs(options, _steps(options)[1::2], rib + 0.2, _POST + free):
+        body = body + each.moved(0, 0, -rib)
+    body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT)
+    body = body - Cylinder(20, M2X6.passage / 2).moved(0, 0, -1)
+    sunk = (M2X6.head - M2X6.passage) / 2 + 0.1
+    return body - Cylinder(sunk, M2X6.passage / 2, M2X6.head / 2 + 0.1).moved(0, 0, _LID - sunk)
