@@ -51,10 +51,11 @@ def test_the_cut_is_seen_at_true_scale(write, see):
     """Oracle: a square of 100 mm under an allowance of 8 mm is 116 mm wide and high, y up."""
     pattern = plush_pattern(crossed())
     seen = see(write(pattern))
-    for panel, line in zip(pattern.panels, seen.lines["CUT"], strict=True):
+    edges = [line for line, closed in zip(seen.lines["CUT"], seen.closed["CUT"], strict=True) if closed]
+    for panel, line in zip(pattern.panels, edges, strict=True):
         np.testing.assert_allclose(np.ptp(line, axis=0), 116, atol=0.01)
         np.testing.assert_allclose(line.min(axis=0), np.subtract(panel.origin, 58), atol=0.01)
-    assert all(seen.closed["CUT"])
+    assert seen.closed["CUT"].count(False) == 1  # the slit of the opening
 
 
 def test_both_files_show_the_same():

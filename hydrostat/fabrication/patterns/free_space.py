@@ -12,6 +12,9 @@ from hydrostat.fabrication.patterns.shape import Place, Shape
 _CLEARANCE = 1.2
 """Empty cloth kept round whatever is placed [mm]."""
 
+_TIGHT = 1.05
+"""Empty cloth kept round the small figures at holes [mm]."""
+
 _ROOMY = 6.0
 """Empty cloth beyond which more is no better [mm]."""
 
@@ -34,6 +37,18 @@ class FreeSpace:
         centres = np.column_stack([x.ravel(), y.ravel()])
         boxes = _boxes(centres, width, height)
         x, y = centres[np.argmin(self._crossings(centres, boxes))].tolist()
+        return x, y
+
+    def clear_beside(self, at: Place, width: float, height: float, *, gap: float) -> Place | None:
+        """Middle of a box near to a place that crosses nothing [mm]; None if there is none."""
+        reach, angle = np.meshgrid(gap + np.arange(0, 2.5, 0.5), np.arange(0, 2 * np.pi, np.pi / 8), indexing="ij")
+        x = at[0] + np.cos(angle) * (reach + width / 2)
+        y = at[1] + np.sin(angle) * (reach + height / 2)
+        centres = np.column_stack([x.ravel(), y.ravel()])
+        crossings = self._crossings(centres, _boxes(centres, width, height, _TIGHT))
+        if crossings.min():
+            return None
+        x, y = centres[np.argmin(crossings)].tolist()
         return x, y
 
     def anywhere(self, width: float, height: float) -> Place | None:
@@ -70,7 +85,7 @@ class FreeSpace:
         return room
 
 
-def _boxes(centres: np.ndarray, width: float, height: float) -> np.ndarray:
-    half = np.array([width / 2 + _CLEARANCE, height / 2 + _CLEARANCE])
+def _boxes(centres: np.ndarray, width: float, height: float, clearance: float = _CLEARANCE) -> np.ndarray:
+    half = np.array([width / 2 + clearance, height / 2 + clearance])
     low, high = centres - half, centres + half
     return shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])

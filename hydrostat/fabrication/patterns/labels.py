@@ -1,13 +1,17 @@
 """Labels of a panel: cable numbers, names, the grain of the cloth, each where there is room."""
 
+from collections.abc import Iterable
+
 import numpy as np
-from shapely import LineString, Point, Polygon, transform
+from shapely import LineString, Point, Polygon, box, transform
 
 from hydrostat.fabrication.patterns.free_space import FreeSpace
 from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.marks import place
+from hydrostat.fabrication.patterns.opening import Opening
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape
+from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.robot import Robot
 
 _NAMES = (4.0, 3.0)
@@ -16,6 +20,15 @@ _TITLES = (8.0, 6.0, 5.0, 4.0)
 
 _GRAINS = (40.0, 25.0, 15.0)
 """Lengths of the arrow, the best first [mm]."""
+
+_FIGURE = 2.5
+"""Height of the figure at a hole [mm], the least that a laser writes on felt."""
+
+_FIGURE_GAP = 2.2
+"""From the middle of a hole to its figure [mm]."""
+
+_LETTER = 3.0
+"""Height of the letter at a notch [mm]."""
 
 _ALONG = 15.0
 """How far from its winch a cable is numbered [mm]."""
@@ -57,15 +70,52 @@ class PanelLabels:
             if self._seam.contains(Point(place(winch.at))):
                 self._beside(winch.name, place(winch.at), gap=1e3 * robot.largest_spool(winch) + 1.5)
 
+    def hole_numbers(self, stitches: Iterable[CableStitches]) -> None:
+        """Small figures beside the holes of each cable, from 2 on, in stitch order; none where there is no room."""
+        for sewn in stitches:
+            for stitch in sewn.stitches[1:]:
+                figure = Lettering(f"{stitch.number}", _FIGURE)
+                if not self._seam.contains(Point(stitch.place)):
+                    continue
+                middle = self._space.clear_beside(stitch.place, figure.width, _FIGURE, gap=_FIGURE_GAP)
+                if middle is not None:
+                    self._shapes.extend(figure.lines(middle))
+                    self._space.take(middle, figure.width, _FIGURE)
+
+    def notch_names(self, strokes: Iterable[tuple[str, LineString]], cloth: Polygon) -> None:
+        """The letter of each notch beside its stroke, in the allowance; none where that is too narrow for a letter."""
+        for name, stroke in strokes:
+            letter = Lettering(name, _LETTER)
+            if not name or stroke.length < _LETTER + 2:
+                continue
+            (x, y), (end_x, end_y) = stroke.coords
+            along = np.array([end_y - y, x - end_x]) / stroke.length
+            middles = [
+                (float((x + end_x) / 2 + side * along[0]), float((y + end_y) / 2 + side * along[1]))
+                for side in (-2.2 - letter.width / 2, 2.2 + letter.width / 2)
+            ]
+            free = cloth.difference(self._seam)
+            best = max(middles, key=lambda middle: round(free.intersection(_frame(middle, letter)).area, 3))
+            self._shapes.extend(letter.lines((-best[0], best[1]) if self._mirrored else best))
+
+    def edge_names(self, upper: str, lower: str) -> None:
+        """What the upper and the lower edge of a strip are sewn to, along them."""
+        left, bottom, right, top = self._seam.bounds
+        for text, y in ((upper, top - 4.0), (lower, bottom + 4.0)):
+            letters = Lettering(text, _NAMES[-1])
+            if top - bottom > 16 and letters.width < right - left:
+                self._shapes.extend(letters.lines(((left + right) / 2, y)))
+                self._space.take(((left + right) / 2, y), letters.width, letters.height)
+
     def marker_names(self, robot: Robot, options: PatternOptions) -> None:
         """The name of each marker beside it, if asked for."""
         for marker in robot.markers if options.marker_names else ():
             self._beside(marker.name, place(marker.at), gap=3.5)
 
-    def opening(self, mark: Line) -> None:
-        """What the line of the opening is."""
-        (x, y), (end_x, end_y) = mark.points
-        self._beside("opening", (0.2 * x + 0.8 * end_x, 0.2 * y + 0.8 * end_y), gap=2.5)
+    def opening(self, opening: Opening) -> None:
+        """Which zipper goes there."""
+        middle = opening.slit.interpolate(0.5, normalized=True)
+        self._beside(opening.label, (middle.x, middle.y), gap=6.5)
 
     def title(self, text: str) -> None:
         """The name of the panel, as large as there is room for."""
@@ -101,6 +151,12 @@ class PanelLabels:
         self._space.take(middle, lettering.width, lettering.height)
         if np.linalg.norm(way) >= gap + _NEAR:
             self._shapes.append(_leader(at, way, gap))
+
+
+def _frame(middle: Place, letter: Lettering) -> Polygon:
+    """The box of a text."""
+    x, y = middle
+    return box(x - letter.width / 2, y - letter.height / 2, x + letter.width / 2, y + letter.height / 2)
 
 
 def _way(at: Place, middle: Place, lettering: Lettering) -> np.ndarray:

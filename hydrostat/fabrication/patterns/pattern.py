@@ -2,46 +2,20 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-import shapely
-
 from hydrostat.errors import InputError
+from hydrostat.fabrication.patterns.gusset import gusset_panels, stuffed_thickness, wants_gusset
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.lettering import Lettering
-from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, opening_mark, seam_marks, winch_marks
+from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, seam_marks, winch_marks
+from hydrostat.fabrication.patterns.notches import Notch, find_notches
+from hydrostat.fabrication.patterns.opening import Opening, find_opening
+from hydrostat.fabrication.patterns.panel import Panel
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import find_pinholes, pinhole_problems
-from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.shape import Layer, Part, Shape, trace
+from hydrostat.fabrication.patterns.sheet_layout import lay_out
 from hydrostat.fabrication.patterns.skin import Skin, flat_skin
-from hydrostat.robot import Point, Robot
-
-_RULER = 100.0
-"""Length of the bar that shows whether the sheet was cut at its true scale [mm]."""
-
-_RULER_HEIGHT = 12.0
-"""Room for the bar and its text below the panels [mm]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Panel:
-    """One piece of cloth, its right side up.
-
-    Attributes:
-        name: "front" or "back".
-        origin: where the robot's [0, 0] lies on the sheet [mm].
-        mirrored: whether the robot's x runs to the left, as seen from behind.
-        shapes: in places of the sheet [mm].
-    """
-
-    name: str
-    origin: Place
-    mirrored: bool
-    shapes: tuple[Shape, ...]
-
-    def on_sheet(self, point: Point) -> Place:
-        """Where a point of the robot [m] lies on the sheet [mm]."""
-        x, y = 1e3 * point[0], 1e3 * point[1]
-        return self.origin[0] + (-x if self.mirrored else x), self.origin[1] + y
+from hydrostat.fabrication.patterns.stitches import CableStitches, Side, cable_stitches
+from hydrostat.robot import Robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,11 +24,14 @@ class Pattern:
 
     Attributes:
         name: of the robot.
-        panels: pieces of cloth.
+        panels: pieces of cloth: the front, the back, and the pieces of the gusset if there is one.
         shapes: what lies on the sheet beside the panels: the bar of 100 mm.
         width: of the sheet [mm].
         height: of the sheet [mm].
-        warnings: what to mind, a line each; with `force` also what cannot be cut honestly.
+        stitches: how each cable is sewn, in cable order.
+        opening: the slit in the back, seen from the front, from the robot's origin; None if there is none.
+        problems: what cannot be cut honestly, a line each; only with `force`.
+        warnings: what to mind, a line each.
     """
 
     name: str
@@ -62,6 +39,9 @@ class Pattern:
     shapes: tuple[Shape, ...]
     width: float
     height: float
+    stitches: tuple[CableStitches, ...] = ()
+    opening: Opening | None = None
+    problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
     def panel(self, name: str) -> Panel:
@@ -76,11 +56,28 @@ class Pattern:
         names = ", ".join(panel.name for panel in self.panels)
         raise InputError(f'there is no panel "{name}"; its panels are: {names}')
 
+    @property
+    def gusset(self) -> tuple[Panel, ...]:
+        """The pieces of the strip between front and back, in the order in which they are joined."""
+        return tuple(panel for panel in self.panels if panel.name.startswith("gusset"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Draft:
+    """What the panels are drawn from."""
+
+    robot: Robot
+    options: PatternOptions
+    skin: Skin
+    notches: tuple[Notch, ...]
+    stitches: tuple[CableStitches, ...]
+    opening: Opening | None
+
 
 def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pattern:
-    """Front and back of a flat plush robot, to be sewn, turned inside out and stuffed (R10).
+    """Front and back of a flat plush robot, and a gusset for a thick one, to be sewn, turned and stuffed (R10).
 
-    Both panels show the right side of the cloth: the front as drawn, the back as seen from behind. Cables run along the
+    All panels show the right side of the cloth: the front as drawn, the back as seen from behind. Cables run along the
     front panel, stitched in and out of it at their points, so the pinholes are there. The zipper is in the back.
 
     Raises:
@@ -93,60 +90,76 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     if problems and not options.force:
         first, *others = problems
         raise InputError(f"{first} (and {len(others)} more such)" if others else first)
+    draft = _Draft(
+        robot=robot,
+        options=options,
+        skin=skin,
+        notches=find_notches(skin),
+        stitches=cable_stitches(robot, skin.seam),
+        opening=find_opening(robot, skin.seam, holes if options.back_pinholes else (), options),
+    )
     edges = (*trace(skin.cut, Layer.CUT, Part.EDGE), *trace(skin.slits, Layer.CUT, Part.SLIT))
-    cloth = (*edges, *seam_marks(skin), *winch_marks(robot, skin.seam))
+    cloth = (*edges, *seam_marks(skin, draft.notches), *winch_marks(robot, skin.seam))
     pinholes = tuple(hole.circle for hole in holes)
     markers = marker_marks(robot) if options.marker_names else ()
-    front = (*cloth, *pinholes, *cable_marks(robot, skin.seam, holes), *markers)
+    front = (*cloth, *pinholes, *cable_marks(robot, draft.stitches, skin.seam, holes), *markers)
     back = (*cloth, *(pinholes if options.back_pinholes else ()))
-    drafts = (_front(robot, skin, front, options), _back(robot, skin, back, options))
-    return _sheet(robot.name, drafts, options, (*problems, *skin.warnings))
+    thickness = 1e3 * (robot.body.thickness or 0.0)
+    wanted = wants_gusset(skin.seam, thickness, options)
+    gusset = gusset_panels(robot.name, skin, draft.notches, thickness, options) if wanted else ()
+    sheet = lay_out((_front(draft, front), _back(draft, back)), gusset, options.gap)
+    return Pattern(
+        name=robot.name,
+        panels=sheet.panels,
+        shapes=sheet.ruler,
+        width=sheet.width,
+        height=sheet.height,
+        stitches=draft.stitches,
+        opening=draft.opening,
+        problems=problems,
+        warnings=(*skin.warnings, *_warnings(draft, thickness, gusset=wanted)),
+    )
 
 
-def _front(robot: Robot, skin: Skin, shapes: tuple[Shape, ...], options: PatternOptions) -> Panel:
+def _front(draft: _Draft, shapes: tuple[Shape, ...]) -> Panel:
     """The front panel about the robot's origin, with its labels."""
-    labels = PanelLabels(skin.seam, shapes, mirrored=False)
-    labels.cable_numbers(robot)
-    labels.winch_names(robot)
-    labels.marker_names(robot, options)
-    labels.title(f"{robot.name} - front")
+    labels = PanelLabels(draft.skin.seam, shapes, mirrored=False)
+    labels.notch_names([(notch.name, notch.stroke) for notch in draft.notches], draft.skin.cut)
+    labels.cable_numbers(draft.robot)
+    labels.winch_names(draft.robot)
+    labels.marker_names(draft.robot, draft.options)
+    labels.hole_numbers(draft.stitches)
+    labels.title(f"{draft.robot.name} - front")
     labels.grain()
     return Panel(name="front", origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
 
 
-def _back(robot: Robot, skin: Skin, shapes: tuple[Shape, ...], options: PatternOptions) -> Panel:
+def _back(draft: _Draft, shapes: tuple[Shape, ...]) -> Panel:
     """The back panel about the robot's origin, seen from behind, with its labels."""
-    opening = opening_mark(robot, skin.seam, options.opening_reach)
-    mirror = tuple(shape.mirrored() for shape in (*shapes, *((opening,) if opening else ())))
-    labels = PanelLabels(skin.seam, mirror, mirrored=True)
-    if opening:
-        labels.opening(opening)
-    labels.winch_names(robot)
-    labels.title(f"{robot.name} - back")
+    zipper = (draft.opening.mark, *draft.opening.placket) if draft.opening else ()
+    mirror = tuple(shape.mirrored() for shape in (*shapes, *zipper))
+    labels = PanelLabels(draft.skin.seam, mirror, mirrored=True)
+    labels.notch_names([(notch.name, notch.stroke) for notch in draft.notches], draft.skin.cut)
+    if draft.opening:
+        labels.opening(draft.opening)
+    labels.winch_names(draft.robot)
+    labels.title(f"{draft.robot.name} - back")
     labels.grain()
     return Panel(name="back", origin=(0.0, 0.0), mirrored=True, shapes=(*mirror, *labels.shapes()))
 
 
-def _sheet(name: str, drafts: tuple[Panel, ...], options: PatternOptions, warnings: tuple[str, ...]) -> Pattern:
-    """Panels side by side from the left, the bar of 100 mm below them."""
-    floor = options.gap + _RULER_HEIGHT
-    left, height, panels = options.gap, 0.0, []
-    for draft in drafts:
-        low_x, low_y, high_x, high_y = shapely.total_bounds(np.array([shape.geometry for shape in draft.shapes]))
-        dx, dy = left - float(low_x), floor - float(low_y)
-        shapes = tuple(shape.moved(dx, dy) for shape in draft.shapes)
-        panels.append(Panel(name=draft.name, origin=(dx, dy), mirrored=draft.mirrored, shapes=shapes))
-        left += float(high_x - low_x) + options.gap
-        height = max(height, floor + float(high_y - low_y) + options.gap)
-    width = max(left, _RULER + 30 + 2 * options.gap)
-    ruler = tuple(line.moved(options.gap, options.gap) for line in _ruler())
-    return Pattern(name=name, panels=tuple(panels), shapes=ruler, width=width, height=height, warnings=warnings)
-
-
-def _ruler() -> tuple[Line, ...]:
-    """A bar of 100 mm from (0, 0) to the right, a stroke every 10 mm."""
-    strokes: list[tuple[Place, ...]] = [((0.0, 0.0), (_RULER, 0.0))]
-    strokes += [((x, 0.0), (x, 4.0 if x % 50 == 0 else 2.0)) for x in np.arange(0.0, _RULER + 1, 10.0).tolist()]
-    bar = tuple(Line(layer=Layer.MARK, part=Part.RULER, points=points) for points in strokes)
-    text = Lettering(f"{_RULER:g} mm", 4.0)
-    return (*bar, *text.lines((_RULER + 4 + text.width / 2, 2.0)))
+def _warnings(draft: _Draft, thickness: float, *, gusset: bool) -> tuple[str, ...]:
+    """Of the thickness and the opening."""
+    warnings = list(draft.opening.warnings if draft.opening else ())
+    stuffed = stuffed_thickness(draft.skin.seam)
+    if not gusset and thickness > stuffed:
+        warnings.append(
+            f"without a gusset the stuffed body is about {stuffed:.0f} mm thick, but it was simulated with "
+            f"{thickness:g} mm: it will be softer; sew it with the gusset, or simulate it thinner"
+        )
+    warnings += [
+        f"the stopper of cable {sewn.cable} sits inside: adjust it through the opening"
+        for sewn in draft.stitches
+        if sewn.stopper is Side.INSIDE
+    ]
+    return tuple(warnings)

@@ -6,6 +6,9 @@ from enum import StrEnum
 
 from hydrostat.errors import InputError
 
+_SHORTEST = 50.0
+"""A piece of the gusset that is still worth sewing [mm]."""
+
 
 class Corner(StrEnum):
     """How the cut goes round an outward corner of the seam."""
@@ -27,7 +30,11 @@ class PatternOptions:
         back_pinholes: whether the back panel gets the pinholes too, mirrored.
         marker_names: whether markers are drawn, with their names.
         opening_reach: how far the opening goes beyond the outermost winches [mm]; 0 for no opening.
-        force: draw what cannot be cut honestly all the same, and warn in `Pattern.warnings`.
+        gusset: whether a strip of cloth between front and back makes the body as thick as it was simulated. None: where
+            two panels alone, stuffed, would stay thinner. A limb that is thinner than simulated is softer, holds less
+            cable, and is harder to turn right side out; the price is a second seam round the body.
+        gusset_piece: longest piece of that strip, its seam allowances not counted [mm].
+        force: draw what cannot be cut honestly all the same; `Pattern.problems` then says what.
 
     Raises:
         InputError: a length out of its range.
@@ -41,6 +48,8 @@ class PatternOptions:
     back_pinholes: bool = False
     marker_names: bool = False
     opening_reach: float = 30.0
+    gusset: bool | None = None
+    gusset_piece: float = 400.0
     force: bool = False
 
     def __post_init__(self) -> None:
@@ -50,3 +59,5 @@ class PatternOptions:
                 raise InputError(f"{item.name} must not be negative, not {value:g} mm")
         if not self.pinhole > 0:
             raise InputError(f"pinhole must be above 0, not {self.pinhole:g} mm")
+        if self.gusset_piece < _SHORTEST:
+            raise InputError(f"gusset_piece must be at least {_SHORTEST:g} mm, not {self.gusset_piece:g} mm")

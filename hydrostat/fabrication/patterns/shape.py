@@ -33,6 +33,7 @@ class Part(StrEnum):
     STOPPER = "stopper"
     WINCH = "winch"
     OPENING = "opening"
+    ZIPPER = "zipper"
     MARKER = "marker"
     GRAIN = "grain"
     RULER = "ruler"

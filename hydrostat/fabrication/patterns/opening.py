@@ -1,0 +1,130 @@
+"""`Opening`: the slit in the back with its zipper, through which winches are reached (R10)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.pinholes import Pinhole
+from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Shape, trace
+from hydrostat.robot import Robot
+
+ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
+"""Lengths in which zippers are sold [mm]; any can be cut shorter."""
+
+_PLACKET = 4.0
+"""From the slit to the line along which the tape is sewn [mm]."""
+
+_TURNS = (0, 90, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75)
+"""Directions that are tried, from the row of winches [degrees], the best first."""
+
+_SHIFTS = (0, 6, -6, 12, -12, 18, -18)
+"""How far beside the winches a slit may be, to stay off pinholes [mm], the best first."""
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A slit and its zipper.
+
+    Attributes:
+        slit: as long as the teeth of the zipper, seen from the front [mm].
+        zipper: length to buy [mm]; longer than the slit where none so short is sold.
+    """
+
+    slit: LineString
+    zipper: int
+
+    @property
+    def mark(self) -> Line:
+        """The slit for the laser."""
+        return trace(self.slit, Layer.CUT, Part.OPENING)[0]
+
+    @property
+    def placket(self) -> tuple[Shape, ...]:
+        """The box along which the tape is sewn under the cloth."""
+        box = self.slit.buffer(_PLACKET, cap_style="square", join_style="mitre")
+        return trace(box, Layer.MARK, Part.ZIPPER)
+
+    @property
+    def label(self) -> str:
+        """Such as "zipper 150 mm"."""
+        cut = "" if self.slit.length > self.zipper - 1e-6 else f" cut to {int(self.slit.length + 1e-6)} mm"
+        return f"zipper {self.zipper} mm{cut}"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Whether it is short for a hand."""
+        if self.slit.length > ZIPPERS[0] - 1e-6:
+            return ()
+        return (
+            f"the opening has room for {self.slit.length:.0f} mm only: cut a zipper of {self.zipper} mm down to that, "
+            "and mind that the winch goes through",
+        )
+
+
+def find_opening(robot: Robot, seam: Polygon, pinholes: tuple[Pinhole, ...], options: PatternOptions) -> Opening | None:
+    """The opening along the row of winches and `opening_reach` beyond, as long as a zipper that is sold.
+
+    Turned and shifted if need be, so as to stay inside the seam and off the pinholes of its panel.
+
+    Returns:
+        None without a winch in the body, without reach, or without room.
+    """
+    reach = options.opening_reach
+    at = [(1e3 * winch.at[0], 1e3 * winch.at[1]) for winch in robot.winches]
+    winches = np.array([place for place in at if seam.contains(shapely.Point(place))])
+    room: BaseGeometry = seam.buffer(-reach / 3)
+    if not len(winches) or not reach or room.is_empty:
+        return None
+    centre = shapely.shortest_line(room, shapely.Point(winches.mean(axis=0))).interpolate(0.0)
+    off = [shapely.Point(hole.centre).buffer(hole.radius + options.cloth + _PLACKET) for hole in pinholes]
+    room = room.difference(shapely.union_all(off))
+    row = np.linalg.svd(winches - winches.mean(axis=0))[2][0] if len(winches) > 1 else np.array([1.0, 0.0])
+    wanted = 2 * (np.abs((winches - winches.mean(axis=0)) @ row).max() + reach)
+    slits = []
+    for shift in _SHIFTS if off else _SHIFTS[:1]:
+        for angle in _TURNS:
+            direction = row @ _turn(np.radians(angle))
+            middle = np.array(centre.coords[0]) + shift * np.array([-direction[1], direction[0]])
+            slits.append(_slit(room, middle, direction, wanted))
+    longest = max(slit.length for slit in slits)
+    if longest <= reach:
+        return None
+    slit = next(slit for slit in slits if round(slit.length) > 0.75 * longest)
+    return Opening(slit, next((zipper for zipper in ZIPPERS if zipper >= slit.length - 1e-6), ZIPPERS[-1]))
+
+
+def _slit(room: BaseGeometry, middle: np.ndarray, direction: np.ndarray, wanted: float) -> LineString:
+    """The slit on a line through a place, at most about as long as wanted."""
+    chord, middle = _chord(room, middle, direction), middle @ direction
+    if chord is None:
+        return LineString()
+    line, low, high = chord
+    length = next((float(zipper) for zipper in ZIPPERS if zipper >= wanted - 1e-6), float(ZIPPERS[-1]))
+    fitting = [float(zipper) for zipper in ZIPPERS if zipper <= min(length, high - low)]
+    if fitting:
+        start = min(max(middle - fitting[-1] / 2, low), high - fitting[-1])
+        ends = (start, start + fitting[-1])
+    else:
+        ends = (max(low, middle - wanted / 2), min(high, middle + wanted / 2))
+    return LineString([line.interpolate(end - low) for end in ends])
+
+
+def _chord(room: BaseGeometry, middle: np.ndarray, direction: np.ndarray) -> tuple[LineString, float, float] | None:
+    """The stretch of a line that stays in the room, nearest to a place; and its ends along the direction."""
+    far = 2 * np.hypot(room.bounds[2] - room.bounds[0], room.bounds[3] - room.bounds[1])
+    line = LineString([middle - far * direction, middle + far * direction]).intersection(room)
+    pieces = [piece for piece in getattr(line, "geoms", (line,)) if isinstance(piece, LineString) and piece.length]
+    if not pieces:
+        return None
+    nearest = min(pieces, key=shapely.Point(middle).distance)
+    low, high = sorted(np.array(nearest.coords) @ direction, key=float)
+    ordered = nearest if np.array(nearest.coords[0]) @ direction == low else nearest.reverse()
+    return ordered, float(low), float(high)
+
+
+def _turn(angle: float) -> np.ndarray:
+    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])

@@ -1,0 +1,93 @@
+"""`lay_out`: panels on one sheet, side by side, the strips below them, the bar of 100 mm at the bottom."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from hydrostat.fabrication.patterns.lettering import Lettering
+from hydrostat.fabrication.patterns.panel import Panel
+from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place
+
+_RULER = 100.0
+"""Length of the bar that shows whether the sheet was cut at its true scale [mm]."""
+
+_RULER_HEIGHT = 12.0
+"""Room for the bar and its text below the panels [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sheet:
+    """Panels in their places.
+
+    Attributes:
+        panels: in the order in which they were given.
+        ruler: the bar of 100 mm.
+        width: [mm].
+        height: [mm].
+    """
+
+    panels: tuple[Panel, ...]
+    ruler: tuple[Line, ...]
+    width: float
+    height: float
+
+
+class _Box(NamedTuple):
+    """A panel with the bounds of all its shapes [mm]."""
+
+    panel: Panel
+    low: np.ndarray
+    size: np.ndarray
+
+
+def lay_out(panels: tuple[Panel, ...], strips: tuple[Panel, ...], gap: float) -> Sheet:
+    """Lay panels in a row, and strips below them in rows that are no wider, a gap [mm] between all."""
+    row, others = [_box(panel) for panel in panels], [_box(strip) for strip in strips]
+    width = max(
+        sum(box.size[0] + gap for box in row) + gap,
+        _RULER + 30 + 2 * gap,
+        *(box.size[0] + 2 * gap for box in others),
+    )
+    floor = gap + _RULER_HEIGHT
+    laid: dict[str, Panel] = {}
+    for shelf in (*reversed(_shelves(others, width - gap, gap)), row):
+        left = gap
+        for box in shelf:
+            laid[box.panel.name] = box.panel.moved(left - float(box.low[0]), floor - float(box.low[1]))
+            left += float(box.size[0]) + gap
+        floor += float(max(box.size[1] for box in shelf)) + gap
+    return Sheet(
+        panels=tuple(laid[panel.name] for panel in (*panels, *strips)),
+        ruler=tuple(line.moved(gap, gap) for line in _ruler()),
+        width=float(width),
+        height=floor,
+    )
+
+
+def _shelves(boxes: list[_Box], width: float, gap: float) -> list[list[_Box]]:
+    """Rows of boxes: each goes to the first row that has room for it, the longest first."""
+    shelves: list[list[_Box]] = []
+    for box in sorted(boxes, key=lambda box: -round(float(box.size[0]), 6)):
+        used = [sum(float(other.size[0]) + gap for other in shelf) + gap for shelf in shelves]
+        free = next((shelf for shelf, left in zip(shelves, used, strict=True) if left + box.size[0] <= width), None)
+        if free is None:
+            shelves.append([box])
+        else:
+            free.append(box)
+    return shelves
+
+
+def _box(panel: Panel) -> _Box:
+    bounds = shapely.total_bounds(np.array([shape.geometry for shape in panel.shapes]))
+    return _Box(panel, bounds[:2], bounds[2:] - bounds[:2])
+
+
+def _ruler() -> tuple[Line, ...]:
+    """A bar of 100 mm from (0, 0) to the right, a stroke every 10 mm."""
+    strokes: list[tuple[Place, ...]] = [((0.0, 0.0), (_RULER, 0.0))]
+    strokes += [((x, 0.0), (x, 4.0 if x % 50 == 0 else 2.0)) for x in np.arange(0.0, _RULER + 1, 10.0).tolist()]
+    bar = tuple(Line(layer=Layer.MARK, part=Part.RULER, points=points) for points in strokes)
+    text = Lettering(f"{_RULER:g} mm", 4.0)
+    return (*bar, *text.lines((_RULER + 4 + text.width / 2, 2.0)))
