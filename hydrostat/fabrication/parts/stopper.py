@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.screws import M2X6
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, solid_of
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Turning, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 
 PRELOAD = 50.0
@@ -34,6 +34,9 @@ _RIB = 0.8
 _FLOOR = 0.8
 _TIP = 0.4
 """Below the point of the screw: plastic, and air [mm]."""
+
+_SMOOTH = 0.6
+"""Chamfer of what lies on the cloth and of what a hand feels [mm]."""
 
 _OFF_CENTRE = 0.8
 """How far the middle of the button is from the screw towards the cable, so that it is pulled flat [mm]."""
@@ -127,8 +130,10 @@ def _track(options: PartOptions) -> float:
 
 
 def _button(options: PartOptions, height: float) -> Construction:
-    """The outline of both pieces: a disc about a point between the screw and the cable."""
-    return Cylinder(height, _OFF_CENTRE + _track(options) + _RIM).moved(_OFF_CENTRE, 0, 0)
+    """The outline of both pieces: a disc about a point between the screw and the cable, its lower edge smooth."""
+    radius = _OFF_CENTRE + _track(options) + _RIM
+    side = ((0, 0), (radius - _SMOOTH, 0), (radius, _SMOOTH), (radius, height), (0, height))
+    return Turning(side).moved(_OFF_CENTRE, 0, 0)
 
 
 def _steps(options: PartOptions) -> list[float]:
@@ -139,10 +144,9 @@ def _steps(options: PartOptions) -> list[float]:
     return [first + (last - first) * k / count for k in range(count + 1)]
 
 
-def _ribs(options: PartOptions, angles: list[float], height: float, inside: float) -> list[Construction]:
-    length = _track(options) - inside
-    rib = Box((length, _RIB, height)).moved(inside, -_RIB / 2, 0)
-    return [rib.turned(z=angle) for angle in angles]
+def _rib(angle: float, height: float, inside: float, outside: float) -> Construction:
+    """A wall across the track at an angle [degrees], between two distances from the axis."""
+    return Box((outside - inside, _RIB, height)).moved(inside, -_RIB / 2, 0).turned(z=angle)
 
 
 def _key(radius: float, flat: float, height: float) -> Construction:
@@ -155,8 +159,8 @@ def _base(options: PartOptions, rib: float) -> Construction:
     hole = options.cable + _ROOM
     x = _POST + hole / 2
     body: Construction = _button(options, deck + rib) - Cylinder(rib + 1, track).moved(0, 0, deck)
-    for each in _ribs(options, _steps(options)[::2], rib, _POST - 0.2):
-        body = body + each.moved(0, 0, deck)
+    for angle in _steps(options)[::2]:
+        body = body + _rib(angle, rib + 0.2, _POST - 0.2, track + 0.2).moved(0, 0, deck - 0.2)
     body = body + Cylinder(rib, _POST).moved(0, 0, deck) + _key(_KEY, _FLAT, rib + _KEY_HEIGHT - 0.2).moved(0, 0, deck)
     body = body - Cylinder(20, M2X6.pilot / 2).moved(0, 0, _FLOOR)
     body = body - Cylinder(20, hole / 2).moved(x, 0, -1)
@@ -171,9 +175,9 @@ def _base(options: PartOptions, rib: float) -> Construction:
 def _lid(options: PartOptions, rib: float) -> Construction:
     """With its lower face at z = 0, as it lies on the base; ribs hang below."""
     free = options.fit
-    body: Construction = _button(options, _LID)
-    for each in _ribs(options, _steps(options)[1::2], rib + 0.2, _POST + free):
-        body = body + each.moved(0, 0, -rib)
+    body: Construction = _button(options, _LID).turned(x=180).moved(0, 0, _LID)
+    for angle in _steps(options)[1::2]:
+        body = body + _rib(angle, rib + 0.2, _POST + free, _track(options) - 0.2).moved(0, 0, -rib)
     body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT)
     body = body - Cylinder(20, M2X6.passage / 2).moved(0, 0, -1)
     sunk = (M2X6.head - M2X6.passage) / 2 + 0.1

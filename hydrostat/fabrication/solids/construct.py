@@ -57,17 +57,33 @@ class Cylinder(Construction):
 
 @dataclass(frozen=True)
 class Prism(Construction):
-    """A polygon in the plane, counter-clockwise, raised from z = 0 upwards [mm]."""
+    """A polygon in the plane, counter-clockwise, raised from z = 0 upwards [mm].
+
+    Raises:
+        ValueError: the corners turn clockwise, or enclose nothing.
+    """
 
     profile: tuple[Corner, ...]
     height: float
 
+    def __post_init__(self) -> None:
+        _check_turns(self.profile)
+
 
 @dataclass(frozen=True)
 class Turning(Construction):
-    """A polygon of (radius, height) corners, counter-clockwise, turned once round the z axis [mm]."""
+    """A polygon of (radius, height) corners, counter-clockwise, turned once round the z axis [mm].
+
+    Raises:
+        ValueError: the corners turn clockwise, enclose nothing, or are beyond the axis.
+    """
 
     profile: tuple[Corner, ...]
+
+    def __post_init__(self) -> None:
+        _check_turns(self.profile)
+        if min(radius for radius, _ in self.profile) < 0:
+            raise ValueError("a corner of a turning is beyond its axis: no radius may be below 0")
 
 
 @dataclass(frozen=True)
@@ -108,6 +124,14 @@ class Turned(Construction):
 
     shape: Construction
     by: tuple[float, float, float]
+
+
+def _check_turns(profile: tuple[Corner, ...]) -> None:
+    """Refuse what is empty as triangles but a body as STEP."""
+    following = (*profile[1:], *profile[:1])
+    area = sum(x * next_y - next_x * y for (x, y), (next_x, next_y) in zip(profile, following, strict=True)) / 2
+    if not area > 0:
+        raise ValueError(f"the corners of a profile must turn counter-clockwise; theirs enclose {area:g} mm^2")
 
 
 def segments(radius: float) -> int:

@@ -8,6 +8,7 @@ from jaxtyping import Float, Int
 from manifold3d import Manifold
 
 from hydrostat.fabrication.solids.construct import Construction
+from hydrostat.fabrication.solids.file_mesh import FileMesh, file_mesh
 
 PLA = 1.24e-3
 """Density of PLA [g/mm^3]."""
@@ -51,8 +52,13 @@ class Printed:
 
     @cached_property
     def mesh(self) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
-        """Its vertices [mm] and triangles, in the order in which every file lists them."""
+        """Its vertices [mm] and triangles, as computed."""
         return triangles_of(self.solid)
+
+    @cached_property
+    def written(self) -> FileMesh:
+        """Its vertices [mm] and triangles, as every file lists them."""
+        return file_mesh(self.solid)
 
 
 def triangles_of(solid: Manifold) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
