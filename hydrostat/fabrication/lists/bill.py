@@ -1,0 +1,91 @@
+"""The bill of materials: what is bought, how much of it, and what it costs."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from hydrostat.fabrication.lists.table import Align, Cell, Column, Table
+from hydrostat.fabrication.price import Price
+
+
+@dataclass(frozen=True, kw_only=True)
+class Item:
+    """One line of the bill.
+
+    Attributes:
+        group: such as "body".
+        what: is bought.
+        specification: which kind.
+        quantity: in the unit of its price.
+        price: of one unit.
+        mass: of all of it [g]; None where it is not known.
+    """
+
+    group: str
+    what: str
+    specification: str
+    quantity: float
+    price: Price
+    mass: float | None = None
+
+    @property
+    def cost(self) -> float:
+        """Of what is used up, in the currency of its price."""
+        return self.quantity * self.price.amount
+
+    @property
+    def spent(self) -> float:
+        """On whole packs, in the currency of its price."""
+        return self.price.of_packs(self.quantity)
+
+
+def cost_of(items: Iterable[Item], group: str | None = None) -> float:
+    """Of what is used up of all items, or of those of a group."""
+    return sum(item.cost for item in items if group in (None, item.group))
+
+
+def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table:
+    """The bill, with a total after each group and at the end."""
+    rows: list[tuple[Cell, ...]] = []
+    for group in dict.fromkeys(item.group for item in items):
+        mine = [item for item in items if item.group == group]
+        rows += [_row(item) for item in mine]
+        rows.append((group, "total", "", None, "", _mass(mine), None, cost_of(mine), _spent(mine), ""))
+    rows.append(("all", "total", "", None, "", _mass(items), None, cost_of(items), _spent(items), ""))
+    return Table(
+        name="bill_of_materials",
+        title="Bill of materials",
+        columns=(
+            *(Column(title=title, align=Align.LEFT) for title in ("group", "what", "specification")),
+            Column(title="quantity", decimals=2),
+            Column(title="unit", align=Align.LEFT),
+            Column(title="mass", unit="g"),
+            Column(title="price", unit="USD", decimals=2),
+            Column(title="used up", unit="USD", decimals=2),
+            Column(title="in whole packs", unit="USD", decimals=2),
+            Column(title="source of the price", align=Align.LEFT),
+        ),
+        rows=tuple(rows),
+        notes=(
+            "Quantities are what one robot takes, without waste. Used up: that share of the packs; in whole packs: "
+            "what a first robot costs.",
+            "Prices are rough: those with a source were true then and there, the others are guesses.",
+            *notes,
+        ),
+    )
+
+
+def _row(item: Item) -> tuple[Cell, ...]:
+    price = item.price
+    return (
+        *(item.group, item.what, item.specification, item.quantity, price.unit, item.mass),
+        *(price.amount, item.cost, item.spent, price.words),
+    )
+
+
+def _spent(items: Iterable[Item]) -> float:
+    return float(sum(item.spent for item in items))
+
+
+def _mass(items: Iterable[Item]) -> float:
+    """Of all items whose mass is known [g]."""
+    return float(sum(item.mass or 0.0 for item in items))

@@ -1,0 +1,153 @@
+"""`Line`: braided fishing lines, and whether they bear what the poses ask of the cables."""
+
+from dataclasses import dataclass
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.robot import Robot
+
+POUND = 4.448222
+"""Newtons in a pound of force: lines are sold by these."""
+
+KNOT = 0.5
+"""Share of its strength that a line keeps at a knot. Tests of braided lines ("Braid knots: some clear winners and
+losers", Sport Fishing, August 2006): common knots cost up to half and more, a doubled Palomar almost nothing."""
+
+SAFETY = 0.5
+"""Share of the strength at the knot that is used: the rest is for wear at pinholes and edges, and because polyethylene
+creeps under lasting loads. Assumed; no source."""
+
+_TOLERANCE = 0.01
+"""A line may be so much thicker than asked for [mm]: labels are no more precise."""
+
+SOURCE = (
+    "Diameters and strengths of modern braided lines by their PE number: line diameter chart of Tasline (Australia); "
+    "labels of makers differ, read yours."
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """A braided line of polyethylene.
+
+    Attributes:
+        name: its PE number and strength, as on the label.
+        diameter: [mm].
+        pounds: nominal strength without a knot [lb].
+    """
+
+    name: str
+    diameter: float
+    pounds: float
+
+    @property
+    def strength(self) -> float:
+        """At which it breaks without a knot [N]."""
+        return POUND * self.pounds
+
+    @property
+    def at_knot(self) -> float:
+        """At which it breaks at a knot [N]."""
+        return KNOT * self.strength
+
+    @property
+    def working_load(self) -> float:
+        """That it bears for long [N]."""
+        return SAFETY * self.at_knot
+
+
+LINES = tuple(
+    Line(name=f"PE {number:g}, {pounds:g} lb", diameter=diameter, pounds=pounds)
+    for number, diameter, pounds in (
+        (1, 0.165, 15.0),
+        (1.5, 0.205, 20.0),
+        (2, 0.235, 25.0),
+        (3, 0.285, 35.0),
+        (4, 0.330, 50.0),
+        (5, 0.370, 60.0),
+        (6, 0.405, 80.0),
+        (10, 0.520, 120.0),
+        (14, 0.620, 160.0),
+    )
+)
+"""The thinnest first."""
+
+
+def line_for(diameter: float) -> Line:
+    """The thickest line that is not thicker than a diameter [mm]; the thinnest if all are."""
+    fitting = [line for line in LINES if line.diameter <= diameter + _TOLERANCE]
+    return fitting[-1] if fitting else LINES[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineCheck:
+    """Whether one line bears all cables.
+
+    Attributes:
+        line: what they are made of.
+        table: strength of each cable's line against its tension.
+        problems: cables that would break.
+        warnings: cables above the working load.
+    """
+
+    line: Line
+    table: Table
+    problems: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def check_line(robot: Robot, tensions: Vector, line: Line) -> LineCheck:
+    """Whether a line bears the largest tension of each cable [N].
+
+    Raises:
+        InputError: not as many tensions as cables.
+    """
+    if len(tensions) != len(robot.cables):
+        raise InputError(f"{len(tensions)} tensions given for {len(robot.cables)} cables")
+    problems, warnings, rows = [], [], []
+    for number, (cable, tension) in enumerate(zip(robot.cables, map(float, tensions), strict=True), start=1):
+        named = f'cable C{number} of winch "{cable.winch}"'
+        pulls = f"{named} pulls {tension:.1f} N"
+        if tension > line.at_knot:
+            problems.append(f"{pulls}, but {line.name} breaks at its knot at {line.at_knot:.0f} N; {_remedy(tension)}")
+            verdict = "breaks"
+        elif tension > line.working_load:
+            warnings.append(
+                f"{pulls}, above the working load of {line.name}, {line.working_load:.0f} N; {_remedy(tension)}"
+            )
+            verdict = "above the working load"
+        else:
+            verdict = "holds"
+        rows.append(
+            (f"C{number}", cable.winch, tension, line.name, line.strength, line.at_knot, line.working_load, verdict)
+        )
+    table = Table(
+        name="line_strength",
+        title="Strength of the line",
+        columns=(
+            Column(title="cable", align=Align.LEFT),
+            Column(title="winch", align=Align.LEFT),
+            Column(title="largest tension", unit="N"),
+            Column(title="line", align=Align.LEFT),
+            Column(title="breaks at", unit="N", decimals=0),
+            Column(title="at a knot", unit="N", decimals=0),
+            Column(title="working load", unit="N", decimals=0),
+            Column(title="verdict", align=Align.LEFT),
+        ),
+        rows=tuple(rows),
+        notes=(
+            f"At a knot a line keeps {KNOT:g} of its strength, if badly tied; tie a doubled Palomar. Working load: "
+            f"{SAFETY:g} of that.",
+            SOURCE,
+        ),
+    )
+    return LineCheck(line=line, table=table, problems=tuple(problems), warnings=tuple(warnings))
+
+
+def _remedy(tension: float) -> str:
+    """What line would bear a tension [N]."""
+    for line in LINES:
+        if line.working_load >= tension:
+            return f"use {line.name} ({line.diameter:g} mm) or thicker, or ask for less"
+    return f"no line of the table bears that ({LINES[-1].working_load:.0f} N at most): share it among more cables"

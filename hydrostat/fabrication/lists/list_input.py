@@ -1,0 +1,95 @@
+"""`ListInput`: all that the lists are made of."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.lists.line import Line
+from hydrostat.fabrication.lists.motor_sizing import MotorLike
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.patterns.stitches import CableStitches
+from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.robot import Robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cloth:
+    """What the pattern of a plush robot takes.
+
+    Attributes:
+        felt: of all panels [mm^2].
+        seam: length of all seams [mm].
+        zipper: length of the opening [mm]; 0 for none.
+    """
+
+    felt: float
+    seam: float
+    zipper: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class FoamNeeds:
+    """What casting the body takes.
+
+    Attributes:
+        volume: of the cavity [mm^3].
+        part_a: of the foam [g].
+        part_b: of the foam [g].
+        silicone: for the mould [mm^3]; 0 for a printed one.
+        silicone_mass: [g].
+    """
+
+    volume: float
+    part_a: float
+    part_b: float
+    silicone: float = 0.0
+    silicone_mass: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ListInput:
+    """All that the lists are made of; lengths in millimetres, cables by their index.
+
+    Attributes:
+        robot: that is built.
+        demand: what its poses ask for.
+        motor: of all its winches.
+        method: how the body is made.
+        options: of the printed parts: line, tube and spare wraps.
+        printed: the parts for all winches, stoppers, and the base.
+        mould: printed pieces of the mould, or the positive for a silicone one.
+        screws: how many of each kind, by what they are called.
+        leads: from each winch's exit to its spool [mm].
+        seats: depth of the seat of the tube at each winch [mm].
+        outside: tube from the base with the motors to where each cable begins [mm].
+        stitches: of each cable of a plush robot.
+        cloth: of a plush robot.
+        foam: of a robot of foam.
+        line: what the cables are made of; None: the strongest as thick as the options say.
+    """
+
+    robot: Robot
+    demand: Demand
+    motor: MotorLike
+    method: Method = Method.PLUSH
+    options: PartOptions = field(default_factory=PartOptions)
+    printed: tuple[Printed, ...] = ()
+    mould: tuple[Printed, ...] = ()
+    screws: Mapping[str, int] = field(default_factory=dict)
+    leads: Mapping[int, float] = field(default_factory=dict)
+    seats: Mapping[int, float] = field(default_factory=dict)
+    outside: Mapping[int, float] = field(default_factory=dict)
+    stitches: tuple[CableStitches, ...] = ()
+    cloth: Cloth | None = None
+    foam: FoamNeeds | None = None
+    line: Line | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("leads", "seats", "outside"):
+            for index, length in getattr(self, name).items():
+                if not 0 <= index < len(self.robot.cables):
+                    raise InputError(f"{name}[{index}]: the robot has {len(self.robot.cables)} cables, counted from 0")
+                if not length >= 0:
+                    raise InputError(f"{name}[{index}] must not be negative, not {length:g} mm")

@@ -1,0 +1,230 @@
+"""`WinchSizing`: whether a motor is strong and quick enough for each winch."""
+
+import math
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.robot import Robot, Winch
+
+MARGIN = 2.0
+"""Torque of a motor over the largest that was simulated. Simulated cables mostly run without friction: one that turns
+by 360 degrees in all at mu = 0.1 needs exp(0.1 * 2 pi) = 1.9 times the tension at its winch (capstan). Bodies also
+differ from their assumed stiffness, and motors age."""
+
+SLOW = 10.0
+"""A winch that takes longer than this for its full travel [s] is called slow."""
+
+
+@runtime_checkable
+class MotorLike(Protocol):
+    """What must be known of a motor."""
+
+    @property
+    def title(self) -> str:
+        """What a person calls it."""
+        ...
+
+    @property
+    def stall_torque(self) -> float:
+        """At which it stands still [N mm]."""
+        ...
+
+    @property
+    def rated_torque(self) -> float:
+        """That it bears for long [N mm]."""
+        ...
+
+    @property
+    def speed(self) -> float:
+        """Without load [rpm]."""
+        ...
+
+    @property
+    def mass(self) -> float:
+        """Of one [g]."""
+        ...
+
+    @property
+    def price(self) -> float:
+        """Of one, rough [USD]."""
+        ...
+
+    @property
+    def price_source(self) -> str:
+        """Where that is from, and when."""
+        ...
+
+    @property
+    def horn(self) -> object:
+        """That of a servo, which has a driver of its own; None: a plain motor."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class WinchSizing:
+    """What one winch asks of its motor and what it gets.
+
+    Attributes:
+        winch: its name.
+        cables: how many it takes in.
+        tension: largest of one of its cables [N].
+        torque: largest on its shaft [N mm].
+        radius: of its spool, where its travel is measured [mm].
+        turns: of the spool from all let out to all taken in.
+        travel: the most cable it takes in from rest [mm].
+        stall: torque at which the motor stands still [N mm].
+        rated: torque that the motor bears for long [N mm].
+        free: speed of the motor without load [rpm].
+    """
+
+    winch: str
+    cables: int
+    tension: float
+    torque: float
+    radius: float
+    turns: float
+    travel: float
+    stall: float
+    rated: float
+    free: float
+
+    @property
+    def needed(self) -> float:
+        """Largest torque with the margin [N mm]."""
+        return MARGIN * self.torque
+
+    @property
+    def loaded(self) -> float:
+        """Speed of the motor at the largest torque [rpm]: speed falls evenly with torque, to none at stall."""
+        return self.free * max(0.0, 1 - self.torque / self.stall)
+
+    @property
+    def pull(self) -> float:
+        """Speed of the cable at the largest torque [mm/s]."""
+        return 2 * math.pi * self.radius * self.loaded / 60
+
+    @property
+    def time(self) -> float | None:
+        """For the full travel while torque rises evenly from none to the largest [s]; None: it never gets there.
+
+        With q the largest torque over that of stall, speed falls along the travel as 1 - q x; the integral of 1/speed
+        gives - ln(1 - q) / q times the time without load.
+        """
+        if self.torque >= self.stall:
+            return None
+        share = self.torque / self.stall
+        slower = -math.log1p(-share) / share if share > 1e-9 else 1.0
+        return slower * self.travel / (2 * math.pi * self.radius * self.free / 60)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the motor cannot do."""
+        asks = f'winch "{self.winch}" asks for {self.torque:.0f} N mm'
+        found = []
+        if self.torque >= self.stall:
+            found.append(
+                f"{asks}, but the motor stalls at {self.stall:.0f} N mm: it cannot reach the poses; take a stronger "
+                "motor or a smaller spool"
+            )
+        elif self.needed > self.stall:
+            found.append(
+                f"{asks}, {self.needed:.0f} N mm with the margin of {MARGIN:g}, but the motor stalls at "
+                f"{self.stall:.0f} N mm: it may stand still before a pose is reached"
+            )
+        if self.rated < self.torque < self.stall:
+            found.append(
+                f"{asks}, more than the {self.rated:.0f} N mm that the motor bears for long: hold such poses for "
+                "seconds only"
+            )
+        if self.time is not None and self.time > SLOW:
+            found.append(f'winch "{self.winch}" takes {self.time:.0f} s for its travel of {self.travel:.0f} mm')
+        return tuple(found)
+
+
+def size_winches(robot: Robot, demand: Demand, motor: MotorLike) -> tuple[WinchSizing, ...]:
+    """What each winch of a robot asks of a motor.
+
+    Raises:
+        InputError: a demand of another robot, or a motor without torque or speed.
+    """
+    if len(demand.torques) != len(robot.winches) or len(demand.tensions) != len(robot.cables):
+        raise InputError(
+            f"the demand is of {len(demand.torques)} winches and {len(demand.tensions)} cables, the robot has "
+            f"{len(robot.winches)} and {len(robot.cables)}"
+        )
+    for name in ("stall_torque", "rated_torque", "speed"):
+        if not getattr(motor, name) > 0:
+            raise InputError(f"{name} of {motor.title} must be above 0, not {getattr(motor, name):g}")
+    return tuple(
+        _size(robot, demand, motor, winch, float(torque))
+        for winch, torque in zip(robot.winches, demand.torques, strict=True)
+    )
+
+
+def _size(robot: Robot, demand: Demand, motor: MotorLike, winch: Winch, torque: float) -> WinchSizing:
+    mine = [
+        float(tension)
+        for cable, tension in zip(robot.cables, demand.tensions, strict=True)
+        if cable.winch == winch.name
+    ]
+    return WinchSizing(
+        winch=winch.name,
+        cables=len(mine),
+        tension=max(mine, default=0.0),
+        torque=1e3 * torque,
+        radius=1e3 * winch.spool_radius,
+        turns=(winch.travel + winch.release) / (2 * math.pi * winch.spool_radius),
+        travel=1e3 * winch.travel,
+        stall=motor.stall_torque,
+        rated=motor.rated_torque,
+        free=motor.speed,
+    )
+
+
+def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: MotorLike) -> Table:
+    """What each winch asks of the motor and what it gets."""
+    poses = ", ".join(demand.poses) or "no pose"
+    return Table(
+        name="motor_sizing",
+        title=f"Motors: {motor.title}",
+        columns=(
+            Column(title="winch", align=Align.LEFT),
+            Column(title="cables", decimals=0),
+            Column(title="largest tension", unit="N"),
+            Column(title="spool radius", unit="mm"),
+            Column(title="largest torque", unit="N mm"),
+            Column(title="with margin", unit="N mm"),
+            Column(title="motor stalls at", unit="N mm", decimals=0),
+            Column(title="bears for long", unit="N mm", decimals=0),
+            Column(title="spool turns", decimals=2),
+            Column(title="free speed", unit="rpm", decimals=0),
+            Column(title="loaded speed", unit="rpm", decimals=0),
+            Column(title="cable speed", unit="mm/s"),
+            Column(title="full travel in", unit="s"),
+            Column(title="verdict", align=Align.LEFT),
+        ),
+        rows=tuple(
+            (
+                *(sizing.winch, sizing.cables, sizing.tension, sizing.radius, sizing.torque, sizing.needed),
+                *(sizing.stall, sizing.rated, sizing.turns, sizing.free, sizing.loaded, sizing.pull, sizing.time),
+                _verdict(sizing),
+            )
+            for sizing in sizings
+        ),
+        notes=(
+            f"Largest in: {poses}. Margin {MARGIN:g}: for friction at the pinholes and bodies stiffer than assumed.",
+            "Speed falls evenly with torque, from the free speed to none at stall.",
+            *(f"Not solved: {missed}." for missed in demand.missed),
+        ),
+    )
+
+
+def _verdict(sizing: WinchSizing) -> str:
+    if sizing.torque >= sizing.stall:
+        return "too weak"
+    if sizing.needed > sizing.stall:
+        return "no margin"
+    return "holds for seconds" if sizing.torque > sizing.rated else "good"

@@ -1,0 +1,100 @@
+"""The bill: what is counted, weighed and paid."""
+
+import math
+
+import pytest
+from small_inputs import PlainMotor, box, given, square
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
+from hydrostat.fabrication.lists.cable_cuts import cable_cuts
+from hydrostat.fabrication.lists.line import line_for
+from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
+from hydrostat.fabrication.lists.needs import all_needs, filling_mass
+from hydrostat.fabrication.lists.prices import PRICES
+from hydrostat.fabrication.lists.sheath_cuts import sheath_cuts
+from hydrostat.fabrication.price import NO_SOURCE, Price
+from hydrostat.fabrication.solids.construct import Box, solid_of
+from hydrostat.fabrication.solids.printed import Printed
+
+CUBE = Printed(name="cube", title="Cube", solid=solid_of(Box((10.0, 10.0, 10.0))), count=3)
+
+
+def needs(this: ListInput) -> dict[str, Item]:
+    cuts = cable_cuts(this.robot, leads={}, outside=this.outside, spare_wraps=2.0)
+    tubes = sheath_cuts(this.robot, seats={}, outside=this.outside)
+    return {item.what: item for item in all_needs(this, line_for(0.4), cuts, tubes)}
+
+
+def test_totals_of_groups_and_of_all() -> None:
+    price = Price(amount=2.0, unit="m", pack=5.0)
+    items = (
+        Item(group="a", what="x", specification="", quantity=1.5, price=price, mass=4.0),
+        Item(group="a", what="y", specification="", quantity=2.0, price=price),
+        Item(group="b", what="z", specification="", quantity=6.0, price=price, mass=1.0),
+    )
+    table = bill_table(items)
+    assert table.column("used up") == pytest.approx((3.0, 4.0, 7.0, 12.0, 12.0, 19.0))
+    assert table.column("in whole packs") == pytest.approx((10.0, 10.0, 20.0, 20.0, 20.0, 40.0))
+    assert table.column("mass") == (4.0, None, 4.0, 1.0, 1.0, 5.0)
+    assert cost_of(items) == 19.0
+    assert cost_of(items, "a") == 7.0
+
+
+def test_a_full_pack_is_one_pack() -> None:
+    price = Price(amount=1.0, pack=0.1)
+    assert [price.packs(quantity) for quantity in (0.1, 0.3, 0.31)] == [1, 3, 4]
+    with pytest.raises(InputError, match="pack must be above 0"):
+        Price(amount=1.0, pack=0.0)
+
+
+def test_filling_is_volume_times_density() -> None:
+    robot = square()
+    assert filling_mass(given(robot)) == pytest.approx(100 * 100 * 30 * 1e-6 * robot.body.material.density)
+    assert filling_mass(given(box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08)))) == pytest.approx(0.2 * 0.16**2 * 40 * 1e3)
+
+
+def test_a_plush_robot() -> None:
+    found = needs(given(square(), cloth=Cloth(felt=2e5, seam=1e3, zipper=96.0), printed=(CUBE,), screws={"M2 x 6": 4}))
+    assert found["felt"].quantity == pytest.approx(0.2)
+    assert found["all-purpose thread"].quantity == 1
+    assert "100 mm" in found["zipper"].specification
+    assert found["PLA for printed parts"].mass == pytest.approx(3 * 1.24)
+    assert found["screw"].quantity == 4
+    assert found["geared motor"].cost == 20.0
+    assert not {"silicone", "skin", "release agent", "PTFE tube"} & set(found)
+    assert found["braided fishing line"].mass == pytest.approx(0.97e-3 * math.pi / 4 * 0.405**2 * 360)
+
+
+def test_boards_and_drivers_for_many_motors() -> None:
+    assert needs(given(square()))["motor driver"].quantity == 1
+    servo = needs(given(square(), motor=PlainMotor(horn="a horn")))
+    assert "motor driver" not in servo
+    assert servo["controller board for servos"].quantity == 1
+
+
+def test_a_robot_without_a_zipper_buys_none() -> None:
+    assert "zipper" not in needs(given(square(), cloth=Cloth(felt=1e5, seam=1e3)))
+
+
+def test_a_hand_of_foam_costs_what_the_thesis_paid() -> None:
+    robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
+    hand = FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0, silicone=3e6, silicone_mass=3540.0)  # 0.4 l at 0.16 g/ml
+    items = needs(given(robot, foam=hand)).values()
+    core = sum(item.cost for item in items if item.what.startswith("foam"))
+    assert 1 < core < 5  # "a few dollars each" (N2)
+    assert 50 < cost_of(items, "mould") < 200  # "about 100 USD" (N2)
+
+
+def test_a_printed_mould_needs_no_silicone() -> None:
+    robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
+    found = needs(given(robot, foam=FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0), mould=(CUBE,)))
+    assert "silicone" not in found
+    assert found["PLA for the mould"].mass == pytest.approx(3 * 1.24)
+
+
+def test_every_price_says_where_it_is_from() -> None:
+    for price in PRICES.values():
+        assert price.amount > 0
+        assert price.currency == "USD"
+        assert price.words == NO_SOURCE or price.words.startswith("rough, from ")

@@ -1,0 +1,54 @@
+"""Lengths of cables, by closed forms and by the simulation."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from small_inputs import square
+
+from hydrostat.fabrication.lists.cable_cuts import KNOT, STEP, TAIL, cable_cuts, cable_table, check_lengths
+from hydrostat.robot import Cable
+from hydrostat.simulation import Simulation
+
+START = (-0.02, -0.01)
+
+
+def test_sum_of_a_cable_of_known_points() -> None:
+    cable = Cable(winch="pull", points=(START, (0.01, 0.03), (0.04, 0.03)), slack=0.007)
+    (cut,) = cable_cuts(
+        square(cable, spool_radius=0.005, release=0.01), leads={0: 12.0}, outside={0: 300.0}, spare_wraps=2.0
+    )
+    assert cut.body == pytest.approx(50 + 30)  # a triangle of 30, 40, 50 and a straight piece
+    assert cut.wraps == pytest.approx(20 * math.pi)
+    assert cut.length == pytest.approx(80 + 7 + 300 + 12 + 20 * math.pi + 10 + KNOT + TAIL)
+    assert cut.stopper == pytest.approx(300 + 80 + 7)
+    assert cut.exit_mark == pytest.approx(TAIL + 387)
+    assert cut.spool_mark == pytest.approx(TAIL + 399)
+    assert cut.length <= cut.cut < cut.length + STEP
+    assert cut.cut % STEP == 0
+
+
+def test_a_stepped_spool_has_its_own_wraps_and_release() -> None:
+    cable = Cable(winch="pull", points=(START, (0.01, 0.03)), spool_radius=0.009)
+    (cut,) = cable_cuts(square(cable, spool_radius=0.006, release=0.01), leads={}, outside={}, spare_wraps=3.0)
+    assert cut.wraps == pytest.approx(3 * 2 * math.pi * 9)
+    assert cut.release == pytest.approx(15)
+
+
+def test_columns_add_up_to_the_total() -> None:
+    robot = square(Cable(winch="pull", points=(START, (0.01, 0.03)), slack=0.003), release=0.004)
+    table = cable_table(cable_cuts(robot, leads={0: 9.0}, outside={0: 40.0}, spare_wraps=2.0))
+    parts = ("body", "slack", "outside", "lead", "wraps", "release", "knot", "tail")
+    numbers = dict(zip(table.headings, table.texts[0], strict=True))
+    assert sum(float(numbers[f"{part} [mm]"]) for part in parts) == pytest.approx(float(numbers["total [mm]"]), abs=0.3)
+
+
+def test_lengths_are_those_of_the_simulation_and_others_are_caught() -> None:
+    cable = Cable(winch="pull", points=(START, (0.0, 0.0), (0.01, 0.03), (0.04, 0.03)), sheathed=((0, 1),))
+    robot = square(cable)
+    cuts = cable_cuts(robot, leads={}, outside={}, spare_wraps=2.0)
+    assert check_lengths(cable_table(cuts), Simulation(robot)).passed
+    wrong = cable_table((replace(cuts[0], body=cuts[0].body + 0.3),))
+    check = check_lengths(wrong, Simulation(robot))
+    assert not check.passed
+    assert float(check.measured.split()[2]) == pytest.approx(0.3, abs=0.06)

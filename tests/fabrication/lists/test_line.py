@@ -1,0 +1,52 @@
+"""Strength of lines against tensions."""
+
+import numpy as np
+import pytest
+from small_inputs import square
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.lists.line import KNOT, LINES, SAFETY, Line, check_line, line_for
+
+TEN = Line(name="ten", diameter=0.3, pounds=10 / 4.448222)
+"""A line that breaks at 10 N."""
+
+
+def test_strength_of_a_line() -> None:
+    assert TEN.strength == pytest.approx(10)
+    assert TEN.working_load == pytest.approx(10 * KNOT * SAFETY)
+
+
+def test_thicker_lines_are_stronger() -> None:
+    assert list(LINES) == sorted(LINES, key=lambda line: line.diameter)
+    assert list(LINES) == sorted(LINES, key=lambda line: line.strength)
+
+
+def test_no_line_is_stronger_than_its_fibres() -> None:
+    area = [np.pi / 4 * line.diameter**2 for line in LINES]  # gel-spun polyethylene breaks at 3.6 GPa at most
+    assert all(line.strength / each < 3600 for line, each in zip(LINES, area, strict=True))
+
+
+def test_the_line_that_is_advised_fits() -> None:
+    assert line_for(0.4).diameter == pytest.approx(0.405)  # a label is no more precise
+    assert line_for(0.3).diameter == 0.285
+    assert line_for(0.01) is LINES[0]
+
+
+@pytest.mark.parametrize(("tension", "problems", "warnings"), [(2.4, 0, 0), (2.6, 0, 1), (4.9, 0, 1), (5.1, 1, 0)])
+def test_who_breaks_and_who_is_overloaded(tension: float, problems: int, warnings: int) -> None:
+    check = check_line(square(), np.array([tension]), TEN)
+    assert (len(check.problems), len(check.warnings)) == (problems, warnings)
+    for sentence in (*check.problems, *check.warnings):
+        assert f"{tension:.1f} N" in sentence
+        assert 'C1 of winch "pull"' in sentence
+        assert "PE 1, 15 lb" in sentence
+
+
+def test_no_line_for_a_crane() -> None:
+    (sentence,) = check_line(square(), np.array([1e4]), TEN).problems
+    assert "no line of the table" in sentence
+
+
+def test_tensions_of_another_robot_are_refused() -> None:
+    with pytest.raises(InputError, match="2 tensions given for 1 cables"):
+        check_line(square(), np.ones(2), TEN)

@@ -1,0 +1,87 @@
+"""All lists of small robots and of the gallery."""
+
+import math
+
+import numpy as np
+import pytest
+from shapely import transform
+from small_inputs import box, demand_of, given, square
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
+from hydrostat.fabrication.lists.lists import make_lists
+from hydrostat.fabrication.patterns.stitches import cable_stitches
+from hydrostat.robot import Robot
+from hydrostat.robot.gallery import gallery_folder, gallery_names
+from hydrostat.robot.read import load_robot
+
+
+def stitches(robot: Robot) -> tuple:
+    assert robot.body.outline is not None
+    return cable_stitches(robot, transform(robot.body.outline.polygon, lambda points: 1e3 * points))
+
+
+def test_names_and_order() -> None:
+    lists = make_lists(given(square(), cloth=Cloth(felt=1e5, seam=1e3), stitches=stitches(square())))
+    names = ["bill_of_materials", "cable_cuts", "sheath_cuts", "stitching", "line_strength", "motor_sizing"]
+    assert [table.name for table in lists.tables] == names
+    assert lists.problems == lists.warnings == ()
+    assert all(check.passed for check in lists.checks)
+    assert lists.table("cable_cuts").rows[0][0] == "C1"
+    with pytest.raises(InputError, match="the lists are: bill_of_materials"):
+        lists.table("shopping")
+
+
+def test_problems_and_warnings_come_through() -> None:
+    robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08), (0.15, 0.08, 0.08))
+    lists = make_lists(given(robot, demand=demand_of(robot, 500.0), foam=FoamNeeds(volume=1e6, part_a=8.0, part_b=8.0)))
+    assert len(lists.problems) == 1
+    assert "breaks" in lists.problems[0]
+    assert any("cannot reach" in warning for warning in lists.warnings)
+    assert any("80 mm under the skin" in warning for warning in lists.warnings)
+    assert "each core of foam" in lists.tables[0].notes[-1]
+
+
+def test_lengths_of_no_cable_are_refused() -> None:
+    with pytest.raises(InputError, match=r"leads\[3\]: the robot has 1 cables"):
+        given(square(), leads={3: 1.0})
+    with pytest.raises(InputError, match=r"outside\[0\] must not be negative"):
+        given(square(), outside={0: -1.0})
+
+
+def test_the_same_bytes_twice() -> None:
+    this = given(square(), cloth=Cloth(felt=1e5, seam=1e3))
+    assert [table.csv for table in make_lists(this).tables] == [table.csv for table in make_lists(this).tables]
+
+
+@pytest.mark.parametrize("name", gallery_names())
+def test_gallery_robots_have_sound_lists(name: str, unchecked: None) -> None:
+    robot = load_robot(gallery_folder(name))
+    flat = robot.body.mesh.dim == 2
+    every = range(len(robot.cables))
+    lists = make_lists(
+        given(
+            robot,
+            method=Method.PLUSH if flat else Method.FOAM,
+            stitches=stitches(robot) if flat else (),
+            cloth=Cloth(felt=2e5, seam=2e3, zipper=150.0) if flat else None,
+            foam=None if flat else FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0, silicone=3e6, silicone_mass=3540.0),
+            leads=dict.fromkeys(every, 10.0),
+            seats=dict.fromkeys(every, 5.0),
+        )
+    )
+    assert all(check.passed for check in lists.checks), lists.checks
+    cuts = lists.table("cable_cuts")
+    for cable, total in zip(robot.cables, cuts.column("total"), strict=True):
+        assert isinstance(total, float)
+        assert 1e3 * cable.length < total < 1e3 * cable.length + 400
+    assert len(lists.table("stitching").rows) == sum(len(cable.points) for cable in robot.cables)
+    tubes = lists.table("sheath_cuts").column("cut to")
+    assert all(isinstance(length, float) and length > 0 for length in tubes)
+    bill = lists.table("bill_of_materials")
+    assert all(isinstance(cost, float) and math.isfinite(cost) and cost > 0 for cost in bill.column("used up"))
+    used, spent = (np.array(bill.column(title), dtype=float) for title in ("used up", "in whole packs"))
+    assert (used <= spent + 1e-9).all()
+    for table in lists.tables:
+        assert table.csv.decode().count("\r\n") == len(table.rows) + 1

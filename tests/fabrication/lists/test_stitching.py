@@ -1,0 +1,58 @@
+"""Stitching order of flat and solid robots."""
+
+import pytest
+from shapely import box as rectangle
+from small_inputs import box, square
+
+from hydrostat.fabrication.lists.stitching import NEEDLE, SKIN, close_warnings, deep_warnings, depth_table, stitch_table
+from hydrostat.fabrication.patterns.stitches import cable_stitches
+from hydrostat.robot import Cable
+
+SEAM = rectangle(-50, -50, 50, 50)
+
+
+def test_from_hole_to_hole_of_a_known_cable() -> None:
+    robot = square(Cable(winch="pull", points=((-0.02, -0.01), (0.01, 0.03), (0.04, 0.03), (0.04, 0.01))))
+    table = stitch_table(cable_stitches(robot, SEAM))
+    assert table.column("point") == ("1 (winch)", "2", "3", "4 (stopper)")
+    assert table.column("from the last point") == (None, *map(pytest.approx, (50.0, 30.0, 20.0)))
+    assert table.column("from the winch") == tuple(map(pytest.approx, (0.0, 50.0, 80.0, 100.0)))
+    assert table.column("x")[0] == pytest.approx(-20)
+    assert table.column("y")[1] == pytest.approx(30)
+
+
+def test_ways_go_out_and_in_by_turns_and_end_outside() -> None:
+    for count in (2, 3, 4, 5):
+        points = tuple((-0.02 + 0.01 * place, -0.01) for place in range(count))
+        ways = stitch_table(cable_stitches(square(Cable(winch="pull", points=points)), SEAM)).column("way")
+        passes = [way for way in ways if way in ("in", "out")]
+        assert passes == ["out", "in", "out", "in", "out"][: len(passes)]
+        assert passes[-1] == "out"
+        assert all(str(way).startswith("tie") for way in ways if way not in ("in", "out"))
+
+
+def test_depths_in_a_box() -> None:
+    robot = box((-0.05, 0.08, 0.08), (0.02, 0.08, 0.003), (0.1, 0.08, 0.05), (0.1, 0.08, 0.08), (0.15, 0.02, 0.08))
+    table = depth_table(robot)
+    assert table.column("depth") == tuple(map(pytest.approx, (-50.0, 3.0, 50.0, 80.0, 20.0)))
+    hows = ("outside the body", "sewn to the skin", "long needle", "tube laid before casting", "long needle")
+    assert table.column("how") == hows
+    assert [table.column(f"skin {axis}")[2] for axis in "xyz"] == pytest.approx([100.0, 80.0, 0.0])
+    assert SKIN < NEEDLE
+    (warning,) = deep_warnings(table)
+    assert "C1" in warning
+    assert "80 mm" in warning
+
+
+def test_a_tube_needs_no_needle() -> None:
+    robot = box((-0.05, 0.08, 0.08), (0.02, 0.08, 0.08), (0.1, 0.08, 0.08), (0.15, 0.02, 0.08), sheathed=((0, 2),))
+    table = depth_table(robot)
+    assert table.column("how") == ("outside the body", "in its tube", "end of its tube", "long needle")
+    assert deep_warnings(table) == ()
+
+
+def test_points_too_close_for_a_needle() -> None:
+    robot = box((-0.05, 0.08, 0.08), (0.02, 0.08, 0.08), (0.021, 0.08, 0.08), (0.15, 0.02, 0.08))
+    (warning,) = close_warnings(robot)
+    assert "cable C1: points 2 and 3" in warning
+    assert "1.0 mm" in warning
