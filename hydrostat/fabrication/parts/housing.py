@@ -1,0 +1,265 @@
+"""`Housing`: what holds a spool on its motor: a plate that is screwed on the motor, and a box with the channels.
+
+The motor stands as in `motor.py`; the plate lies on its face, the box stands on the plate, open below, with the far end
+of the spool in its roof. Cables leave the box through its sides, each at the height of its groove and tangential to it.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+from shapely.geometry import MultiPoint, Polygon
+
+from hydrostat.fabrication.parts.motor import Motor
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.screws import Screw
+from hydrostat.fabrication.parts.spool import Spool
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder
+
+STUB = 8.0
+"""How far the shaft of a coupling goes into a spool [mm]."""
+
+SHEET = 4.0
+"""Thickness of the base that motors outside the body stand on, printed or of acrylic [mm]."""
+
+_NUT = 2.0
+"""What a nut takes of a screw [mm]."""
+
+_LENGTHS = (8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0)
+_SEAT = 5.0
+_ROOF = 2.0
+_TRY = 0.1
+"""Of the screws that are sold; depth of the seat of a tube; least thickness of the roof; step of the search for a place
+of the screws [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    """Where a spool stands on a motor; heights above the face of the motor [mm].
+
+    Attributes:
+        floor: thickness of the plate under the heads of its screws.
+        plate: top of the plate.
+        disc: thickness of the coupling's disc; 0 without a horn.
+        start: lower face of the spool.
+        tip: end of the shaft.
+    """
+
+    floor: float
+    plate: float
+    disc: float
+    start: float
+    tip: float
+
+    @property
+    def inside(self) -> float:
+        """How much of the shaft is in the spool [mm]; negative: it does not reach it."""
+        return self.tip - self.start
+
+
+def drive_of(motor: Motor, options: PartOptions) -> Drive:
+    """Where a spool stands on a motor."""
+    floor = motor.screw.floor(options.wall)
+    plate = floor + motor.screw.head_height
+    if motor.horn is None:
+        start = max(plate, motor.shaft.boss_height) + options.clearance
+        return Drive(floor=floor, plate=plate, disc=0.0, start=start, tip=motor.shaft.length)
+    disc = motor.horn.screw.floor(options.wall)
+    start = max(plate, motor.horn.height + disc + motor.horn.screw.head_height) + options.clearance
+    return Drive(floor=floor, plate=plate, disc=disc, start=start, tip=start + STUB)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Housing:
+    """A plate and a box round a spool; lengths in millimetres, z above the face of the motor.
+
+    Attributes:
+        motor: that it is screwed on.
+        spool: that turns in it.
+        azimuths: of each cable: the way in which it leaves, counted from +x [degrees], multiples of 90.
+        outside: whether its motor stands on a base outside the body: its screws then go on through the base.
+        options: sizes of the parts.
+    """
+
+    motor: Motor
+    spool: Spool
+    azimuths: tuple[int, ...]
+    outside: bool
+    options: PartOptions
+
+    @cached_property
+    def drive(self) -> Drive:
+        """Where the spool stands."""
+        return drive_of(self.motor, self.options)
+
+    @property
+    def roof(self) -> float:
+        """Its thickness [mm]."""
+        return max(self.options.wall, _ROOF)
+
+    @property
+    def under_roof(self) -> float:
+        """Height of its lower side [mm]."""
+        return self.drive.start + self.spool.body + self.options.clearance
+
+    @property
+    def top(self) -> float:
+        """Height of its upper side [mm]."""
+        return self.under_roof + self.roof
+
+    @cached_property
+    def cavity(self) -> float:
+        """Radius of the room for the spool [mm]."""
+        turning = max(self.spool.radius, self.motor.horn.radius if self.motor.horn else 0.0)
+        return turning + 2 * self.options.clearance
+
+    @cached_property
+    def post(self) -> float:
+        """How far the screws of the box are from the axis, along x and along y [mm].
+
+        Clear of the channels, of the room of the spool, of the screws in the face, and outside of the motor if there is
+        a base.
+        """
+        wall, passage = self.options.wall, self.screw.passage / 2
+        largest = max(groove.radius for groove in self.spool.grooves)
+        least = [largest + self._seat_radius + wall + passage, (self.cavity + wall + passage) / math.sqrt(2)]
+        if self.motor.horn is None:
+            least.append((self.recess + wall / 2 + passage) / math.sqrt(2))
+        found = max(least)
+        while self._blocked(found):
+            found += _TRY
+        return found
+
+    def _blocked(self, post: float) -> bool:
+        """Whether a screw would get into the way of a screw in the face, or of a motor below the base."""
+        mine = self.screw.passage / 2
+        corners = MultiPoint([(x, y) for x in (-post, post) for y in (-post, post)])
+        if self.outside:
+            cut = Polygon(self.motor.outline).buffer(self.options.clearance)
+            if corners.distance(cut) < mine + self.options.wall:
+                return True
+        if self.motor.horn is None:
+            return False
+        slots = MultiPoint([(x + side, y) for x, y in self.motor.holes for side in (-self.motor.slot, self.motor.slot)])
+        head = self.motor.screw.head / 2 + self.options.fit
+        return corners.distance(slots) < head + mine + self.options.wall / 2
+
+    @cached_property
+    def half(self) -> float:
+        """Half the width of the box [mm]."""
+        wall = self.options.wall
+        return max(self.post + self.screw.passage / 2 + wall, self.cavity + wall, self.recess + wall / 2)
+
+    @property
+    def recess(self) -> float:
+        """Radius of the recess in the plate for the heads of the screws, or for the horn [mm]."""
+        if self.motor.horn is not None:
+            return self.motor.horn.radius + self.options.clearance
+        furthest = max(math.hypot(x, y) for x, y in self.motor.holes)
+        return furthest + self.motor.screw.head / 2 + self.options.clearance
+
+    @property
+    def _seat_radius(self) -> float:
+        return self.options.tube / 2 + self.options.fit
+
+    @cached_property
+    def screw(self) -> Screw:
+        """That holds the box, four of them: the longest that ends in the plate, or below the nut under the base."""
+        if self.outside:
+            length = next((each for each in _LENGTHS if each >= self.top + SHEET + _NUT), _LENGTHS[-1])
+        else:
+            length = max((each for each in _LENGTHS if each <= self.top - 0.3), default=_LENGTHS[0])
+        end = "machine thread, with a nut" if self.outside else "self-tapping or machine thread"
+        title = f"M2 x {length:g} mm countersunk screw, {end}"
+        return Screw(title=title, length=length, core=1.5, pilot=1.7, passage=2.4, head=3.8, head_height=1.2)
+
+    @property
+    def sunk(self) -> float:
+        """How far the heads of these screws lie below the upper side of the roof [mm]."""
+        return 0.0 if self.outside else max(0.0, self.top - 0.3 - self.screw.length)
+
+    def height(self, cable: int) -> float:
+        """Of the channel of a cable of this winch, by its place on the spool [mm]."""
+        return self.drive.start + self.spool.middles[cable]
+
+    @property
+    def lead(self) -> float:
+        """From where a cable leaves the spool to the outer face of the box [mm]."""
+        return self.half
+
+    def seat(self, cable: int) -> float:
+        """How deep the tube of a cable goes into the box [mm]."""
+        radius = self.spool.grooves[cable].radius
+        wall = self.half - math.sqrt(max(0.0, self.cavity**2 - radius**2))
+        return min(_SEAT, 0.65 * wall)
+
+    def plate(self) -> Construction:
+        """As it lies on the motor."""
+        half, drive, motor = self.half, self.drive, self.motor
+        body: Construction = Box((2 * half, 2 * half, drive.plate)).moved(-half, -half, 0)
+        if motor.horn is not None:
+            (low_x, low_y), (high_x, high_y) = motor.outline[0], motor.outline[2]
+            body = body + Box((high_x - low_x, high_y - low_y, drive.plate)).moved(low_x, low_y, 0)
+            body = body - Cylinder(drive.plate + 2, self.recess).moved(0, 0, -1)
+        else:
+            body = body - Cylinder(drive.plate, self.recess).moved(0, 0, drive.floor)
+            body = body - Cylinder(drive.plate, motor.shaft.boss + self.options.clearance).moved(0, 0, -1)
+        for x, y in motor.holes:
+            body = body - self._slot(motor.screw.hole / 2).moved(x, y, -1)
+            if motor.horn is not None:
+                body = body - self._slot(motor.screw.head / 2 + self.options.fit).moved(x, y, drive.floor)
+        if self.outside:
+            hole = Cylinder(drive.plate + 2, self.screw.passage / 2).moved(0, 0, -1)
+        else:
+            hole = Cylinder(drive.plate, self.screw.pilot / 2).moved(0, 0, 0.4)
+        return self._at_posts(body, hole)
+
+    def _slot(self, radius: float) -> Construction:
+        """A hole, drawn out to both sides along x."""
+        tall, slot = self.drive.plate + 2, self.motor.slot
+        hole: Construction = Cylinder(tall, radius)
+        if slot:
+            ends = hole.moved(-slot, 0, 0) + hole.moved(slot, 0, 0)
+            hole = ends + Box((2 * slot, 2 * radius, tall)).moved(-slot, -radius, 0)
+        return hole
+
+    def _at_posts(self, body: Construction, hole: Construction) -> Construction:
+        for x in (-self.post, self.post):
+            for y in (-self.post, self.post):
+                body = body - hole.moved(x, y, 0)
+        return body
+
+    def box(self) -> Construction:
+        """As it stands on the plate."""
+        half, low, top = self.half, self.drive.plate, self.top
+        body: Construction = Box((2 * half, 2 * half, top - low)).moved(-half, -half, low)
+        body = body - Cylinder(self.under_roof - low + 1, self.cavity).moved(0, 0, low - 1)
+        body = body - Cylinder(self.roof + 2, self.spool.pin + self.options.clearance).moved(0, 0, self.under_roof - 1)
+        screw, sunk = self.screw, self.sunk
+        cone = (screw.head - screw.passage) / 2 + 0.1
+        hole: Construction = Cylinder(top - low + 2, screw.passage / 2).moved(0, 0, low - 1)
+        hole = hole + Cylinder(cone, screw.passage / 2, screw.head / 2 + 0.1).moved(0, 0, top - sunk - cone)
+        hole = hole + Cylinder(sunk + 1, screw.head / 2 + 0.1).moved(0, 0, top - sunk)
+        body = self._at_posts(body, hole)
+        for place, azimuth in enumerate(self.azimuths):
+            body = body - self._channel(place).turned(z=azimuth)
+        return body
+
+    def _channel(self, place: int) -> Construction:
+        """Of a cable that leaves along +x."""
+        seat = self.seat(place)
+        bore = Cylinder(self.half + 1, self.options.bore / 2).turned(y=90)
+        end = Cylinder(seat + 1, self._seat_radius).turned(y=90).moved(self.half - seat, 0, 0)
+        return (bore + end).moved(0, -self.spool.grooves[place].radius, self.height(place))
+
+    def coupling(self) -> Construction | None:
+        """The disc with a shaft that is screwed on a horn, as it stands on the bed."""
+        horn, drive = self.motor.horn, self.drive
+        if horn is None:
+            return None
+        body: Construction = Cylinder(drive.disc, horn.radius)
+        body = body + self.motor.shaft.shape(drive.tip - horn.height)
+        hole = Cylinder(drive.disc + 2, horn.screw.hole / 2).moved(horn.circle, 0, -1)
+        for step in range(horn.count):
+            body = body - hole.turned(z=360 / horn.count * step)
+        return body

@@ -1,0 +1,259 @@
+"""`Motor`: a geared motor that turns a winch, and the table of those that the parts are made for.
+
+All motors stand alike: the shaft is the z axis, the face that is screwed on lies in z = 0, the body is below it.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder, segments
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaceScrew:
+    """A screw with a pan head that holds something on a motor; lengths in millimetres.
+
+    Attributes:
+        size: of the thread, such as "M2".
+        hole: diameter of a printed hole that it passes freely [mm].
+        head: diameter of its head [mm], ISO 7045.
+        head_height: of its head [mm], ISO 7045.
+        depth: how far it may go into the motor [mm].
+    """
+
+    size: str
+    hole: float
+    head: float
+    head_height: float
+    depth: float
+
+    def length(self, wall: float) -> float:
+        """The shortest standard length [mm] that reaches two thirds of its depth through a wall [mm]."""
+        return next((each for each in _LENGTHS if each >= wall + 2 / 3 * self.depth), _LENGTHS[-1])
+
+    def floor(self, wall: float) -> float:
+        """The least thickness [mm], at least that of a wall, with which the screw does not go too deep."""
+        return max(wall, self.length(wall) - self.depth)
+
+    def title(self, wall: float) -> str:
+        """As it is bought, for a wall [mm]."""
+        return f"{self.size} x {self.length(wall):g} mm pan head screw"
+
+
+_LENGTHS = (3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaft:
+    """A shaft with one flat, which faces +x; lengths in millimetres.
+
+    Attributes:
+        diameter: of the round part [mm].
+        across: from the flat to the round side opposite [mm].
+        length: above the face of the motor [mm].
+        boss: radius of the raised ring round it [mm].
+        boss_height: of that ring above the face [mm].
+    """
+
+    diameter: float
+    across: float
+    length: float
+    boss: float
+    boss_height: float
+
+    def shape(self, length: float, grown: float = 0.0) -> Construction:
+        """Its solid from z = 0 upwards [mm], thicker by so much on each side [mm]."""
+        radius = self.diameter / 2 + grown
+        flat = self.across - self.diameter / 2 + grown
+        side = 2 * radius + 2
+        return Cylinder(length, radius) & Box((side, side, length)).moved(flat - side, -side / 2, 0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Horn:
+    """A disc on the output of a servo, which a coupling with a shaft is screwed on; lengths in millimetres.
+
+    Attributes:
+        radius: of the disc [mm].
+        height: of its top above the face of the motor [mm].
+        circle: radius of the circle of its screw holes [mm].
+        count: of its screw holes, the first at +x.
+        screw: that goes into them.
+    """
+
+    radius: float
+    height: float
+    circle: float
+    count: int
+    screw: FaceScrew
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motor:
+    """A geared motor; lengths in millimetres.
+
+    Attributes:
+        key: by which it is chosen.
+        title: what it is bought as.
+        body: its envelope below the face, without shaft, boss and horn.
+        outline: of all of it below the face, seen along the shaft, counter-clockwise.
+        depth: how far it reaches below the face [mm].
+        shaft: that turns the spool; with a horn that of the coupling, its length counted from the top of the horn.
+        horn: of a servo; None: the shaft is the motor's own.
+        holes: where screws go into the face.
+        slot: how far the holes in what is screwed on are drawn out to both sides along x, as the place of the holes in
+            the motor is not sure [mm].
+        screw: that goes into the face.
+        stall_torque: at which it stands still [N mm].
+        rated_torque: that it should be loaded with at most [N mm].
+        speed: without load [rpm].
+        voltage: at which the torques and the speed are [V].
+        mass: [g].
+        price: of one, rough [USD].
+        price_source: where that is from, and when.
+        source: which figures are from where, and which are not sure.
+    """
+
+    key: str
+    title: str
+    body: Construction
+    outline: tuple[Corner, ...]
+    depth: float
+    shaft: Shaft
+    horn: Horn | None = None
+    holes: tuple[Corner, ...]
+    slot: float = 0.0
+    screw: FaceScrew
+    stall_torque: float
+    rated_torque: float
+    speed: float
+    voltage: float
+    mass: float
+    price: float
+    price_source: str
+    source: str
+
+    @property
+    def envelope(self) -> Construction:
+        """All of it with what turns, without the coupling."""
+        if self.horn is not None:
+            return self.body + Cylinder(self.horn.height, self.horn.radius)
+        boss = Cylinder(self.shaft.boss_height, self.shaft.boss)
+        return self.body + boss + self.shaft.shape(self.shaft.length)
+
+
+def _box_outline(low: Corner, high: Corner) -> tuple[Corner, ...]:
+    return low, (high[0], low[1]), high, (low[0], high[1])
+
+
+def _disc_outline(radius: float) -> tuple[Corner, ...]:
+    angles = (2 * math.pi * corner / segments(radius) for corner in range(segments(radius)))
+    return tuple((radius * math.cos(angle), radius * math.sin(angle)) for angle in angles)
+
+
+_M1_6 = FaceScrew(size="M1.6", hole=1.9, head=3.2, head_height=1.3, depth=1.3)
+_M2 = FaceScrew(size="M2", hole=2.4, head=4.0, head_height=1.6, depth=4.0)
+_M2_HORN = FaceScrew(size="M2", hole=2.4, head=4.0, head_height=1.6, depth=2.5)
+_M3 = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=3.0)
+
+_N20 = Motor(
+    key="n20",
+    title="Pololu micro metal gearmotor LP 6V, 298:1 (N20)",
+    body=Box((12, 10, 9)).moved(-6, -5, -9) + (Cylinder(16, 6) & Box((12, 10, 16)).moved(-6, -5, 0)).moved(0, 0, -25),
+    outline=_box_outline((-6, -5), (6, 5)),
+    depth=25.0,
+    shaft=Shaft(diameter=3.0, across=2.5, length=9.0, boss=2.0, boss_height=0.8),
+    holes=((-4.5, 0.0), (4.5, 0.0)),
+    screw=_M1_6,
+    stall_torque=196.0,
+    rated_torque=49.0,
+    speed=45.0,
+    voltage=6.0,
+    mass=10.0,
+    price=18.0,
+    price_source="of its sister HPCB 75:1, 17.95 in an order list of the team ASROB-sumo, which has no date",
+    source="Pololu, Micro Metal Gearmotors, Rev 2.0, May 2018: stall 20 kg mm (extrapolated), 45 rpm, 10 g, gearbox "
+    "9 mm, M1.6 screws at most 1.3 mm deep. Pololu, product page 5215: section 10 x 12 mm, D shaft 3 x 9 mm. Load at "
+    "most a quarter of stall: Pololu's forum, thread 14572 (20 to 30 %). Holes 9 mm apart, flat of 2.5 mm, boss and "
+    "length of the motor: measured on none, check yours.",
+)
+
+_XL330 = Motor(
+    key="xl330",
+    title="Robotis Dynamixel XL330-M288-T",
+    body=Box((20, 34, 23)).moved(-10, -24.5, -23),
+    outline=_box_outline((-10, -24.5), (10, 9.5)),
+    depth=23.0,
+    shaft=Shaft(diameter=6.0, across=5.0, length=0.0, boss=8.0, boss_height=0.0),
+    horn=Horn(radius=8.0, height=3.0, circle=6.0, count=4, screw=_M2_HORN),
+    holes=((-8.0, 7.5), (8.0, 7.5), (-8.0, -22.5), (8.0, -22.5)),
+    slot=0.5,
+    screw=_M2,
+    stall_torque=520.0,
+    rated_torque=104.0,
+    speed=103.0,
+    voltage=5.0,
+    mass=18.0,
+    price=25.0,
+    price_source="estimate, no source",
+    source="Robotis e-Manual, XL330-M288-T: 20 x 34 x 26 mm, 18 g, at 5 V stall 0.52 N m and 103 rpm. Load at most a "
+    "fifth of stall: the same manual's note on XL-320 and AX-18A. Axis 9.5 mm below the top, case 23 mm, horn 16 mm "
+    "wide with 4 holes 6 mm from its axis, holes of the case 16 x 30 mm apart: a public OpenSCAD model of the project "
+    "Orbigator, 2025-12-13; measured on none, check yours: the holes for the case are slots.",
+)
+
+_POLOLU_25D = Motor(
+    key="25d",
+    title="Pololu 25D metal gearmotor LP 6V, 172:1, with encoder (item 4828)",
+    body=Cylinder(71, 12.5).moved(0, 0, -71),
+    outline=_disc_outline(12.5),
+    depth=71.0,
+    shaft=Shaft(diameter=4.0, across=3.5, length=12.5, boss=3.5, boss_height=2.5),
+    holes=((-8.5, 0.0), (8.5, 0.0)),
+    screw=_M3,
+    stall_torque=1373.0,
+    rated_torque=343.0,
+    speed=35.0,
+    voltage=6.0,
+    mass=100.0,
+    price=47.0,
+    price_source="AUD 72.95 for its sister 4822 at robotgear.com.au, no date, at 0.65 USD",
+    source="Pololu, product page 4828: 25 mm wide, 71 mm long with encoder, D shaft 4 x 12.5 mm, stall 14 kg cm "
+    "(extrapolated), 35 rpm. M3 holes 17 mm apart: Core Electronics, on the face of the motor of this family. Load at "
+    "most a quarter of stall: Pololu's forum, thread 14572 (20 to 30 %). Holes of the gearbox, boss (7 x 2.5 mm in a "
+    "public OpenSCAD model), flat of 3.5 mm, depth of the threads, mass: measured on none, check yours.",
+)
+
+MOTORS = (_N20, _XL330, _POLOLU_25D)
+"""From the weakest to the strongest."""
+
+
+def choose_motor(key: str, torques: Iterable[float], margin: float) -> tuple[Motor, tuple[str, ...]]:
+    """The motor of a key and what to mind; "auto": the first of the table that carries the largest torque [N m].
+
+    Args:
+        key: of a motor in the table, or "auto".
+        torques: largest on each winch [N m].
+        margin: by which the advised torque of a motor should be larger.
+
+    Raises:
+        InputError: no motor has this key.
+    """
+    largest = 1e3 * max((float(torque) for torque in torques), default=0.0)
+    needed = margin * largest
+    if key == "auto":
+        motor = next((each for each in MOTORS if each.rated_torque >= needed), MOTORS[-1])
+    else:
+        motor = next((each for each in MOTORS if each.key == key), None)
+    if motor is None:
+        keys = ", ".join(each.key for each in MOTORS)
+        raise InputError(f'there is no motor "{key}"; take auto or one of: {keys}')
+    if motor.rated_torque >= needed:
+        return motor, ()
+    asks = f"the winches ask for up to {largest:.0f} N mm, {needed:.0f} N mm with the margin of {margin:g}"
+    weak = f"{asks}, but {motor.title} should carry at most {motor.rated_torque:.0f} N mm"
+    if key == "auto":
+        return motor, (f"{weak}; no motor of the table is stronger: take smaller spools or more winches",)
+    return motor, (f"{weak}; take auto, or smaller spools",)

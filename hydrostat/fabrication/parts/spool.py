@@ -1,0 +1,177 @@
+"""`Spool`: what cables are wound on: a groove for each cable, one above the other on the shaft of a motor."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+from hydrostat.fabrication.parts.motor import Shaft
+from hydrostat.fabrication.solids.construct import Construction, Cylinder, Turning
+
+LAY = 1.25
+"""Width that a turn takes over the diameter of the cable: a line that nobody guides does not lie side by side."""
+
+_RIM = 0.8
+_SKIN = 0.6
+"""Material outside the hole for the knot, and below it [mm]."""
+
+_STEP = 0.5
+"""Widths of grooves are multiples of this [mm], so that winches of nearly the same travel share a spool."""
+
+
+def wraps(length: float, radius: float, spare: float) -> float:
+    """Turns of a cable of a length [mm] in one layer at a radius [mm], and some that always stay."""
+    return length / (2 * math.pi * radius) + spare
+
+
+def width_for(turns: float, cable: float) -> float:
+    """Width of a groove [mm] that takes so many turns of a cable [mm] in one layer, rounded up."""
+    return _STEP * math.ceil((turns * LAY * cable + cable) / _STEP - 1e-9)
+
+
+def capacity(width: float, radius: float, cable: float, layers: int) -> float:
+    """Length of cable [mm] in a groove.
+
+    A layer has n = (width - cable) / (LAY cable) turns; the first lies at the radius, the next each a cable further
+    out: 2 pi n (layers radius + cable layers (layers - 1) / 2).
+
+    Args:
+        width: of the groove [mm].
+        radius: of the middle of the cable in the first layer [mm].
+        cable: its diameter [mm].
+        layers: that are filled.
+    """
+    turns = max(0.0, (width - cable) / (LAY * cable))
+    return 2 * math.pi * turns * (layers * radius + cable * layers * (layers - 1) / 2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Groove:
+    """Where one cable is wound; lengths in millimetres.
+
+    Attributes:
+        radius: of the middle of the cable in the first layer [mm].
+        width: of its floor [mm].
+        layers: in which the cable lies.
+    """
+
+    radius: float
+    width: float
+    layers: int = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spool:
+    """Grooves on a shaft, the first next to the motor; z counts from its lower face, which lies on the motor's side.
+
+    Attributes:
+        grooves: in the order of the cables.
+        cable: diameter of the cable [mm].
+        shaft: that turns it.
+        inside: how much of the shaft is in it [mm].
+        play: between shaft and bore, on each side [mm].
+        wall: least thickness [mm].
+        journal: length of the pin at the far end, which turns in the housing [mm].
+    """
+
+    grooves: tuple[Groove, ...]
+    cable: float
+    shaft: Shaft
+    inside: float
+    play: float
+    wall: float
+    journal: float
+
+    @property
+    def pin(self) -> float:
+        """Radius of the pin at the far end [mm]."""
+        return self.shaft.diameter / 2 + self.play + self.wall
+
+    @property
+    def knot(self) -> float:
+        """Radius of the hole that hides the knot [mm]."""
+        return 2 * self.cable
+
+    @cached_property
+    def drums(self) -> tuple[float, ...]:
+        """Radius of the floor of each groove [mm]."""
+        return tuple(groove.radius - self.cable / 2 for groove in self.grooves)
+
+    @cached_property
+    def ties(self) -> tuple[float, ...]:
+        """How far the hole of each knot is from the axis [mm]: in the flange above its groove."""
+        above = (*self.drums[1:], self.pin)
+        return tuple(
+            max(mine + self.cable + 0.1, other + self.knot) for mine, other in zip(self.drums, above, strict=True)
+        )
+
+    @cached_property
+    def flanges(self) -> tuple[float, ...]:
+        """Radius of each flange [mm]: below the first groove, then above each."""
+        own = [drum + (groove.layers + 2) * self.cable for drum, groove in zip(self.drums, self.grooves, strict=True)]
+        holes = [tie + self.knot + _RIM for tie in self.ties]
+        above = [max(one, other, hole) for one, other, hole in zip(own, (*own[1:], 0.0), holes, strict=True)]
+        return own[0], *above
+
+    @cached_property
+    def floors(self) -> tuple[float, ...]:
+        """Height of the floor of each groove's lower edge [mm]."""
+        heights = [self._base]
+        for drum, groove, flange in zip(self.drums, self.grooves, self.flanges[1:], strict=True):
+            heights.append(heights[-1] + groove.width + (flange - drum) + self.wall / 2)
+        return tuple(heights)
+
+    @property
+    def middles(self) -> tuple[float, ...]:
+        """Height of the middle of each groove [mm]."""
+        return tuple(floor + groove.width / 2 for floor, groove in zip(self.floors, self.grooves, strict=False))
+
+    @property
+    def body(self) -> float:
+        """Height without the pin [mm]."""
+        return self.floors[-1]
+
+    @property
+    def radius(self) -> float:
+        """Of its largest flange [mm]."""
+        return max(self.flanges)
+
+    @property
+    def _base(self) -> float:
+        """Thickness of the first flange [mm]: of a wall, or so much that the shaft ends below the top of the pin."""
+        tall = sum(
+            groove.width + flange - drum + self.wall / 2
+            for drum, groove, flange in zip(self.drums, self.grooves, self.flanges[1:], strict=True)
+        )
+        return max(self.wall, self.inside + 0.2 - tall - self.journal)
+
+    def construction(self) -> Construction:
+        """Stands on its lower face; undersides of flanges rise by 45 degrees, so that it prints without support."""
+        top = self.body + self.journal
+        body: Construction = Turning(self._profile())
+        deep = self.inside + 0.5
+        if deep + self.pin > top - 0.4:
+            bore = self.shaft.shape(top + 2, self.play).moved(0, 0, -1)
+        else:
+            radius = self.shaft.diameter / 2 + self.play
+            cone = Cylinder(deep + radius, radius) & Cylinder(deep + radius, deep + radius, 0.0)
+            bore = self.shaft.shape(deep + radius + 1, self.play).moved(0, 0, -1) & (
+                cone + Cylinder(2, radius).moved(0, 0, -1.5)
+            )
+        body = body - bore
+        for tie, floor, flange, drum in zip(self.ties, self.floors[1:], self.flanges[1:], self.drums, strict=True):
+            low = floor - (flange - drum) - self.wall / 2
+            sunk = min(3 * self.cable, flange - tie - self.knot + self.wall / 2 - _SKIN)
+            body = body - Cylinder(floor - low + 2, self.cable).moved(tie, 0, low)
+            body = body - Cylinder(sunk + 1, self.knot).moved(tie, 0, floor - sunk)
+        return body
+
+    def _profile(self) -> tuple[tuple[float, float], ...]:
+        """(radius, height) corners, counter-clockwise from the axis."""
+        corners = [(0.0, 0.0), (self.flanges[0], 0.0), (self.flanges[0], self.floors[0])]
+        for drum, groove, flange, floor, end in zip(
+            self.drums, self.grooves, self.flanges[1:], self.floors, self.floors[1:], strict=False
+        ):
+            top = floor + groove.width
+            corners += [(drum, floor), (drum, top), (flange, top + flange - drum), (flange, end)]
+        top = self.body + self.journal
+        return (*corners, (self.pin, self.body), (self.pin, top), (0.0, top))
