@@ -10,7 +10,7 @@ _DECIMALS = 5
 _STEP = 2e-5
 """How far apart vertices are put that would fall together, at least [mm]."""
 
-FileMesh = tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]
+FileMesh = tuple[Float[np.ndarray, "kept 3"], Int[np.ndarray, "faces 3"]]
 """Vertices [mm], each a number that 32 bits hold, and triangles, counter-clockwise from outside."""
 
 
