@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.table import Align, Cell, Column, Table
 from hydrostat.fabrication.price import Price
 
@@ -44,7 +45,14 @@ def cost_of(items: Iterable[Item], group: str | None = None) -> float:
 
 
 def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table:
-    """The bill, with a total after each group and at the end."""
+    """The bill, with a total after each group and at the end.
+
+    Raises:
+        InputError: a price that is not in USD: currencies cannot be added.
+    """
+    for item in items:
+        if item.price.currency != "USD":
+            raise InputError(f"the price of {item.what} must be in USD, not {item.price.currency}")
     rows: list[tuple[Cell, ...]] = []
     for group in dict.fromkeys(item.group for item in items):
         mine = [item for item in items if item.group == group]

@@ -145,7 +145,8 @@ def check_lengths(table: Table, simulation: Simulation) -> Check:
     robot = simulation.robot
     sheathed = [float(cable.segments[~cable.bare].sum()) for cable in robot.cables]
     simulated = 1e3 * (simulation.cables.rest_lengths + np.array(sheathed))
-    listed = np.array([float(texts[2]) for texts in table.texts])
+    place = table.headings.index("body [mm]")
+    listed = np.array([float(texts[place]) for texts in table.texts])
     gap = float(np.abs(listed - simulated).max(initial=0.0))
     return Check(
         what="lengths in the cable cut list are the rest lengths of the simulation",

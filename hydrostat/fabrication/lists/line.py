@@ -122,6 +122,8 @@ def check_line(robot: Robot, tensions: Vector, line: Line) -> LineCheck:
         rows.append(
             (f"C{number}", cable.winch, tension, line.name, line.strength, line.at_knot, line.working_load, verdict)
         )
+    largest = float(max(tensions, default=0.0))
+    enough = next((each for each in LINES if each.working_load >= largest), None)
     table = Table(
         name="line_strength",
         title="Strength of the line",
@@ -139,6 +141,11 @@ def check_line(robot: Robot, tensions: Vector, line: Line) -> LineCheck:
         notes=(
             f"At a knot a line keeps {KNOT:g} of its strength, if badly tied; tie a doubled Palomar. Working load: "
             f"{SAFETY:g} of that.",
+            *(
+                [f"{enough.name} ({enough.diameter:g} mm) would do, but thin lines cut into felt and foam."]
+                if enough and enough.diameter < line.diameter
+                else []
+            ),
             SOURCE,
         ),
     )

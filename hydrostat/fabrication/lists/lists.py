@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.bill import bill_table, cost_of
+from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
 from hydrostat.fabrication.lists.cable_cuts import cable_cuts, cable_table, check_lengths
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.lists.list_input import ListInput
 from hydrostat.fabrication.lists.motor_sizing import motor_table, size_winches
 from hydrostat.fabrication.lists.needs import all_needs
-from hydrostat.fabrication.lists.sheath_cuts import sheath_cuts, sheath_table
+from hydrostat.fabrication.lists.sheath_cuts import check_sheaths, sheath_cuts, sheath_table
 from hydrostat.fabrication.lists.stitching import close_warnings, deep_warnings, depth_table, stitch_table
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.self_check import Check
@@ -52,32 +52,42 @@ def make_lists(given: ListInput) -> Lists:
     Raises:
         InputError: a demand of another robot, or lengths for cables that it does not have.
     """
-    robot, options = given.robot, given.options
+    robot, options, demand = given.robot, given.options, given.demand
     cuts = cable_cuts(robot, leads=given.leads, outside=given.outside, spare_wraps=options.spare_wraps)
     tubes = sheath_cuts(robot, seats=given.seats, outside=given.outside)
-    cables = cable_table(cuts)
-    line = given.line or line_for(options.cable)
-    strength = check_line(robot, given.demand.tensions, line)
-    sizings = size_winches(robot, given.demand, given.motor)
+    cables, pieces = cable_table(cuts), sheath_table(robot, tubes, bore=options.bore, tube=options.tube)
+    strength = check_line(robot, demand.tensions, given.line or line_for(options.cable))
+    sizings = size_winches(robot, demand, given.motor)
+    items = tuple(all_needs(given, strength.line, cuts, tubes))
     sewing, deep = _sewing(given)
-    items = tuple(all_needs(given, line, cuts, tubes))
-    notes = ()
-    if given.foam is not None:
-        core = sum(item.cost for item in items if item.what.startswith("foam"))
-        mould = cost_of(items, "mould")
-        notes = (f"The mould costs about {mould:.0f} USD, each core of foam {core:.2f} USD. {_MOULD_COST}.",)
+    simulation = Simulation(robot)
     return Lists(
         tables=(
-            bill_table(items, notes),
+            bill_table(items, _bill_notes(given, items)),
             cables,
-            sheath_table(robot, tubes, bore=options.bore, tube=options.tube),
+            pieces,
             *sewing,
             strength.table,
-            motor_table(sizings, given.demand, given.motor),
+            motor_table(sizings, demand, given.motor),
         ),
         problems=strength.problems,
-        warnings=(*strength.warnings, *(warning for sizing in sizings for warning in sizing.warnings), *deep),
-        checks=(check_lengths(cables, Simulation(robot)),),
+        warnings=(
+            *(f"not solved, so its loads are in no list: {missed}" for missed in demand.missed),
+            *strength.warnings,
+            *(warning for sizing in sizings for warning in sizing.warnings),
+            *deep,
+        ),
+        checks=(check_lengths(cables, simulation), check_sheaths(pieces, simulation, outside=given.outside)),
+    )
+
+
+def _bill_notes(given: ListInput, items: tuple[Item, ...]) -> tuple[str, ...]:
+    """What a mould costs against what comes out of it (N2)."""
+    if given.foam is None:
+        return ()
+    core = sum(item.cost for item in items if item.what.startswith("foam"))
+    return (
+        f"The mould costs about {cost_of(items, 'mould'):.0f} USD, each core of foam {core:.2f} USD. {_MOULD_COST}.",
     )
 
 

@@ -4,8 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby
 
+import numpy as np
+
+from hydrostat.fabrication.lists.cable_cuts import ALLOWED
 from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Cable, Robot
+from hydrostat.simulation import Simulation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,6 +107,30 @@ def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube
         )
         if rows
         else ("No cable of this robot runs in a tube.",),
+    )
+
+
+def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
+    """Whether the tubes of the list cover what the simulation leaves out of the lengths of the cables.
+
+    Args:
+        table: the cut list.
+        simulation: of the robot.
+        outside: tube from the base with the motors, which no simulation knows, by cable index [mm].
+    """
+    robot = simulation.robot
+    listed = np.array([-outside.get(index, 0.0) for index in range(len(robot.cables))])
+    for cable, run in zip(table.column("cable"), table.column("run"), strict=True):
+        if cable != "total" and isinstance(run, float):
+            listed[int(str(cable).removeprefix("C")) - 1] += run
+    lengths = np.array([cable.length for cable in robot.cables])
+    gap = float(np.abs(listed - 1e3 * (lengths - simulation.cables.rest_lengths)).max(initial=0.0))
+    pieces = max(0, len(table.rows) - 1)
+    return Check(
+        what="tubes in the cut list are the stretches that the simulation holds at their length",
+        measured=f"at most {gap:.3f} mm off, {pieces} pieces",
+        allowed=f"{ALLOWED:g} mm for each cable",
+        passed=gap <= ALLOWED,
     )
 
 

@@ -41,6 +41,12 @@ def test_totals_of_groups_and_of_all() -> None:
     assert cost_of(items, "a") == 7.0
 
 
+def test_currencies_are_not_added() -> None:
+    price = Price(amount=2.0, currency="EUR")
+    with pytest.raises(InputError, match="the price of x must be in USD, not EUR"):
+        bill_table((Item(group="a", what="x", specification="", quantity=1.0, price=price),))
+
+
 def test_a_full_pack_is_one_pack() -> None:
     price = Price(amount=1.0, pack=0.1)
     assert [price.packs(quantity) for quantity in (0.1, 0.3, 0.31)] == [1, 3, 4]

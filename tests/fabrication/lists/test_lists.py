@@ -1,6 +1,7 @@
 """All lists of small robots and of the gallery."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -41,6 +42,11 @@ def test_problems_and_warnings_come_through() -> None:
     assert any("cannot reach" in warning for warning in lists.warnings)
     assert any("80 mm under the skin" in warning for warning in lists.warnings)
     assert "each core of foam" in lists.tables[0].notes[-1]
+
+
+def test_a_pose_that_was_not_solved_is_told() -> None:
+    demand = replace(demand_of(square()), missed=('pose "wave": no equilibrium',))
+    assert 'pose "wave"' in make_lists(given(square(), demand=demand)).warnings[0]
 
 
 def test_lengths_of_no_cable_are_refused() -> None:

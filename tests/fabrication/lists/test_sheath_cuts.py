@@ -1,10 +1,13 @@
 """Pieces of tube, by closed forms."""
 
+from dataclasses import replace
+
 import pytest
 from small_inputs import square
 
-from hydrostat.fabrication.lists.sheath_cuts import sheath_cuts, sheath_table
+from hydrostat.fabrication.lists.sheath_cuts import check_sheaths, sheath_cuts, sheath_table
 from hydrostat.robot import Cable
+from hydrostat.simulation import Simulation
 
 POINTS = ((-0.02, -0.01), (0.01, 0.03), (0.04, 0.03), (0.04, -0.03), (0.0, -0.03))
 """Segments of 50, 30, 60 and 40 mm."""
@@ -37,3 +40,15 @@ def test_the_table_ends_with_its_total() -> None:
     assert [row[2:4] for row in table.rows[:-1]] == [("1 (winch)", "2"), ("3", "5 (stopper)")]
     assert table.column("cut to") == pytest.approx((55.0, 100.0, 155.0))
     assert sheath_table(robot, (), bore=1.0, tube=2.0).rows == ()
+
+
+def test_tubes_are_what_the_simulation_holds_and_others_are_caught() -> None:
+    robot = square(Cable(winch="pull", points=POINTS, sheathed=((0, 1), (2, 3))))
+    found = sheath_cuts(robot, seats={0: 5.0}, outside={0: 300.0})
+    table = sheath_table(robot, found, bore=1.0, tube=2.0)
+    assert check_sheaths(table, Simulation(robot), outside={0: 300.0}).passed
+    assert not check_sheaths(table, Simulation(robot), outside={}).passed
+    wrong = sheath_table(robot, (replace(found[0], run=found[0].run + 0.2), *found[1:]), bore=1.0, tube=2.0)
+    check = check_sheaths(wrong, Simulation(robot), outside={0: 300.0})
+    assert not check.passed
+    assert "0.200 mm" in check.measured
