@@ -22,8 +22,14 @@ def disc_path(radius: float, corners: int = 720) -> str:
     return "M" + "L".join(f"{150 + radius * math.cos(a):.9f} {150 + radius * math.sin(a):.9f}" for a in angles) + "Z"
 
 
-def plush_robot(body: Body, *routes: list[tuple[float, float]], name: str = "Sam", **winch: object) -> Robot:
-    """A robot with a winch at the first point of the first route [mm], and one that holds the whole body."""
+def plush_robot(
+    body: Body,
+    *routes: list[tuple[float, float]],
+    name: str = "Sam",
+    marker: tuple[float, float] = (40, 40),
+    **winch: object,
+) -> Robot:
+    """A robot with a winch at the first point of the first route [mm], and a pin that holds the whole body."""
     points = [tuple((1e-3 * x, 1e-3 * y) for x, y in route) for route in routes]
     winches = (Winch(name="pull", at=points[0][0], **winch),) if points else ()
     return Robot(
@@ -32,7 +38,7 @@ def plush_robot(body: Body, *routes: list[tuple[float, float]], name: str = "Sam
         pins=(Pin(at=(0.0, 0.0), radius=1.0),),
         winches=winches,
         cables=tuple(Cable(winch="pull", points=route) for route in points),
-        markers=(Marker(name="tip", at=(0.04, 0.04)),),
+        markers=(Marker(name="tip", at=(1e-3 * marker[0], 1e-3 * marker[1])),),
         poses={},
     )
 

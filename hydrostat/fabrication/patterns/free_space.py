@@ -15,6 +15,9 @@ _CLEARANCE = 1.2
 _TIGHT = 1.05
 """Empty cloth kept round the small figures at holes [mm]."""
 
+_OVER_TEXT = 10
+"""A label over another is as bad as one over so many more lines."""
+
 _ROOMY = 6.0
 """Empty cloth beyond which more is no better [mm]."""
 
@@ -27,6 +30,7 @@ class FreeSpace:
         lines = [shapely.get_coordinates(shape.geometry) for shape in shapes]
         pairs = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
         self._taken: list[BaseGeometry] = [shapely.LineString(pair) for pair in pairs]
+        self._texts: list[BaseGeometry] = []
         shapely.prepare(inside)
 
     def beside(self, at: Place, width: float, height: float, *, gap: float) -> Place:
@@ -67,13 +71,18 @@ class FreeSpace:
 
     def take(self, middle: Place, width: float, height: float) -> None:
         """Keep what is placed later off a box."""
-        self._taken.extend(_boxes(np.array([middle]), width, height))
+        box = _boxes(np.array([middle]), width, height)
+        self._taken.extend(box)
+        self._texts.extend(box)
 
     def _crossings(self, centres: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-        """How many things each box lies on; very many for a box outside."""
-        hits = shapely.STRtree(self._taken).query(boxes, predicate="intersects")[0]
+        """How many things each box lies on, another label counting as many; very many for a box outside."""
+        lines, labels = (
+            np.bincount(shapely.STRtree(taken).query(boxes, predicate="intersects")[0], minlength=len(boxes))
+            for taken in (self._taken, self._texts)
+        )
         outside = ~shapely.contains_xy(self._inside, centres)
-        return np.bincount(hits, minlength=len(boxes)) + 1000 * outside
+        return lines + _OVER_TEXT * labels + 1000 * outside
 
     def _room(self, boxes: np.ndarray) -> np.ndarray:
         """Distance from each box to what is next to it, up to `_ROOMY` [mm]."""

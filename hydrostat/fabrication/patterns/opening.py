@@ -93,7 +93,8 @@ def find_opening(robot: Robot, seam: Polygon, pinholes: tuple[Pinhole, ...], opt
     longest = max(slit.length for slit in slits)
     if longest <= reach:
         return None
-    slit = next(slit for slit in slits if round(slit.length) > 0.75 * longest)
+    whole = [slit for slit in slits if slit.length > ZIPPERS[0] - 1e-6]
+    slit = next(slit for slit in whole or slits if round(slit.length) > 0.75 * longest)
     return Opening(slit, next((zipper for zipper in ZIPPERS if zipper >= slit.length - 1e-6), ZIPPERS[-1]))
 
 

@@ -23,7 +23,7 @@ class Sheet:
 
     Attributes:
         panels: in the order in which they were given.
-        ruler: the bar of 100 mm.
+        ruler: the bar of 100 mm, and what solid and dashed lines are.
         width: [mm].
         height: [mm].
     """
@@ -60,7 +60,7 @@ def lay_out(panels: tuple[Panel, ...], strips: tuple[Panel, ...], gap: float) ->
         floor += float(max(box.size[1] for box in shelf)) + gap
     return Sheet(
         panels=tuple(laid[panel.name] for panel in (*panels, *strips)),
-        ruler=tuple(line.moved(gap, gap) for line in _ruler()),
+        ruler=tuple(line.moved(gap, gap) for line in (*_ruler(), *_key(float(width) - 2 * gap))),
         width=float(width),
         height=floor,
     )
@@ -91,3 +91,17 @@ def _ruler() -> tuple[Line, ...]:
     bar = tuple(Line(layer=Layer.MARK, part=Part.RULER, points=points) for points in strokes)
     text = Lettering(f"{_RULER:g} mm", 4.0)
     return (*bar, *text.lines((_RULER + 4 + text.width / 2, 2.0)))
+
+
+def _key(width: float) -> tuple[Line, ...]:
+    """What solid and dashed lines are, right of the bar; nothing where the sheet is too narrow."""
+    lines: list[Line] = []
+    left = _RULER + 40.0
+    for text, strokes in (("cable outside", ((0, 12),)), ("cable inside", ((0, 2), (3.3, 5.3), (6.7, 8.7), (10, 12)))):
+        letters = Lettering(text, 3.0)
+        for start, end in strokes:
+            points = ((left + start, 2.0), (left + end, 2.0))
+            lines.append(Line(layer=Layer.MARK, part=Part.CABLE, points=points))
+        lines += letters.lines((left + 15 + letters.width / 2, 2.0))
+        left += 15 + letters.width + 10
+    return tuple(lines) if left - 10 <= width else ()

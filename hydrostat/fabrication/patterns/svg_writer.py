@@ -23,7 +23,8 @@ def pattern_svg(pattern: Pattern) -> bytes:
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
         f' width="{width}mm" height="{height}mm" viewBox="0 0 {width} {height}">',
         f"<title>{title}</title>",
-        "<desc>Black: engrave. Blue: cut the pinholes. Red: cut the panels, last. The bar is 100 mm long.</desc>",
+        "<desc>Black: engrave; a cable runs outside along a solid line, inside along a dashed one. Blue: cut the "
+        "pinholes. Red: cut the panels, last. The bar is 100 mm long.</desc>",
         *(line for layer in Layer for line in _layer(pattern, layer)),
         "</svg>",
     ]
@@ -37,14 +38,14 @@ def _layer(pattern: Pattern, layer: Layer) -> Iterable[str]:
     )
     groups = [(panel.name, panel.shapes) for panel in pattern.panels] + [("sheet", pattern.shapes)]
     for name, shapes in groups:
-        drawn = [_element(shape, pattern.height) for shape in shapes if shape.layer is layer]
+        drawn = [shape_element(shape, pattern.height) for shape in shapes if shape.layer is layer]
         if drawn:
             yield from (f'<g id="{layer}-{name}">', *drawn, "</g>")
     yield "</g>"
 
 
-def _element(shape: Shape, height: float) -> str:
-    """A shape as an element; the y axis turns over, as SVG counts it downwards."""
+def shape_element(shape: Shape, height: float) -> str:
+    """A shape as an SVG element on a sheet of this height [mm]; the y axis turns over, as SVG counts it downwards."""
     if isinstance(shape, Circle):
         x, y = shape.centre
         centre = f'cx="{_number(x)}" cy="{_number(height - y)}"'

@@ -1,0 +1,189 @@
+"""`tiled_pdf`: a pattern at true scale on the paper of an office printer."""
+
+import json
+from collections.abc import Iterable
+
+import typst
+
+from hydrostat.fabrication.kit_options import Paper
+from hydrostat.fabrication.patterns.pattern import Pattern
+from hydrostat.fabrication.patterns.shape import Layer, Shape
+from hydrostat.fabrication.patterns.svg_writer import COLOURS, shape_element
+from hydrostat.fabrication.sheets.tile_grid import FOOTER, MARGIN, OVERLAP, PAPERS, Tile, TileGrid, tile_grid
+
+_WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
+"""Of the lines [mm]: an operation is told by its width too where the printer knows no colour."""
+
+_BAR = 100.0
+"""Length of the bar that shows whether a page was printed at its true scale [mm]."""
+
+_STYLE = """
+#set text(font: "Libertinus Serif", size: 9pt, lang: "en")
+#let at(x, y, body) = place(top + left, dx: x * 1mm, dy: y * 1mm, body)
+#let stroke_at(x, y, dx, dy, width: 0.2mm, paint: black, dash: none) = at(x, y, line(
+  end: (dx * 1mm, dy * 1mm), stroke: (thickness: width, paint: paint, dash: dash),
+))
+#let cross(x, y) = { stroke_at(x - 4, y, 8, 0); stroke_at(x, y - 4, 0, 8); at(x - 1.5, y - 1.5, circle(
+  radius: 1.5mm, stroke: 0.2mm)) }
+#let bar(x, y) = {
+  stroke_at(x, y, 100, 0, width: 0.3mm)
+  for i in range(11) {
+    let tall = if calc.rem(i, 5) == 0 { 3 } else { 1.5 }
+    // the bar is 100 mm from outer edge to outer edge
+    stroke_at(x + 0.15 + 9.97 * i, y - tall, 0, tall, width: 0.3mm)
+  }
+  at(x, y + 1, text(size: 7pt)[This bar must measure 100 mm.])
+}
+"""
+
+
+def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
+    """The pages: a map of the sheet and how to join its tiles first, then each tile that is not empty.
+
+    Tiles overlap; crosses lie in the corners of the overlap, and fall on each other when the pages are joined.
+    """
+    grid = tile_grid(pattern, paper)
+    width, height = PAPERS[paper]
+    pages = [
+        _STYLE,
+        f"#set document(title: {_text(f'{pattern.name} - pattern')})",
+        f"#set page(width: {width}mm, height: {height}mm, margin: 0mm)",
+        _overview(pattern, grid, paper),
+        *(f"#pagebreak()\n{_page(pattern, grid, tile)}" for tile in grid.printed),
+    ]
+    return _compile("\n".join(pages))
+
+
+def _compile(source: str) -> bytes:
+    """The PDF: the same bytes on every run, as neither the clock nor the fonts of the machine have a part in it."""
+    return typst.compile(source.encode(), format="pdf", ignore_system_fonts=True, timestamp=0)
+
+
+def _page(pattern: Pattern, grid: TileGrid, tile: Tile) -> str:
+    """A tile with its frame, its crosses, the names of its neighbours, and its foot."""
+    view = f"{tile.left:.6f} {tile.top:.6f} {grid.width:.6f} {grid.height:.6f}"
+    drawing = _svg(tile.shapes, pattern.height, view, grid.width, grid.height, _WIDTHS)
+    right, bottom = MARGIN + grid.width, MARGIN + grid.height
+    inset = OVERLAP / 2
+    lines = [
+        f"#at({MARGIN}, {MARGIN}, box(width: {grid.width}mm, height: {grid.height}mm, clip: true,"
+        f' stroke: (thickness: 0.1mm, paint: luma(120), dash: "dotted"), {drawing}))'
+    ]
+    lines += [f"#cross({x}, {y})" for x in (MARGIN + inset, right - inset) for y in (MARGIN + inset, bottom - inset)]
+    middle_x, middle_y = MARGIN + grid.width / 2, MARGIN + grid.height / 2
+    for column, row, x, y in (
+        (-1, 0, MARGIN + inset, middle_y),
+        (1, 0, right - inset, middle_y),
+        (0, -1, middle_x, MARGIN + inset),
+        (0, 1, middle_x, bottom - inset),
+    ):
+        other = grid.at(tile.column + column, tile.row + row)
+        if other:
+            lines.append(
+                f"#at({x - 5}, {y - 2.5}, box(width: 10mm, height: 5mm, align(center + horizon,"
+                f" text(size: 8pt, fill: luma(90))[{other.name}])))"
+            )
+    return "\n".join([*lines, *_foot(pattern, grid, f"{tile.name} of {grid.columns} x {grid.rows}")])
+
+
+def _foot(pattern: Pattern, grid: TileGrid, name: str) -> list[str]:
+    """The bar, the name of the page and that of the pattern."""
+    y = MARGIN + grid.height + FOOTER - 5
+    label = f'#text(size: 13pt, weight: "bold")[#{_text(name)}]'
+    title = f"#text(size: 8pt)[#{_text(f'{pattern.name} - pattern')}]"
+    return [
+        f"#bar({MARGIN}, {y})",
+        f"#at({MARGIN + _BAR + 5}, {y - 5}, box(width: {grid.width - _BAR - 5}mm, height: 10mm, clip: true,"
+        f" align(right + horizon)[{label} \\ {title}]))",
+    ]
+
+
+def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
+    """The first page: what the lines are, how to join the tiles, the sheet in small with its tiles."""
+    page_width, _ = PAPERS[paper]
+    pages, empty = len(grid.printed), [tile.name for tile in grid.tiles if not tile.shapes]
+    left_out = f" Nothing is on {', '.join(empty)}: they are not printed." if empty else ""
+    said = [
+        f"{pattern.name}: a sheet of {pattern.width:.0f} x {pattern.height:.0f} mm on {pages} "
+        f"page{'s' if pages > 1 else ''} after this one, tiles A1 to {grid.tiles[-1].name}.{left_out}",
+        "Print all pages at 100 % (actual size, not fitted to the page) and measure the bar on each of them.",
+        f"Cut each page along its dotted frame on the right and below, lay it {OVERLAP:g} mm over the next so that "
+        "crosses fall on crosses, and glue or tape them.",
+    ]
+    lines = [f'#at({MARGIN}, {MARGIN}, text(size: 18pt, weight: "bold")[#{_text(f"{pattern.name} - pattern")}])']
+    body = "".join(f"#par[#{_text(sentence)}]" for sentence in said)
+    room = f"box(width: {page_width - 2 * MARGIN}mm)"
+    lines.append(f"#at({MARGIN}, {MARGIN + 11}, {room}[#set par(spacing: 2mm)\n{body}])")
+    return "\n".join([*lines, *_key(MARGIN + 34), *_map(pattern, grid, MARGIN + 46), *_foot(pattern, grid, "map")])
+
+
+def _key(y: float) -> list[str]:
+    """What each kind of line means."""
+    red, blue = (f'rgb("{COLOURS[layer]}")' for layer in (Layer.CUT, Layer.PINHOLE))
+    x = MARGIN
+    samples = (
+        (f"#stroke_at({{x}}, {{y}}, 12, 0, width: {_WIDTHS[Layer.CUT]}mm, paint: {red})", "cut"),
+        (f"#at({{x}} + 9, {{y}} - 1, circle(radius: 1mm, stroke: {_WIDTHS[Layer.PINHOLE]}mm + {blue}))", "pinhole"),
+        (f"#stroke_at({{x}}, {{y}}, 12, 0, width: {_WIDTHS[Layer.MARK]}mm)", "sewn, or cable outside"),
+        (f"#stroke_at({{x}}, {{y}}, 12, 0, width: {_WIDTHS[Layer.MARK]}mm, dash: (2mm, 1.3mm))", "cable inside"),
+    )
+    lines = []
+    for (sample, text), step in zip(samples, (30.0, 36.0, 58.0, 0.0), strict=True):
+        lines += [sample.format(x=x, y=y), f"#at({x + 14}, {y - 1.6}, [{text}])"]
+        x += step
+    lines.append(
+        f"#at({MARGIN}, {y + 5}, [Letters mark notches that meet; small figures number the holes of a cable in "
+        "stitch order, from 2 on.])"
+    )
+    return lines
+
+
+def _map(pattern: Pattern, grid: TileGrid, y: float) -> list[str]:
+    """The sheet in small; tiles outlined, those that are left out hatched by a diagonal."""
+    room_y = MARGIN + grid.height - y
+    whole_x = grid.columns * (grid.width - OVERLAP) + OVERLAP
+    whole_y = grid.rows * (grid.height - OVERLAP) + OVERLAP
+    scale = min(grid.width / whole_x, room_y / whole_y)
+    left, top = grid.tiles[0].left, grid.tiles[0].top
+    view = f"{left:.6f} {top:.6f} {whole_x:.6f} {whole_y:.6f}"
+    shapes = [*(shape for panel in pattern.panels for shape in panel.shapes), *pattern.shapes]
+    widths = dict.fromkeys(Layer, 0.15 / scale)
+    drawing = _svg(shapes, pattern.height, view, scale * whole_x, scale * whole_y, widths)
+    lines = [f"#at({MARGIN}, {y}, {drawing})"]
+    step_x, step_y = scale * (grid.width - OVERLAP), scale * (grid.height - OVERLAP)
+    half = scale * OVERLAP / 2
+    for tile in grid.tiles:
+        x0, y0 = MARGIN + half + tile.column * step_x, y + half + tile.row * step_y
+        grey = "luma(200)" if not tile.shapes else "luma(110)"
+        frame = f"rect(width: {step_x:.4f}mm, height: {step_y:.4f}mm, stroke: 0.2mm + luma(110))"
+        lines.append(f"#at({x0:.4f}, {y0:.4f}, {frame})")
+        if not tile.shapes:
+            lines.append(f"#stroke_at({x0:.4f}, {y0:.4f}, {step_x:.4f}, {step_y:.4f}, paint: luma(170))")
+        name = f'text(size: 12pt, weight: "bold", fill: {grey})[{tile.name}]'
+        lines.append(f"#at({x0 + 1.5:.4f}, {y0 + 1.5:.4f}, {name})")
+    return lines
+
+
+def _svg(
+    shapes: Iterable[Shape], height: float, view: str, width: float, tall: float, widths: dict[Layer, float]
+) -> str:
+    """A picture of shapes, for typst: a window [mm] of the sheet at a size [mm]."""
+    shapes = tuple(shapes)
+    groups = []
+    for layer in Layer:
+        drawn = "".join(shape_element(shape, height) for shape in shapes if shape.layer is layer)
+        groups.append(
+            f'<g fill="none" stroke="{COLOURS[layer]}" stroke-width="{widths[layer]:.4f}" stroke-linecap="round"'
+            f' stroke-linejoin="round">{drawn}</g>'
+        )
+    picture = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6f}mm" height="{tall:.6f}mm" viewBox="{view}">'
+        f"{''.join(groups)}</svg>"
+    )
+    return f'image(bytes({_text(picture)}), format: "svg", width: {width:.6f}mm, height: {tall:.6f}mm)'
+
+
+def _text(text: str) -> str:
+    """A string of typst; its escapes are those of JSON, but for characters of control."""
+    plain = "".join(letter if letter.isprintable() else " " for letter in text)
+    return json.dumps(plain, ensure_ascii=False)

@@ -1,0 +1,133 @@
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+from plush_robots import HOLED, SQUARE, crossed, disc_path, drawn_body, plush_robot
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication import Panel, Part, Pattern, PatternOptions, plush_pattern
+from hydrostat.fabrication.patterns.gusset import stuffed_thickness
+
+GUSSET = PatternOptions(gusset=True)
+
+
+def seam_of(panel: Panel) -> np.ndarray:
+    """Bounds of the rectangle that is seen when sewn."""
+    (seam,) = (shape for shape in panel.shapes if shape.part is Part.SEAM)
+    return np.array(seam.geometry.bounds)
+
+
+def strip_notches(pattern: Pattern, edge: int) -> list[float]:
+    """How far along the whole strip each notch is [mm]; edge 0: to the back, 1: to the front."""
+    found, before = [], 0.0
+    for panel in pattern.gusset:
+        left, bottom, right, top = seam_of(panel)
+        y = (bottom, top)[edge]
+        line = shapely.LineString([(left, y), (right, y)])
+        notches = [shape for shape in panel.shapes if shape.part is Part.NOTCH]
+        found += [before + notch.points[0][0] - left for notch in notches if notch.geometry.distance(line) < 1e-9]
+        before += right - left
+    return found
+
+
+def seam_notches(panel: Panel, length: float, *, mirrored: bool) -> list[float]:
+    """How far along the seam each notch is from the first of the double notch, the body on the left (seen in front)."""
+    (seam,) = (shape.geometry for shape in panel.shapes if shape.part is Part.SEAM)
+    feet = [shapely.Point(shape.points[0]) for shape in panel.shapes if shape.part is Part.NOTCH]
+    along = np.array([seam.project(foot) for foot in feet])
+    turn = 1 if seam.is_ccw != mirrored else -1
+    return sorted(round(float(turn * (one - along[0]) % length), 5) % round(length, 5) for one in along)
+
+
+def mismatch(pattern: Pattern) -> float:
+    """Largest distance between a notch of the strip and its partners on front and back [mm]."""
+    length = sum(seam_of(panel)[2] - seam_of(panel)[0] for panel in pattern.gusset)
+    worst = 0.0
+    for name, edge in (("front", 1), ("back", 0)):
+        ours = sorted({round(along, 5) for along in strip_notches(pattern, edge)} - {round(length, 5)})
+        theirs = seam_notches(pattern.panel(name), length, mirrored=name == "back")
+        assert len(ours) == len(theirs)
+        worst = max(worst, float(np.abs(np.subtract(ours, theirs)).max()))
+    return worst
+
+
+@pytest.mark.parametrize("piece", [400.0, 150.0, 90.0, 1000.0])
+def test_the_strip_is_as_long_as_the_seam_and_as_wide_as_the_body_is_thick(piece):
+    """Oracle: closed form: the girth of a disc, 2 R sin(pi/n) n, and the thickness; no piece is longer than allowed."""
+    pattern = plush_pattern(
+        plush_robot(drawn_body(disc_path(60.0))), options=PatternOptions(gusset=True, gusset_piece=piece)
+    )
+    boxes = np.array([seam_of(panel) for panel in pattern.gusset])
+    lengths = boxes[:, 2] - boxes[:, 0]
+    assert lengths.sum() == pytest.approx(720 * 2 * 60 * math.sin(math.pi / 720), abs=1e-6)
+    assert lengths.max() <= piece + 1e-9
+    np.testing.assert_allclose(boxes[:, 3] - boxes[:, 1], 30.0)
+
+
+def test_each_piece_has_its_own_allowance():
+    """Oracle: closed form: length + 2 a by thickness + 2 a."""
+    for panel in plush_pattern(crossed(), options=GUSSET).gusset:
+        (edge,) = (shape.geometry for shape in panel.shapes if shape.part is Part.EDGE)
+        np.testing.assert_allclose(np.subtract(edge.bounds, seam_of(panel)), [-8, -8, 8, 8], atol=1e-9)
+
+
+def test_holes_get_their_own_strip():
+    """Oracle: closed form: 400 mm round the square, 160 mm round its hole."""
+    pattern = plush_pattern(plush_robot(drawn_body(HOLED)), options=GUSSET)
+    lengths = [seam_of(panel)[2] - seam_of(panel)[0] for panel in pattern.gusset]
+    assert lengths == pytest.approx([400, 160])
+
+
+@pytest.mark.parametrize("path", [SQUARE, disc_path(60.0), "M0 0H45V20H40V60H60V20H55V0H100V100H0Z"])
+def test_notches_meet_those_of_front_and_back(path):
+    """Oracle: arc length along the drawn seams, by shapely; the strip turns the same way round as the body."""
+    pattern = plush_pattern(plush_robot(drawn_body(path)), options=PatternOptions(gusset=True, gusset_piece=170))
+    assert mismatch(pattern) < 1e-4
+
+
+def test_the_check_of_notches_can_fail():
+    """Oracle: a strip laid the other way round."""
+    pattern = plush_pattern(crossed(), options=GUSSET)
+    (strip,) = pattern.gusset
+    wrong = replace(strip, shapes=tuple(shape.mirrored() for shape in strip.shapes))
+    assert mismatch(replace(pattern, panels=(*pattern.panels[:2], wrong))) > 1
+
+
+def test_nothing_overlaps_on_a_sheet_with_strips():
+    """Oracle: bounding boxes of all panels, the gap between them, and the sheet."""
+    pattern = plush_pattern(crossed(), options=PatternOptions(gusset=True, gusset_piece=120, gap=7))
+    boxes = [shapely.box(*shapely.total_bounds([s.geometry for s in panel.shapes])) for panel in pattern.panels]
+    boxes.append(shapely.box(*shapely.total_bounds([shape.geometry for shape in pattern.shapes])))
+    assert len(boxes) > 6
+    apart = [one.distance(other) for index, one in enumerate(boxes) for other in boxes[:index]]
+    assert min(apart) > 5
+    assert min(one.distance(other) for one, other in pairwise(boxes[:-1])) > 7 - 1e-6
+    sheet = shapely.box(0, 0, pattern.width, pattern.height)
+    assert all(sheet.contains_properly(box) for box in boxes)
+
+
+def test_a_stuffed_strip_is_a_round_tube():
+    """Oracle: closed form: a strip of 40 mm by 4 m and a ring 30 mm wide keep their girth: d = 2 w / pi."""
+    assert stuffed_thickness(shapely.box(0, 0, 40, 4000)) == pytest.approx(80 / math.pi, rel=0.011)
+    ring = shapely.Point(0, 0).buffer(130, quad_segs=200) - shapely.Point(0, 0).buffer(100, quad_segs=200)
+    assert stuffed_thickness(ring) == pytest.approx(60 / math.pi, rel=1e-4)
+
+
+def test_a_thick_body_gets_a_gusset_unless_told_otherwise():
+    """Oracle: a square of 100 mm stuffs to 31.8 mm."""
+    thin = plush_robot(drawn_body(SQUARE))
+    thick = replace(thin, body=replace(thin.body, thickness=0.033))
+    assert not plush_pattern(thin).gusset
+    assert plush_pattern(thick).gusset
+    told = plush_pattern(thick, options=PatternOptions(gusset=False))
+    assert not told.gusset
+    assert any("32 mm thick" in warning and "33 mm" in warning for warning in told.warnings)
+
+
+def test_a_piece_too_short_to_sew_is_refused():
+    """Oracle: the option's own name."""
+    with pytest.raises(InputError, match=r"gusset_piece .* 50 mm"):
+        PatternOptions(gusset_piece=10)

@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+import shapely
+from plush_robots import drawn_body, plush_robot
+
+from hydrostat.fabrication import Layer, Part, Pattern, PatternOptions, plush_pattern
+from hydrostat.fabrication.patterns.opening import ZIPPERS
+from hydrostat.robot import Cable, Robot, Winch
+
+WIDE = "M0 0H290V120H0Z"
+
+
+def with_winches(path: str, *places: tuple[float, float]) -> Robot:
+    """A body with winches in some places, each with a short cable."""
+    at = [(1e-3 * x, 1e-3 * y) for x, y in places]
+    winches = [Winch(name=f"w{i}", at=place) for i, place in enumerate(at)]
+    cables = [Cable(winch=f"w{i}", points=((x, y), (0.9 * x + 0.01, 0.4 * y))) for i, (x, y) in enumerate(at)]
+    return plush_robot(drawn_body(path)).with_network(winches, cables)
+
+
+def back_parts(pattern: Pattern, part: Part) -> list:
+    return [shape for shape in pattern.panel("back").shapes if shape.part is part]
+
+
+@pytest.mark.parametrize(
+    ("places", "length"),
+    [([(0, 0)], 100), ([(-30, 0), (30, 0)], 150), ([(-60, 5), (0, 5), (60, 5)], 200), ([(-130, 0), (130, 0)], 250)],
+)
+def test_the_zipper_is_one_that_is_sold(places, length):
+    """Oracle: the row of winches and 30 mm beyond, rounded up by hand; 270 mm are free, so 320 become 250."""
+    pattern = plush_pattern(with_winches(WIDE, *places))
+    (slit,) = back_parts(pattern, Part.OPENING)
+    assert slit.layer is Layer.CUT
+    assert slit.geometry.length == pytest.approx(length)
+    assert pattern.opening is not None
+    assert pattern.opening.label == f"zipper {length} mm"
+    assert length in ZIPPERS
+    (box,) = back_parts(pattern, Part.ZIPPER)
+    assert shapely.Polygon(box.points).area == pytest.approx((length + 8) * 8)
+    assert box.layer is Layer.MARK
+
+
+@pytest.mark.parametrize("places", [[(-120, 40)], [(130, -50)], [(-100, -40), (110, 45)], [(0, 0), (0, 30)]])
+def test_the_slit_stays_inside_and_reaches_the_winches(places):
+    """Oracle: shapely: the placket lies in the seam, the slit not farther from the winches' middle than its inset."""
+    pattern = plush_pattern(with_winches(WIDE, *places))
+    (slit,), (box,) = back_parts(pattern, Part.OPENING), back_parts(pattern, Part.ZIPPER)
+    seam = shapely.Polygon(back_parts(pattern, Part.SEAM)[0].points)
+    assert seam.contains(shapely.Polygon(box.points))
+    assert seam.exterior.distance(slit.geometry) > 10 - 1e-6
+    middle = pattern.panel("back").on_sheet(tuple(1e-3 * np.mean(places, axis=0)))
+    assert slit.geometry.distance(shapely.Point(middle)) < 12
+
+
+def test_the_slit_keeps_off_pinholes_on_the_back():
+    """Oracle: distances: without the option the slit runs over the exit of the cable, with it the placket is off."""
+    robot = plush_robot(drawn_body(WIDE), [(-20, 0), (-40, 0), (-60, 0), (-80, 0), (-100, 0)])
+    plain, careful = (plush_pattern(robot, options=PatternOptions(back_pinholes=back)) for back in (False, True))
+    holes = [shape for shape in careful.panel("back").shapes if shape.part is Part.PINHOLE]
+
+    def gap(pattern: Pattern) -> float:
+        box = shapely.Polygon(back_parts(pattern, Part.ZIPPER)[0].points)
+        return min(box.distance(shapely.Point(hole.centre)) - hole.radius for hole in holes)
+
+    assert gap(plain) < 0
+    assert gap(careful) > 1.49
+
+
+def test_a_body_too_small_for_a_zipper_is_warned_of():
+    """Oracle: a square of 60 mm has at most 40 mm of slit across and 57 mm along its diagonal."""
+    robot = plush_robot(drawn_body("M0 0H60V60H0Z"), [(0, 0), (15, 20)], marker=(0, 0))
+    pattern = plush_pattern(robot)
+    assert pattern.opening is not None
+    assert pattern.opening.slit.length < 57
+    assert pattern.opening.label.startswith("zipper 100 mm cut to ")
+    assert any("opening has room for" in warning for warning in pattern.warnings)
+    assert not any("opening" in warning for warning in plush_pattern(with_winches(WIDE, (0, 0))).warnings)
