@@ -14,7 +14,7 @@ from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.screws import Screw
 from hydrostat.fabrication.parts.spool import Spool
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder
+from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder
 
 STUB = 8.0
 """How far the shaft of a coupling goes into a spool [mm]."""
@@ -193,13 +193,22 @@ class Housing:
         wall = self.half - math.sqrt(max(0.0, self.cavity**2 - radius**2))
         return min(_SEAT, 0.65 * wall)
 
+    @cached_property
+    def tongue(self) -> tuple[Corner, Corner]:
+        """Corners of what the plate covers, seen along the shaft: the box, and all screws in the face with a wall."""
+        edge = self.motor.screw.hole / 2 + self.options.wall
+        xs = [abs(x) + self.motor.slot + edge for x, _ in self.motor.holes] if self.motor.horn is not None else []
+        low = min([-self.half, *(y - edge for _, y in self.motor.holes)])
+        side = max(xs, default=self.half)
+        return (-side, low), (side, self.half)
+
     def plate(self) -> Construction:
         """As it lies on the motor."""
         half, drive, motor = self.half, self.drive, self.motor
         body: Construction = Box((2 * half, 2 * half, drive.plate)).moved(-half, -half, 0)
         if motor.horn is not None:
-            (low_x, low_y), (high_x, high_y) = motor.outline[0], motor.outline[2]
-            body = body + Box((high_x - low_x, high_y - low_y, drive.plate)).moved(low_x, low_y, 0)
+            (low_x, low_y), (high_x, _) = self.tongue
+            body = body + Box((high_x - low_x, -low_y, drive.floor)).moved(low_x, low_y, 0)
             body = body - Cylinder(drive.plate + 2, self.recess).moved(0, 0, -1)
         else:
             body = body - Cylinder(drive.plate, self.recess).moved(0, 0, drive.floor)

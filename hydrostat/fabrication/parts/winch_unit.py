@@ -88,14 +88,14 @@ class WinchUnit:
     @property
     def low(self) -> tuple[float, float, float]:
         """Least corner of the box round the unit [mm]."""
-        xs, ys = zip(*self.motor.outline, strict=True)
-        return min(-self.housing.half, *xs), min(-self.housing.half, *ys), -self.motor.depth
+        xs, ys = zip(*self.motor.outline, *self.housing.tongue, strict=True)
+        return min(-self.housing.half, *xs), min(ys), -self.motor.depth
 
     @property
     def high(self) -> tuple[float, float, float]:
         """Largest corner of that box [mm]."""
-        xs, ys = zip(*self.motor.outline, strict=True)
-        return max(self.housing.half, *xs), max(self.housing.half, *ys), self.housing.top
+        xs, ys = zip(*self.motor.outline, *self.housing.tongue, strict=True)
+        return max(self.housing.half, *xs), max(ys), self.housing.top
 
     @property
     def size(self) -> tuple[float, float, float]:

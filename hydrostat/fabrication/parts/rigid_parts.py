@@ -1,0 +1,140 @@
+"""`rigid_parts`: all that is printed and bought besides the body: winches, their base, stoppers, grommets."""
+
+from collections import Counter
+from dataclasses import dataclass, replace
+
+from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
+from hydrostat.fabrication.parts.grommet import grommet
+from hydrostat.fabrication.parts.motor import Motor, choose_motor
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.stopper import Stopper, stopper
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
+from hydrostat.fabrication.solids.assembly import Assembly
+from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.robot import Robot
+
+MARGIN = 1.25
+"""Advised torque of a motor over the largest that was simulated, for bodies stiffer than assumed. No more is needed:
+what is advised is a quarter or a fifth of stall, which leaves room for the friction at pinholes."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RigidParts:
+    """The rigid parts of one robot.
+
+    Attributes:
+        motor: that turns all winches.
+        units: a winch each.
+        base: for winches outside the body; None if all are in it.
+        stopper: one for each cable; None without cables.
+        grommet: one for each pinhole, counted; None without pinholes.
+        cables: how many there are.
+        chosen: what to mind of the motor.
+        between: what to mind of winches side by side.
+    """
+
+    motor: Motor
+    units: tuple[WinchUnit, ...]
+    base: BasePlate | None
+    stopper: Stopper | None
+    grommet: Printed | None
+    cables: int
+    chosen: tuple[str, ...] = ()
+    between: tuple[str, ...] = ()
+
+    @property
+    def printed(self) -> tuple[Printed, ...]:
+        """All that is printed: equal parts once, with how many are needed and for which winches."""
+        found: dict[str, Printed] = {}
+        winches: dict[str, list[str]] = {}
+        for unit in self.units:
+            for part in unit.printed:
+                found[part.name] = part
+                winches.setdefault(part.name, []).append(unit.winch)
+        parts = [
+            replace(found[name], count=len(own), title=f"{found[name].title} of {_listed(own, len(self.units))}")
+            for name, own in sorted(winches.items())
+        ]
+        if self.base is not None:
+            parts += self.base.printed
+        if self.stopper is not None:
+            parts += [replace(part, count=self.cables * part.count) for part in self.stopper.printed]
+        if self.grommet is not None:
+            parts.append(self.grommet)
+        return tuple(parts)
+
+    @property
+    def bought(self) -> tuple[tuple[str, int], ...]:
+        """Motors and screws, and how many of each."""
+        counts: Counter[str] = Counter()
+        for unit in self.units:
+            counts[unit.motor.title] += 1
+        for one in (*self.units, *((self.base,) if self.base else ())):
+            counts.update(dict(one.bought))
+        if self.stopper is not None:
+            counts[self.stopper.screw] += self.cables
+        return tuple(counts.items())
+
+    @property
+    def assemblies(self) -> tuple[Assembly, ...]:
+        """Each winch, the base with all on it, the stopper."""
+        base = (self.base.assembly,) if self.base else ()
+        return (*(unit.assembly for unit in self.units), *base, *((self.stopper.assembly,) if self.stopper else ()))
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Why they cannot be built well."""
+        return (*(text for unit in self.units for text in unit.problems), *(self.base.problems if self.base else ()))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What to mind."""
+        return (*self.chosen, *(text for unit in self.units for text in unit.warnings), *self.between)
+
+
+def rigid_parts(
+    robot: Robot,
+    demand: Demand,
+    *,
+    motor: str,
+    options: PartOptions,
+    bed: tuple[float, float, float],
+    holes: int = 0,
+    hole: float = 2.0,
+    margin: float = MARGIN,
+) -> RigidParts:
+    """The rigid parts of a robot.
+
+    Args:
+        robot: that is built.
+        demand: what its poses ask of motors and cables.
+        motor: key of a motor in the table, or "auto".
+        options: sizes of the parts.
+        bed: largest piece that the printer takes, along x, y and z [mm].
+        holes: pinholes that get a grommet.
+        hole: diameter of a pinhole [mm].
+        margin: torque that a motor should carry over the largest that was simulated.
+
+    Raises:
+        InputError: there is no such motor, or a pinhole is too small for a grommet.
+    """
+    chosen, notes = choose_motor(motor, demand.torques, margin)
+    units = winch_units(robot, demand, options, chosen)
+    return RigidParts(
+        motor=chosen,
+        units=units,
+        base=base_plate(robot, units, options, bed),
+        stopper=stopper(options) if robot.cables else None,
+        grommet=replace(grommet(options, hole), count=holes) if holes else None,
+        cables=len(robot.cables),
+        chosen=notes,
+        between=crowded(robot, units),
+    )
+
+
+def _listed(winches: list[str], count: int) -> str:
+    """Names of winches, or that it is all."""
+    if len(winches) == count and count > 1:
+        return "every winch"
+    return f"winch {winches[0]}" if len(winches) == 1 else f"winches {', '.join(winches)}"
