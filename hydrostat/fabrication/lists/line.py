@@ -97,8 +97,14 @@ class LineCheck:
     warnings: tuple[str, ...]
 
 
-def check_line(robot: Robot, tensions: Vector, line: Line) -> LineCheck:
-    """Whether a line bears the largest tension of each cable [N].
+def check_line(robot: Robot, tensions: Vector, line: Line, *, hold: float | None = None) -> LineCheck:
+    """Whether a line and its stopper bear the largest tension of each cable [N].
+
+    Args:
+        robot: whose cables.
+        tensions: largest of each cable [N].
+        line: what they are made of.
+        hold: tension at which a stopper slips [N]; None: not known.
 
     Raises:
         InputError: not as many tensions as cables.
@@ -119,8 +125,24 @@ def check_line(robot: Robot, tensions: Vector, line: Line) -> LineCheck:
             verdict = "above the working load"
         else:
             verdict = "holds"
+        if hold is not None and tension > hold:
+            warnings.append(
+                f"{pulls}, but its stopper may slip at {hold:.0f} N (estimated): tie a knot behind the stopper once it "
+                "is set"
+            )
+            verdict = f"{verdict}; knot the stopper"
         rows.append(
-            (f"C{number}", cable.winch, tension, line.name, line.strength, line.at_knot, line.working_load, verdict)
+            (
+                f"C{number}",
+                cable.winch,
+                tension,
+                line.name,
+                line.strength,
+                line.at_knot,
+                line.working_load,
+                hold,
+                verdict,
+            )
         )
     largest = float(max(tensions, default=0.0))
     enough = next((each for each in LINES if each.working_load >= largest), None)
@@ -135,6 +157,7 @@ def check_line(robot: Robot, tensions: Vector, line: Line) -> LineCheck:
             Column(title="breaks at", unit="N", decimals=0),
             Column(title="at a knot", unit="N", decimals=0),
             Column(title="working load", unit="N", decimals=0),
+            Column(title="stopper holds", unit="N", decimals=0),
             Column(title="verdict", align=Align.LEFT),
         ),
         rows=tuple(rows),

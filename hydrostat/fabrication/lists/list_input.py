@@ -7,7 +7,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.lists.line import Line
-from hydrostat.fabrication.lists.motor_sizing import MotorLike
+from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.solids.printed import Printed
@@ -68,11 +68,12 @@ class ListInput:
         cloth: of a plush robot.
         foam: of a robot of foam.
         line: what the cables are made of; None: the strongest as thick as the options say.
+        stopper_hold: tension at which a cable begins to slip in its stopper [N]; None: not known.
     """
 
     robot: Robot
     demand: Demand
-    motor: MotorLike
+    motor: Motor
     method: Method = Method.PLUSH
     options: PartOptions = field(default_factory=PartOptions)
     printed: tuple[Printed, ...] = ()
@@ -85,6 +86,7 @@ class ListInput:
     cloth: Cloth | None = None
     foam: FoamNeeds | None = None
     line: Line | None = None
+    stopper_hold: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("leads", "seats", "outside"):

@@ -56,7 +56,7 @@ def make_lists(given: ListInput) -> Lists:
     cuts = cable_cuts(robot, leads=given.leads, outside=given.outside, spare_wraps=options.spare_wraps)
     tubes = sheath_cuts(robot, seats=given.seats, outside=given.outside)
     cables, pieces = cable_table(cuts), sheath_table(robot, tubes, bore=options.bore, tube=options.tube)
-    strength = check_line(robot, demand.tensions, given.line or line_for(options.cable))
+    strength = check_line(robot, demand.tensions, given.line or line_for(options.cable), hold=given.stopper_hold)
     sizings = size_winches(robot, demand, given.motor)
     items = tuple(all_needs(given, strength.line, cuts, tubes))
     sewing, deep = _sewing(given)

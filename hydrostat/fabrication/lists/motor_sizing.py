@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.robot import Robot, Winch
 
 MARGIN = 2.0
@@ -16,51 +16,6 @@ differ from their assumed stiffness, and motors age."""
 
 SLOW = 10.0
 """A winch that takes longer than this for its full travel [s] is called slow."""
-
-
-@runtime_checkable
-class MotorLike(Protocol):
-    """What must be known of a motor."""
-
-    @property
-    def title(self) -> str:
-        """What a person calls it."""
-        ...
-
-    @property
-    def stall_torque(self) -> float:
-        """At which it stands still [N mm]."""
-        ...
-
-    @property
-    def rated_torque(self) -> float:
-        """That it bears for long [N mm]."""
-        ...
-
-    @property
-    def speed(self) -> float:
-        """Without load [rpm]."""
-        ...
-
-    @property
-    def mass(self) -> float:
-        """Of one [g]."""
-        ...
-
-    @property
-    def price(self) -> float:
-        """Of one, rough [USD]."""
-        ...
-
-    @property
-    def price_source(self) -> str:
-        """Where that is from, and when."""
-        ...
-
-    @property
-    def horn(self) -> object:
-        """That of a servo, which has a driver of its own; None: a plain motor."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,6 +78,7 @@ class WinchSizing:
     def warnings(self) -> tuple[str, ...]:
         """What the motor cannot do."""
         asks = f'winch "{self.winch}" asks for {self.torque:.0f} N mm'
+        more = f"{asks}, {self.needed:.0f} N mm with the margin of {MARGIN:g}"
         found = []
         if self.torque >= self.stall:
             found.append(
@@ -131,12 +87,11 @@ class WinchSizing:
             )
         elif self.needed > self.stall:
             found.append(
-                f"{asks}, {self.needed:.0f} N mm with the margin of {MARGIN:g}, but the motor stalls at "
-                f"{self.stall:.0f} N mm: it may stand still before a pose is reached"
+                f"{more}, but the motor stalls at {self.stall:.0f} N mm: it may stand still before a pose is reached"
             )
-        if self.rated < self.torque < self.stall:
+        elif self.needed > self.rated:
             found.append(
-                f"{asks}, more than the {self.rated:.0f} N mm that the motor bears for long: hold such poses for "
+                f"{more}, more than the {self.rated:.0f} N mm that the motor bears for long: hold such poses for "
                 "seconds only"
             )
         if self.time is not None and self.time > SLOW:
@@ -144,7 +99,7 @@ class WinchSizing:
         return tuple(found)
 
 
-def size_winches(robot: Robot, demand: Demand, motor: MotorLike) -> tuple[WinchSizing, ...]:
+def size_winches(robot: Robot, demand: Demand, motor: Motor) -> tuple[WinchSizing, ...]:
     """What each winch of a robot asks of a motor.
 
     Raises:
@@ -164,7 +119,7 @@ def size_winches(robot: Robot, demand: Demand, motor: MotorLike) -> tuple[WinchS
     )
 
 
-def _size(robot: Robot, demand: Demand, motor: MotorLike, winch: Winch, torque: float) -> WinchSizing:
+def _size(robot: Robot, demand: Demand, motor: Motor, winch: Winch, torque: float) -> WinchSizing:
     mine = [
         float(tension)
         for cable, tension in zip(robot.cables, demand.tensions, strict=True)
@@ -184,7 +139,7 @@ def _size(robot: Robot, demand: Demand, motor: MotorLike, winch: Winch, torque: 
     )
 
 
-def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: MotorLike) -> Table:
+def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) -> Table:
     """What each winch asks of the motor and what it gets."""
     poses = ", ".join(demand.poses) or "no pose"
     return Table(
@@ -227,4 +182,4 @@ def _verdict(sizing: WinchSizing) -> str:
         return "too weak"
     if sizing.needed > sizing.stall:
         return "no margin"
-    return "holds for seconds" if sizing.torque > sizing.rated else "good"
+    return "holds for seconds" if sizing.needed > sizing.rated else "good"

@@ -8,7 +8,8 @@ from hydrostat.fabrication.lists.line import Line
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
 from hydrostat.fabrication.lists.prices import PRICES
 from hydrostat.fabrication.lists.sheath_cuts import SheathCut
-from hydrostat.fabrication.price import Price
+from hydrostat.fabrication.parts.motor import Motor
+from hydrostat.fabrication.price import NO_SOURCE, Price
 
 POLYETHYLENE = 0.97e-3
 """Density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)."""
@@ -148,6 +149,12 @@ def _cables(given: ListInput, line: Line, cuts: tuple[CableCut, ...], tubes: tup
     ]
 
 
+def _motor_price(motor: Motor) -> Price:
+    if motor.price_source.startswith(NO_SOURCE):
+        return Price(amount=motor.price)
+    return Price(amount=motor.price, source=f"the table of motors ({motor.price_source})", month="dated as told there")
+
+
 def _winches(given: ListInput) -> list[Item]:
     count = len(given.robot.winches)
     printed = sum(part.count * part.mass for part in given.printed)
@@ -158,7 +165,7 @@ def _winches(given: ListInput) -> list[Item]:
             what="geared motor",
             specification=given.motor.title,
             quantity=float(count),
-            price=Price(amount=given.motor.price, source=given.motor.price_source),
+            price=_motor_price(given.motor),
             mass=count * given.motor.mass,
         ),
         *(
@@ -220,8 +227,8 @@ def _mould(given: ListInput) -> list[Item]:
         Item(
             group=_MOULD,
             what="silicone",
-            specification="for moulds, Mold Max 30 or alike, both parts",
-            quantity=1e-6 * foam.silicone if foam else 0.0,
+            specification=f"for moulds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone if foam else 0:.2f} l",
+            quantity=1e-3 * foam.silicone_mass if foam else 0.0,
             price=PRICES["silicone"],
             mass=foam.silicone_mass if foam else None,
         ),

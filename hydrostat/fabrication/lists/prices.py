@@ -13,9 +13,6 @@ _BAG = 32 * 0.0283495
 _ANGLER = 91.44
 """Line on a spool, 100 yards [m]."""
 
-_GALLON = 3.785
-"""[l]."""
-
 _PUPPETS = "a puppet maker's list of costs (The Tucson Puppet Lady)"
 _BEARS = "a sewing group's list of costs (Crafting 4 Jesus)"
 
@@ -56,12 +53,7 @@ PRICES = MappingProxyType(
             amount=19.99, unit="kg", month="2023-05", source="parts list of SCUTTLE mini (D. Malawey): filament, 1 kg"
         ),
         "foam": Price(amount=40.0, unit="kg", pack=0.5),
-        "silicone": Price(
-            amount=100 / _GALLON,
-            unit="l",
-            pack=_GALLON,
-            source="advice of a mould maker (The Chocolate Mold Factory): silicone, about 100 a gallon",
-        ),
+        "silicone": Price(amount=40.0, unit="kg"),
         "release": Price(amount=15.0, unit="can"),
         "glue": Price(amount=15.0, unit="can"),
         "skin": Price(amount=8.0),

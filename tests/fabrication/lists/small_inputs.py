@@ -1,6 +1,6 @@
 """Small robots, loads and motors for the lists."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from builders import box_mesh, mesh_body
@@ -8,21 +8,13 @@ from plush_robots import SQUARE, drawn_body
 
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.lists.list_input import ListInput
+from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch
 
-
-@dataclass(frozen=True, kw_only=True)
-class PlainMotor:
-    """A motor in numbers."""
-
-    title: str = "plain motor"
-    stall_torque: float = 200.0
-    rated_torque: float = 80.0
-    speed: float = 60.0
-    mass: float = 10.0
-    price: float = 20.0
-    price_source: str = "a test"
-    horn: object = None
+PLAIN = replace(
+    MOTORS[0], title="plain motor", stall_torque=200.0, rated_torque=80.0, speed=60.0, mass=10.0, price=20.0
+)
+"""A motor in round numbers."""
 
 
 def square(*cables: Cable, spool_radius: float = 0.006, travel: float = 0.06, release: float = 0.0) -> Robot:
@@ -64,4 +56,4 @@ def demand_of(robot: Robot, *tensions: float) -> Demand:
 
 def given(robot: Robot, **changes: object) -> ListInput:
     """Lists of a robot with plain loads and a plain motor."""
-    return replace(ListInput(robot=robot, demand=demand_of(robot), motor=PlainMotor()), **changes)
+    return replace(ListInput(robot=robot, demand=demand_of(robot), motor=PLAIN), **changes)

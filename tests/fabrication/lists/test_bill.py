@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from small_inputs import PlainMotor, box, given, square
+from small_inputs import box, given, square
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
@@ -13,6 +13,7 @@ from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
 from hydrostat.fabrication.lists.needs import all_needs, filling_mass
 from hydrostat.fabrication.lists.prices import PRICES
 from hydrostat.fabrication.lists.sheath_cuts import sheath_cuts
+from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.price import NO_SOURCE, Price
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed
@@ -74,9 +75,16 @@ def test_a_plush_robot() -> None:
 
 def test_boards_and_drivers_for_many_motors() -> None:
     assert needs(given(square()))["motor driver"].quantity == 1
-    servo = needs(given(square(), motor=PlainMotor(horn="a horn")))
+    servo = needs(given(square(), motor=next(motor for motor in MOTORS if motor.horn is not None)))
     assert "motor driver" not in servo
     assert servo["controller board for servos"].quantity == 1
+
+
+def test_motors_keep_the_source_of_their_price() -> None:
+    for motor in MOTORS:
+        price = needs(given(square(), motor=motor))["geared motor"].price
+        assert price.amount == motor.price
+        assert motor.price_source in price.words
 
 
 def test_a_robot_without_a_zipper_buys_none() -> None:

@@ -42,6 +42,13 @@ def test_who_breaks_and_who_is_overloaded(tension: float, problems: int, warning
         assert "PE 1, 15 lb" in sentence
 
 
+def test_a_stopper_that_may_slip_is_knotted() -> None:
+    assert check_line(square(), np.array([2.0]), TEN, hold=2.1).warnings == ()
+    check = check_line(square(), np.array([2.2]), TEN, hold=2.1)
+    assert "its stopper may slip at 2 N" in check.warnings[0]
+    assert check.table.column("verdict") == ("holds; knot the stopper",)
+
+
 def test_no_line_for_a_crane() -> None:
     (sentence,) = check_line(square(), np.array([1e4]), TEN).problems
     assert "no line of the table" in sentence
