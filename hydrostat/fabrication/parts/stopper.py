@@ -14,11 +14,11 @@ PRELOAD = 50.0
 K = 0.3 in plastic, of which creep of PLA takes a third. Measured on none, check yours."""
 
 FRICTION = 0.1
-"""Of braided polyethylene on plastic: the lower end of 0.1 to 0.2 that is commonly given for UHMWPE."""
+"""Of braided polyethylene on plastic: the lower end of 0.1 to 0.2, as tables give for UHMWPE. Measured on none."""
 
 _POST = 2.4
-_KEY = 1.9
-_FLAT = 1.6
+_KEY = 2.2
+_FLAT = 1.5
 """Radius of the post that the cable goes round, of the key above it, and how far the flat of the key is from the axis
 [mm]."""
 
@@ -67,10 +67,12 @@ def stopper(options: PartOptions) -> Stopper:
 
     The cable comes up from the cloth beside the screw (it is laid in through the slot, nothing is threaded), goes 300
     degrees round the post of the screw between ribs of base and lid that bend it up and down, and leaves through the
-    notch. Loosen by half a turn, pull the cable, tighten. The post is the key that keeps the lid from turning along.
+    notch. Loosen by half a turn, pull the cable, tighten. The top of the post is the key that keeps the lid from turning
+    along. The slot is narrower than a pinhole, and the cable is pulled away from it, towards the post.
 
     How much it holds is `holding_force` at `PRELOAD` and `FRICTION`. The ribs are not counted: they spread the pressure
-    evenly on a print that is not even, and what the braid gains by biting into them is unknown.
+    evenly on a print that is not even, and what the braid gains by biting into them is unknown. Where a cable pulls
+    harder, tie a knot in it behind the notch once it is adjusted.
     """
     rib = max(0.4, options.cable)
     base, lid = _base(options, rib), _lid(options, rib)
@@ -139,7 +141,7 @@ def _button(options: PartOptions, height: float) -> Construction:
 def _steps(options: PartOptions) -> list[float]:
     """Angles of the ribs [degrees]; those of base and lid take turns, with room for the cable between them."""
     apart = (_RIB + 1.3 * options.cable) / (_POST + options.cable / 2)
-    first, last = 50.0, _EXIT - 10
+    first, last = 45.0, _EXIT - 30
     count = max(2, math.floor(math.radians(last - first) / apart))
     return [first + (last - first) * k / count for k in range(count + 1)]
 
@@ -156,20 +158,26 @@ def _key(radius: float, flat: float, height: float) -> Construction:
 
 def _base(options: PartOptions, rib: float) -> Construction:
     deck, track = _deck(), _track(options)
-    hole = options.cable + _ROOM
-    x = _POST + hole / 2
     body: Construction = _button(options, deck + rib) - Cylinder(rib + 1, track).moved(0, 0, deck)
     for angle in _steps(options)[::2]:
         body = body + _rib(angle, rib + 0.2, _POST - 0.2, track + 0.2).moved(0, 0, deck - 0.2)
-    body = body + Cylinder(rib, _POST).moved(0, 0, deck) + _key(_KEY, _FLAT, rib + _KEY_HEIGHT - 0.2).moved(0, 0, deck)
+    body = body + Cylinder(rib + options.cable / 4 + 0.2, _POST).moved(0, 0, deck - 0.2)
+    body = body + _key(_KEY, _FLAT, rib + _KEY_HEIGHT).moved(0, 0, deck - 0.2)
     body = body - Cylinder(20, M2X6.pilot / 2).moved(0, 0, _FLOOR)
-    body = body - Cylinder(20, hole / 2).moved(x, 0, -1)
-    body = body - Cylinder(0.6, hole / 2 + 0.6, hole / 2).moved(x, 0, 0)
-    body = body - Cylinder(0.4, hole / 2, hole / 2 + 0.4).moved(x, 0, deck - 0.4)
-    slot = options.cable + 0.4
-    body = body - Box((20, slot, 30)).moved(x, -slot / 2, -1)
-    notch = Box((20, hole, 20)).moved(_POST, -hole / 2, deck)
+    body = body - _way_up(options)
+    notch = Box((20, options.cable + _ROOM, 20)).moved(_POST, -(options.cable + _ROOM) / 2, deck)
     return body - notch.turned(z=_EXIT)
+
+
+def _way_up(options: PartOptions) -> Construction:
+    """Air where the cable comes up beside the post: a hole with chamfers, and the slot by which it is laid in."""
+    deck, radius = _deck(), (options.cable + _ROOM) / 2
+    x, slot = _POST + radius, options.cable + 0.4
+    below = Cylinder(0.7, radius + 0.7, radius).moved(x, 0, -0.1)
+    above = Cylinder(0.5, radius, radius + 0.5).moved(x, 0, deck - 0.4)
+    track = Cylinder(20, _track(options)) - Cylinder(20, _POST)
+    sides = Box((20, slot, 30)).moved(x, -slot / 2, -1)
+    return Cylinder(20, radius).moved(x, 0, -1) + below + (above & track) + sides
 
 
 def _lid(options: PartOptions, rib: float) -> Construction:
@@ -178,7 +186,7 @@ def _lid(options: PartOptions, rib: float) -> Construction:
     body: Construction = _button(options, _LID).turned(x=180).moved(0, 0, _LID)
     for angle in _steps(options)[1::2]:
         body = body + _rib(angle, rib + 0.2, _POST + free, _track(options) - 0.2).moved(0, 0, -rib)
-    body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT)
+    body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT + 1).moved(0, 0, -1)
     body = body - Cylinder(20, M2X6.passage / 2).moved(0, 0, -1)
     sunk = (M2X6.head - M2X6.passage) / 2 + 0.1
-    return body - Cylinder(sunk, M2X6.passage / 2, M2X6.head / 2 + 0.1).moved(0, 0, _LID - sunk)
+    return body - Cylinder(sunk + 0.1, M2X6.passage / 2, M2X6.head / 2 + 0.2).moved(0, 0, _LID - sunk)
