@@ -67,8 +67,8 @@ def stopper(options: PartOptions) -> Stopper:
 
     The cable comes up from the cloth beside the screw (it is laid in through the slot, nothing is threaded), goes 300
     degrees round the post of the screw between ribs of base and lid that bend it up and down, and leaves through the
-    notch. Loosen by half a turn, pull the cable, tighten. The top of the post is the key that keeps the lid from turning
-    along. The slot is narrower than a pinhole, and the cable is pulled away from it, towards the post.
+    notch. Loosen by half a turn, pull the cable, tighten. The top of the post is the key that keeps the lid from
+    turning along. The slot is narrower than a pinhole, and the cable is pulled away from it, towards the post.
 
     How much it holds is `holding_force` at `PRELOAD` and `FRICTION`. The ribs are not counted: they spread the pressure
     evenly on a print that is not even, and what the braid gains by biting into them is unknown. Where a cable pulls
