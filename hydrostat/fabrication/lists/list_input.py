@@ -39,6 +39,7 @@ class FoamNeeds:
         part_b: of the foam [g].
         silicone: for the mould [mm^3]; 0 for a printed one.
         silicone_mass: [g].
+        material: name of the foam; empty: that of the robot's body.
     """
 
     volume: float
@@ -46,6 +47,7 @@ class FoamNeeds:
     part_b: float
     silicone: float = 0.0
     silicone_mass: float = 0.0
+    material: str = ""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -60,7 +62,7 @@ class ListInput:
         options: of the printed parts: line, tube and spare wraps.
         printed: the parts for all winches, stoppers, and the base.
         mould: printed pieces of the mould, or the positive for a silicone one.
-        screws: how many of each kind, by what they are called.
+        screws: how many of each kind, nuts too, by what they are called; motors among them are not counted twice.
         leads: from each winch's exit to its spool [mm].
         seats: depth of the seat of the tube at each winch [mm].
         outside: tube from the base with the motors to where each cable begins [mm].

@@ -93,7 +93,7 @@ def _plush(given: ListInput, cloth: Cloth) -> list[Item]:
 
 
 def _foam(given: ListInput, foam: FoamNeeds) -> list[Item]:
-    kind = given.robot.body.material.name or "as the robot file says"
+    kind = foam.material or given.robot.body.material.name or "as the robot file says"
     parts = (("A", foam.part_a), ("B", foam.part_b))
     return [
         *(
@@ -169,8 +169,11 @@ def _winches(given: ListInput) -> list[Item]:
             mass=count * given.motor.mass,
         ),
         *(
-            Item(group=_WINCHES, what="screw", specification=title, quantity=float(number), price=PRICES["screws"])
+            Item(
+                group=_WINCHES, what="screw or nut", specification=title, quantity=float(number), price=PRICES["screws"]
+            )
             for title, number in given.screws.items()
+            if title != given.motor.title
         ),
         Item(
             group=_WINCHES,

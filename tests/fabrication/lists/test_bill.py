@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from small_inputs import box, given, square
+from small_inputs import PLAIN, box, given, square
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
@@ -62,12 +62,19 @@ def test_filling_is_volume_times_density() -> None:
 
 
 def test_a_plush_robot() -> None:
-    found = needs(given(square(), cloth=Cloth(felt=2e5, seam=1e3, zipper=96.0), printed=(CUBE,), screws={"M2 x 6": 4}))
+    found = needs(
+        given(
+            square(),
+            cloth=Cloth(felt=2e5, seam=1e3, zipper=96.0),
+            printed=(CUBE,),
+            screws={"M2 x 6": 4, PLAIN.title: 1},
+        )
+    )
     assert found["felt"].quantity == pytest.approx(0.2)
     assert found["all-purpose thread"].quantity == 1
     assert "100 mm" in found["zipper"].specification
     assert found["PLA for printed parts"].mass == pytest.approx(3 * 1.24)
-    assert found["screw"].quantity == 4
+    assert found["screw or nut"].quantity == 4
     assert found["geared motor"].cost == 20.0
     assert not {"silicone", "skin", "release agent", "PTFE tube"} & set(found)
     assert found["braided fishing line"].mass == pytest.approx(0.97e-3 * math.pi / 4 * 0.405**2 * 360)
@@ -98,6 +105,14 @@ def test_a_hand_of_foam_costs_what_the_thesis_paid() -> None:
     core = sum(item.cost for item in items if item.what.startswith("foam"))
     assert 1 < core < 5  # "a few dollars each" (N2)
     assert 50 < cost_of(items, "mould") < 200  # "about 100 USD" (N2)
+
+
+def test_the_foam_that_is_poured_may_be_another_than_was_simulated() -> None:
+    robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
+    foam = FoamNeeds(volume=4e5, part_a=30.0, part_b=35.0, material="flexfoam-it x")
+    found = needs(given(robot, foam=foam))
+    assert found["foam, part A"].specification == "flexfoam-it x"
+    assert (found["foam, part A"].mass, found["foam, part B"].mass) == (30.0, 35.0)
 
 
 def test_a_printed_mould_needs_no_silicone() -> None:
