@@ -23,6 +23,8 @@ class MouldOptions:
         wall: least thickness round the body [mm].
         bed: largest piece that the printer takes, along x, y and z [mm].
         key_clearance: between a key and its socket, on each side [mm].
+        mark_cables: dents in the foam show where cables run.
+        mark_depth: cable points that lie no deeper below the surface are marked [mm].
 
     Raises:
         InputError: a length that is not above 0.
@@ -32,9 +34,11 @@ class MouldOptions:
     wall: float = 8.0
     bed: tuple[float, float, float] = (220.0, 220.0, 250.0)
     key_clearance: float = 0.2
+    mark_cables: bool = True
+    mark_depth: float = 10.0
 
     def __post_init__(self) -> None:
-        sizes = {"wall": self.wall, "key_clearance": self.key_clearance}
+        sizes = {"wall": self.wall, "key_clearance": self.key_clearance, "mark_depth": self.mark_depth}
         sizes |= {f"bed[{axis}]": side for axis, side in enumerate(self.bed)}
         for name, size in sizes.items():
             if not (math.isfinite(size) and size > 0):

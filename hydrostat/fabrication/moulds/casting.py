@@ -1,0 +1,174 @@
+"""`Casting`: how much of what is poured, and how long it takes."""
+
+from dataclasses import dataclass
+
+from hydrostat.robot import MATERIALS, Material
+
+SPARE = 0.10
+"""Mixed more than is needed: some stays in the cup and in the sprue."""
+
+_LIQUID_FOAM = 1.1e3
+"""Density of mixed polyurethane before it rises [kg/m^3]: assumed."""
+
+SILICONE_PRICE = 40.0
+"""Of a kilogram of Mold Max 30 [USD]: measured on none, check yours."""
+
+_EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")
+"""Beginnings of names of castable materials that come as two parts."""
+
+THESIS = "thesis on cable-driven soft robots (R52, N2, N5)"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mix:
+    """Two parts that are mixed and poured; masses with what is spare.
+
+    Attributes:
+        material: what it is.
+        volume: to fill [mm^3], without what is spare.
+        density: once cured [g/mm^3].
+        part_a: mass of the first part [g].
+        part_b: mass of the second part [g].
+        ratio: of the parts, in words, with its source.
+    """
+
+    material: str
+    volume: float
+    density: float
+    part_a: float
+    part_b: float
+    ratio: str
+
+    @property
+    def mass(self) -> float:
+        """Of both parts [g]."""
+        return self.part_a + self.part_b
+
+
+@dataclass(frozen=True, kw_only=True)
+class Casting:
+    """All that is poured.
+
+    Attributes:
+        body: what the body is cast of.
+        expansion: volume of the foam over that of the liquid; 1 for what does not rise.
+        silicone: of a mould of silicone, the first pour and the second; none if halves are printed.
+        silicone_cost: rough price of both pours [USD].
+        times: what waits how long, as (what, how long), with sources.
+        release: what keeps the cast from sticking.
+        notes: where facts come from, and what is not known.
+    """
+
+    body: Mix
+    expansion: float
+    silicone: tuple[Mix, ...]
+    silicone_cost: float
+    times: tuple[tuple[str, str], ...]
+    release: str
+    notes: tuple[str, ...]
+
+
+def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -> tuple[Casting, tuple[str, ...]]:
+    """Amounts and times, and sentences for what a person should mind.
+
+    Args:
+        material: of the robot's body.
+        fill: volume of cavity, sprue and vents [mm^3].
+        pours: volumes of silicone [mm^3]; none for printed halves.
+    """
+    cast, warnings = _castable(material)
+    foams = _is_foam(cast)
+    body = _mix(cast.name, fill, cast.density, 0.5, _ratio_in_words(cast))
+    silicone = tuple(
+        _mix(
+            "mold max 30",
+            pour,
+            MATERIALS["mold max 30"].density,
+            100 / 110,
+            "100 parts A to 10 parts B by mass (maker's data sheet, as quoted by Fab Academy Amsterdam, 2018)",
+        )
+        for pour in pours
+    )
+    casting = Casting(
+        body=body,
+        expansion=_LIQUID_FOAM / cast.density if foams else 1.0,
+        silicone=silicone,
+        silicone_cost=SILICONE_PRICE * sum(mix.mass for mix in silicone) / 1e3,
+        times=_times(cast, silicone=bool(pours)),
+        release=_release(foams),
+        notes=_notes(foams, silicone=bool(pours)),
+    )
+    return casting, warnings
+
+
+def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
+    """What a body is cast of: its own material where that comes as two parts, else the thesis's foam."""
+    if material.name.startswith(_EQUAL):
+        return material, ()
+    foam = MATERIALS["flexfoam-it x"]
+    name = f'"{material.name}"' if material.name else "the body's material, given by its numbers,"
+    warning = (
+        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts: amounts are for {foam.name} "
+        f"({foam.density:.0f} kg/m^3), which has another stiffness than was simulated; set the body's material to what "
+        "you pour and simulate again"
+    )
+    return foam, (warning,)
+
+
+def _is_foam(material: Material) -> bool:
+    return material.name.startswith("flexfoam-it")
+
+
+def _mix(name: str, volume: float, density: float, share: float, ratio: str) -> Mix:
+    """Amounts with what is spare; density in kg/m^3, share of part A by mass."""
+    grams = 1e-6 * density
+    mass = (1 + SPARE) * grams * volume
+    return Mix(material=name, volume=volume, density=grams, part_a=share * mass, part_b=(1 - share) * mass, ratio=ratio)
+
+
+def _ratio_in_words(material: Material) -> str:
+    if _is_foam(material):
+        return "equal parts are assumed, no source was found: take the ratio that is printed on your tins"
+    return "equal parts A and B: take the ratio that is printed on your tins"
+
+
+def _times(material: Material, *, silicone: bool) -> tuple[tuple[str, str], ...]:
+    cures = {
+        "flexfoam-it x": f"2 h at 25 C ({THESIS})",
+        "ecoflex 00-30": f"4 h at 25 C, then 2 h at 80 C and 1 h at 100 C ({THESIS})",
+    }
+    body = (f"{material.name} cures", cures.get(material.name, "as the tin says; no source was found"))
+    if not silicone:
+        return (body,)
+    mould = (
+        ("mold max 30 cures, each of two pours", f"24 h at room temperature, or 6 h at 60 C ({THESIS})"),
+        ("instead of a printed positive: alginate round a model", f"less than 5 min ({THESIS})"),
+        ("and plaster of Paris poured into it", f"several hours ({THESIS})"),
+    )
+    return (*mould, body)
+
+
+def _release(foams: bool) -> str:
+    if foams:
+        return (
+            "wax or a spray for polyurethane on all that the foam touches, sprue and vents too: foam sticks to bare "
+            "plastic (the maker waxes lid and holes: Smooth-On's gallery, cinder blocks of FlexFoam-iT! X)"
+        )
+    return "a thin coat of release spray; silicone does not stick to plastic, but grips the layers of a print"
+
+
+def _notes(foams: bool, *, silicone: bool) -> tuple[str, ...]:
+    notes = []
+    if foams:
+        notes.append(
+            "Expansion is the density of the liquid, assumed 1100 kg/m^3, over that of the foam; in a closed mould "
+            "foam comes out denser. Open holes let the pressure of the rising foam out (Smooth-On's gallery: "
+            "FlexFoam-iT! X cast in Mold Max 30)."
+        )
+        notes.append("Pot life of the foam: no source was found; pour at once, and read your tins before you begin.")
+    if silicone:
+        notes.append(
+            f"Silicone at {SILICONE_PRICE:g} USD a kilogram: measured on none, check yours; the thesis paid about "
+            "100 USD for a mould (N2)."
+        )
+    return tuple(notes)

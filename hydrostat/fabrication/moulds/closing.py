@@ -1,0 +1,151 @@
+"""What holds two halves together and lets them part: keys, bolt holes, pry slots, all in the rim round the cavity.
+
+In the coordinates of the mould: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from manifold3d import Manifold
+
+from hydrostat.fabrication.moulds.openings import Sprue
+from hydrostat.fabrication.moulds.simple_solids import joined, rod
+
+RIM = 13.0
+"""Least width of the rim round the cavity [mm]: a key or a bolt with walls on both sides."""
+
+INSET = 6.5
+"""From the outer side of the rim to the middle of keys and bolts [mm]."""
+
+BOLT = 2.25
+"""Radius of a hole for an M4 bolt or threaded rod [mm]."""
+
+_PITCH = 110.0
+"""Bolts are no further apart [mm]."""
+
+_KEY = 4.0
+_ODD_KEY = 3.0
+_KEY_HEIGHT = 4.0
+_TAPER = 0.8
+_ROOT = 1.0
+_GAP = 2.0
+_SLOT = (6.0, 16.0, 2.5)
+
+Spot = tuple[float, float]
+"""A place in the parting plane [mm]."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """The outside of a mould [mm].
+
+    Attributes:
+        low: its lowest corner.
+        high: its highest corner.
+        x_cuts: where it is cut across x, to fit the printer.
+        y_cuts: where it is cut across y.
+    """
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    x_cuts: tuple[float, ...] = ()
+    y_cuts: tuple[float, ...] = ()
+
+    @property
+    def solid(self) -> Manifold:
+        """All of it."""
+        return Manifold.cube(self.size).translate(self.low)
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Its sides [mm]."""
+        x, y, z = (high - low for low, high in zip(self.low, self.high, strict=True))
+        return x, y, z
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Closing:
+    """How the halves meet.
+
+    Attributes:
+        keys: middles and radii of the keys [mm]; one is smaller, so that the halves fit one way round.
+        bolts: middles of the bolt holes [mm].
+        bumps: on the lower half, reaching a little into it.
+        sockets: what is taken from the upper half.
+        holes: all bolt holes.
+        slots: for a flat tool, in the upper half.
+    """
+
+    keys: tuple[tuple[Spot, float], ...]
+    bolts: tuple[Spot, ...]
+    bumps: Manifold
+    sockets: Manifold
+    holes: Manifold
+    slots: Manifold
+
+
+def make_closing(block: Block, *, sprue: Sprue | None, vents: tuple[float, ...], clearance: float) -> Closing:
+    """Keys at the corners, bolts along the sides, slots to pry at left and right.
+
+    Args:
+        block: outside of the mould.
+        sprue: bolts keep off its funnel.
+        vents: x of what leaves through the top [mm]; bolts keep off these.
+        clearance: between keys and sockets [mm], on each side.
+    """
+    (left, bottom, low), (right, top, high) = block.low, block.high
+    xs, ys = (left + INSET, right - INSET), (bottom + INSET, top - INSET)
+    keys = tuple(((x, y), _ODD_KEY if (x, y) == (xs[1], ys[1]) else _KEY) for x in xs for y in ys)
+    rows = [(x, y) for y in _steps(bottom, top, block.y_cuts) for x in xs]
+    taken = [(vent, BOLT) for vent in vents] + ([] if sprue is None else [(sprue.x, sprue.funnel)])
+    free = [_beside(x, taken) for x in _steps(left, right, block.x_cuts)]
+    rows += [(x, ys[0]) for x in _steps(left, right, block.x_cuts)]
+    rows += [(x, ys[1]) for x in free if left + 4 * INSET < x < right - 4 * INSET]
+    bolts = tuple(sorted(rows))
+    return Closing(
+        keys=keys,
+        bolts=bolts,
+        bumps=joined([_cone(spot, radius, 0.0) for spot, radius in keys]),
+        sockets=joined([_cone(spot, radius, clearance) for spot, radius in keys]),
+        holes=joined([rod(np.array([x, y, low - 1.0]), np.array([x, y, high + 1.0]), BOLT) for x, y in bolts]),
+        slots=joined([_slot(block, side, [y for x, y in bolts if x == xs[side]]) for side in (0, 1)]),
+    )
+
+
+def _steps(low: float, high: float, cuts: tuple[float, ...]) -> list[float]:
+    """Places along a side, evenly within each piece between two cuts."""
+    found = []
+    for start, end in pairwise((low, *cuts, high)):
+        count = max(int(np.ceil((end - start) / _PITCH)), 1)
+        found += [start + (end - start) * (step + 0.5) / count for step in range(count)]
+    return found
+
+
+def _beside(x: float, taken: list[tuple[float, float]]) -> float:
+    """The nearest place to x that keeps off what is in the top rim."""
+    shifts = sorted((step * 1.0 for step in range(-60, 61)), key=lambda shift: (abs(shift), shift))
+    for shift in shifts:
+        if all(abs(x + shift - other) >= radius + BOLT + _GAP for other, radius in taken):
+            return x + shift
+    return -np.inf
+
+
+def _cone(spot: Spot, radius: float, clearance: float) -> Manifold:
+    """A key, or with a clearance its socket, as high as it is above the plane and rooted below it."""
+    wide, height = radius + clearance, _KEY_HEIGHT + clearance
+    root = rod(np.array([*spot, -_ROOT]), np.array([*spot, 0.0]), wide)
+    return root + rod(np.array([*spot, 0.0]), np.array([*spot, height]), wide, _TAPER * radius + clearance)
+
+
+def _slot(block: Block, side: int, bolts: list[float]) -> Manifold:
+    """Where a screwdriver is put in, at a side, half way between two bolts or a bolt and a key."""
+    depth, length, height = _SLOT
+    marks = sorted([block.low[1] + INSET, *bolts, block.high[1] - INSET])
+    gaps = [(end - start, (start + end) / 2) for start, end in pairwise(marks)]
+    clear = [
+        (gap, middle) for gap, middle in gaps if all(abs(middle - cut) > length / 2 + _GAP for cut in block.y_cuts)
+    ] or gaps
+    middle = max(clear)[1]
+    x = block.low[0] - 1.0 if side == 0 else block.high[0] - depth
+    return Manifold.cube((depth + 1.0, length, height)).translate((x, middle - length / 2, 0.0))

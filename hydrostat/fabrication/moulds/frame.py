@@ -1,0 +1,104 @@
+"""`Frame`: how a mould lies in the coordinates of the body, and how it stands when it is poured."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from manifold3d import Manifold
+from shapely import MultiPoint
+
+from hydrostat.fabrication.moulds.high_points import high_points
+from hydrostat.fabrication.moulds.pull import Pull
+from hydrostat.fabrication.moulds.release import axes_along
+
+SMALLEST_TRAP = 1.0
+"""A bubble no higher than that is left to the foam, which pushes it into its cells [mm]."""
+
+_HELD_UPWARDS = 3.0
+"""A held end at the top is worth so many vents: nobody sees there where the sprue was cut off."""
+
+_TALL = 0.5
+"""Vents that a mould may have more for being once less as tall as it is wide."""
+
+_LARGE = 10.0
+"""Vents that a box may need less for being twice as large."""
+
+_ACROSS = 0.7
+"""Sine of the angle between an axis of the robot and the pull, above which it gives the box its sides."""
+
+_AT_THE_TOP = 0.85
+"""From which part of the height on something is at the top."""
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """Axes of a mould; its parting plane is z = 0.
+
+    Attributes:
+        axes: unit vectors across, upwards when poured, and along the pull, as rows, in the body's coordinates.
+        height: of the parting plane along the pull [mm].
+        held_upwards: where the robot is held is at the top: the foam is poured in there.
+    """
+
+    axes: Float[np.ndarray, "3 3"]
+    height: float
+    held_upwards: bool = False
+
+    def into(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
+        """Points of the body [mm] in the mould."""
+        return points @ self.axes.T - [0.0, 0.0, self.height]
+
+    def enter(self, solid: Manifold) -> Manifold:
+        """A solid of the body's coordinates in those of the mould."""
+        return solid.transform(np.column_stack([self.axes, [0.0, 0.0, -self.height]]))
+
+    def leave(self, solid: Manifold) -> Manifold:
+        """A solid of the mould's coordinates in those of the body."""
+        return solid.transform(np.column_stack([self.axes.T, self.height * self.axes[2]]))
+
+
+def stand(pull: Pull, held: Float[np.ndarray, "held 3"]) -> Frame:
+    """The way to stand the closed mould on an edge, parting plane upright, so that little air is caught.
+
+    Sides of the box are along axes of the robot or those of the smallest box. That edge is chosen that needs the
+    fewest vents, has what is held at the top, is not too narrow to stand on and does not make the mould much larger.
+
+    Args:
+        pull: of the mould.
+        held: nodes at pins, in the body's coordinates [mm].
+    """
+    first, second, along = axes_along(pull.direction)
+    flat = pull.skin.vertices @ np.column_stack([first, second])
+    main = np.eye(3)[int(np.argmax(np.linalg.norm(np.cross(np.eye(3), along), axis=1) > _ACROSS))]
+    sides = {_smallest_side(flat), float(np.arctan2(main @ second, main @ first)) % (np.pi / 2)}
+    frames = []
+    for angle in sorted(side + turn * np.pi / 2 for side in sides for turn in range(4)):
+        up = np.cos(angle) * first + np.sin(angle) * second
+        frames.append(_frame(pull, np.array([np.cross(up, along), up, along]), held))
+    least = min(area for _, area, _ in frames)
+    return min(frames, key=lambda one: (round(one[0] + _LARGE * (one[1] / least - 1), 6), _order(one[2])))[2]
+
+
+def _frame(pull: Pull, axes: Float[np.ndarray, "3 3"], held: Float[np.ndarray, "held 3"]) -> tuple[float, float, Frame]:
+    """A way to stand, before it what speaks against it and the area of the box [mm^2]."""
+    places = pull.skin.vertices @ axes.T
+    width, tall, depth = np.ptp(places, axis=0)
+    level = (held @ axes[1] - places[:, 1].min()) / tall
+    held_upwards = len(held) > 0 and float(level.mean()) > _AT_THE_TOP
+    vents = len(high_points(pull.skin.vertices, pull.skin.triangles, axes[1], rise=SMALLEST_TRAP))
+    against = vents - _HELD_UPWARDS * held_upwards + _TALL * tall / min(width, 3 * depth)
+    return float(against), float(width * tall), Frame(axes, pull.height, held_upwards)
+
+
+def _order(frame: Frame) -> list[float]:
+    """Decides between ways to stand that are equally good."""
+    return (frame.axes[1].round(6) + 0.0).tolist()
+
+
+def _smallest_side(flat: Float[np.ndarray, "points 2"]) -> float:
+    """Angle of a side of the smallest rectangle round points [radians]."""
+    corners = np.array(MultiPoint(flat).minimum_rotated_rectangle.exterior.coords)  # type: ignore[union-attr]
+    sides = np.diff(corners, axis=0)
+    angles = np.arctan2(sides[:, 1], sides[:, 0]) % (np.pi / 2)
+    angle = float(angles[0])
+    return 0.0 if min(angle, np.pi / 2 - angle) < 1e-6 else angle

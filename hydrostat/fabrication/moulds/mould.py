@@ -1,0 +1,228 @@
+"""`make_mould`: all that is printed and poured to cast the body of a robot."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from manifold3d import Manifold
+
+from hydrostat.fabrication.moulds.body_solid import MILLIMETRES, body_solid
+from hydrostat.fabrication.moulds.casting import Casting, make_casting
+from hydrostat.fabrication.moulds.closing import RIM, Block, make_closing
+from hydrostat.fabrication.moulds.frame import Frame, stand
+from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves
+from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
+from hydrostat.fabrication.moulds.mould_prints import mould_prints
+from hydrostat.fabrication.moulds.mould_words import mould_problems, mould_warnings, standing
+from hydrostat.fabrication.moulds.openings import Sprue, Vent, make_sprue, make_vents
+from hydrostat.fabrication.moulds.pocket import Pocket, cable_dents, make_pockets
+from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames, make_positive
+from hydrostat.fabrication.moulds.pull import Pull, find_pull
+from hydrostat.fabrication.moulds.split import grid
+from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.robot import Robot
+
+TOP_RIM = 20.0
+"""Height of the rim above the body [mm]: the funnel is in it."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MouldSurface:
+    """The body's surface and where it holds in the mould, for a picture.
+
+    Attributes:
+        vertices: in the coordinates of the robot [mm].
+        triangles: of three vertices each.
+        undercut: which of them neither half comes off.
+    """
+
+    vertices: Float[np.ndarray, "vertices 3"]
+    triangles: Int[np.ndarray, "triangles 3"]
+    undercut: Bool[np.ndarray, " triangles"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Mould:
+    """A mould in two halves; lengths in millimetres.
+
+    Attributes:
+        kind: printed halves, or silicone round a printed positive.
+        pull: unit vector along which the upper half is drawn, in the coordinates of the robot.
+        up: unit vector that points up while it is poured.
+        height: of the parting plane along the pull [mm].
+        share: of the surface that is undercut.
+        directions: all pulls that were tried.
+        shares: undercut of each of them.
+        surface: which triangles are undercut.
+        printed: as they lie on the bed.
+        assembly: halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across,
+            y upwards as it stands, z along the pull, parted at z = 0.
+        volumes: where the block goes [mm^3]: upper + lower + cavity + sprue + vents + bolts + slots + keys = box, and
+            cavity = body - dents - pockets; "cutting" is what upper and lower lose to holes for dowels when they are
+            cut to fit the bed.
+        box: sides of the closed mould: across, upwards as it stands, along the pull [mm].
+        bolts: how many M4 bolts hold it; 0 for silicone.
+        dowels: how many of 3 mm join pieces.
+        vents: how many.
+        stands: how it stands when it is poured, in words.
+        casting: amounts and times.
+        problems: why it cannot be built well.
+        warnings: what to mind.
+    """
+
+    kind: MouldKind
+    pull: Float[np.ndarray, "3"]
+    up: Float[np.ndarray, "3"]
+    height: float
+    share: float
+    directions: Float[np.ndarray, "tried 3"]
+    shares: Float[np.ndarray, " tried"]
+    surface: MouldSurface
+    printed: tuple[Printed, ...]
+    assembly: Assembly
+    volumes: dict[str, float]
+    box: tuple[float, float, float]
+    bolts: int
+    dowels: int
+    vents: int
+    stands: str
+    casting: Casting
+    problems: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Inside:
+    """What is in the block, in the coordinates of the mould."""
+
+    body: Manifold
+    dents: Manifold
+    pockets: tuple[Pocket, ...]
+    cavity: Manifold
+    block: Block
+    sprue: Sprue | None
+    vents: tuple[Vent, ...]
+
+
+def make_mould(
+    robot: Robot, options: MouldOptions, *, pockets: Mapping[str, tuple[float, float, float]] | None = None
+) -> Mould:
+    """The mould for a robot's body.
+
+    Args:
+        robot: what is built.
+        options: how its mould is made.
+        pockets: room for winches that sit in the body, by name: three sides [mm].
+
+    Raises:
+        InputError: the body is not closed, or a pocket is of a winch that is not there.
+    """
+    solid = body_solid(robot.body)
+    pull = find_pull(solid)
+    frame = stand(pull, _held(robot))
+    inside = _inside(robot, options, solid, pull, frame, pockets or {})
+    closing = make_closing(
+        inside.block,
+        sprue=inside.sprue,
+        vents=tuple(float(vent.at[0]) for vent in inside.vents if vent.upward),
+        clearance=options.key_clearance,
+    )
+    halves = make_halves(
+        inside.block,
+        inside.body,
+        inside.dents,
+        inside.pockets,
+        sprue=inside.sprue,
+        vents=inside.vents,
+        closing=closing,
+    )
+    silicone = options.kind is MouldKind.SILICONE
+    positive = make_positive(halves.cavity, inside.sprue)
+    frames = make_frames(halves.cavity, inside.sprue) if silicone else None
+    printed, dowels, lost = mould_prints(halves, positive, frames, inside.block, options.bed)
+    volumes = halves.volumes | {"cutting": lost}
+    fill = volumes["cavity"] + volumes["sprue"] + volumes["vents"]
+    casting, words = make_casting(robot.body.material, fill, pours=frames.pours if frames else ())
+    shape = frames.inside if frames else inside.block
+    return Mould(
+        kind=options.kind,
+        pull=pull.direction,
+        up=frame.axes[1],
+        height=pull.height,
+        share=pull.share,
+        directions=pull.directions,
+        shares=pull.shares,
+        surface=MouldSurface(vertices=pull.skin.vertices, triangles=pull.skin.triangles, undercut=pull.undercut),
+        printed=printed,
+        assembly=_assembly(robot.name, halves, frames, positive, inside.block),
+        volumes=volumes,
+        box=shape.size,
+        bolts=0 if silicone else len(closing.bolts),
+        dowels=dowels,
+        vents=len(inside.vents),
+        stands=standing(frame, inside.sprue, inside.vents, options.kind),
+        casting=casting,
+        problems=mould_problems(pull, robot.body.material, inside.sprue, inside.pockets, printed, options, halves),
+        warnings=(*mould_warnings(pull, robot.body.material, options.kind), *words),
+    )
+
+
+def _held(robot: Robot) -> Float[np.ndarray, "held 3"]:
+    """Nodes at pins [mm], flat bodies at z = 0."""
+    mesh = robot.body.mesh
+    held = np.zeros(len(mesh.nodes), dtype=bool)
+    for pin in robot.pins:
+        held |= pin.holds(mesh)
+    nodes = MILLIMETRES * mesh.nodes[held]
+    return np.column_stack([nodes, np.zeros((len(nodes), 3 - mesh.dim))])
+
+
+def _inside(
+    robot: Robot,
+    options: MouldOptions,
+    solid: Manifold,
+    pull: Pull,
+    frame: Frame,
+    sizes: Mapping[str, tuple[float, float, float]],
+) -> _Inside:
+    """Cavity, openings and the block round them."""
+    body = frame.enter(solid)
+    pockets = make_pockets(robot, body, frame, sizes)
+    marks = options.mark_cables
+    dents = cable_dents(robot, pull.skin, frame, deepest=options.mark_depth) if marks else Manifold()
+    cavity = make_cavity(body, dents, pockets)
+    block = _block(body, options)
+    top = block.high[1]
+    sprue = make_sprue(cavity, top=top, room=(block.low[0] + RIM, block.high[0] - RIM))
+    vents = make_vents(cavity, sprue, low=block.low[2], high=block.high[2], top=top)
+    return _Inside(body=body, dents=dents, pockets=pockets, cavity=cavity, block=block, sprue=sprue, vents=vents)
+
+
+def _block(body: Manifold, options: MouldOptions) -> Block:
+    """The outside: walls at the backs, a rim for keys and bolts, a higher one at the top for the funnel."""
+    box = body.bounding_box()
+    rim = max(options.wall, RIM)
+    low = (box[0] - rim, box[1] - rim, box[2] - options.wall)
+    high = (box[3] + rim, box[4] + max(options.wall, TOP_RIM), box[5] + options.wall)
+    return Block(low, high, *grid(low, high, options.bed))
+
+
+def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: Block) -> Assembly:
+    """What belongs where, in the coordinates of the mould."""
+    ahead, aback = (0.0, 0.0, 0.6 * block.size[2]), (0.0, 0.0, -0.6 * block.size[2])
+    if frames is None:
+        pieces = (
+            Placed(name="mould_lower", title="lower half", solid=halves.lower, pulled=aback),
+            Placed(name="body", title="cast body", solid=halves.cavity, printed=False),
+            Placed(name="mould_upper", title="upper half", solid=halves.upper, pulled=ahead),
+        )
+    else:
+        pieces = (
+            Placed(name="frame_lower", title="lower frame", solid=frames.lower, pulled=aback),
+            Placed(name="positive_lower", title="lower half of the positive", solid=positive.lower),
+            Placed(name="positive_upper", title="upper half of the positive", solid=positive.upper),
+            Placed(name="frame_upper", title="upper frame", solid=frames.upper, pulled=ahead),
+        )
+    return Assembly(name=f"mould of {name}", pieces=pieces)

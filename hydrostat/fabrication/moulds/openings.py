@@ -1,0 +1,164 @@
+"""Sprue and vents: where foam goes in and air comes out.
+
+In the coordinates of the mould: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from manifold3d import Manifold
+
+from hydrostat.arrays import Vector
+from hydrostat.fabrication.moulds.frame import SMALLEST_TRAP
+from hydrostat.fabrication.moulds.high_points import high_points
+from hydrostat.fabrication.moulds.simple_solids import rod
+from hydrostat.fabrication.solids.printed import triangles_of
+
+VENT = 1.5
+"""Radius of a vent [mm]: a printer does not close it, foam does."""
+
+NECKS = (12.0, 10.0, 8.0, 6.0, 5.0)
+"""Radii of a sprue [mm]: foam that rises is poured quickly, so 10 mm across at least."""
+
+FUNNEL = 8.0
+"""How much wider the funnel is than the neck [mm], on each side, where there is room."""
+
+_FUNNEL_DEPTH = 12.0
+_SUNK = 2.0
+_DROP = 6.0
+_STEP = 1.0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Sprue:
+    """The hole to pour into, half in each half.
+
+    Attributes:
+        x: of its axis [mm].
+        mouth: height at which it meets the body [mm].
+        radius: of its neck [mm].
+        funnel: radius at the top of the mould [mm].
+        solid: all of it, reaching into the body.
+    """
+
+    x: float
+    mouth: float
+    radius: float
+    funnel: float
+    solid: Manifold
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Vent:
+    """A hole for air.
+
+    Attributes:
+        at: the high point that it serves [mm].
+        upward: it is a groove in the parting plane; else it leaves through the back of a half.
+        solid: all of it, reaching into the body.
+    """
+
+    at: Float[np.ndarray, "3"]
+    upward: bool
+    solid: Manifold
+
+
+def make_sprue(body: Manifold, *, top: float, room: tuple[float, float]) -> Sprue | None:
+    """The widest sprue over the highest place of the parting plane that is wide enough; None if there is none.
+
+    Args:
+        body: in the coordinates of the mould [mm].
+        top: height of the top of the mould [mm].
+        room: lowest and highest x that the funnel may reach [mm].
+    """
+    across, tops = roof(body)
+    if not len(across):
+        return None
+    best = float(tops.max())
+    for radius in NECKS:
+        window = int(np.ceil(radius / _STEP))
+        levels = np.array([tops[max(place - window, 0) : place + window + 1].min() for place in range(len(across))])
+        inside = (across - radius >= across[0] - _STEP) & (across + radius <= across[-1] + _STEP)
+        levels = np.where(inside, levels, -np.inf)
+        if not (levels.max() >= best - _DROP or radius == NECKS[-1]) or not np.isfinite(levels.max()):
+            continue
+        level = float(levels.max())
+        flat = np.flatnonzero(levels > level - 0.25)
+        x = float(across[flat[len(flat) // 2]])
+        return _sprue(x, level, radius, top, room)
+    middle = int(np.argmax(tops))
+    return _sprue(float(across[middle]), best - NECKS[-1], NECKS[-1], top, room)
+
+
+def _sprue(x: float, mouth: float, radius: float, top: float, room: tuple[float, float]) -> Sprue:
+    funnel = max(min(radius + FUNNEL, x - room[0], room[1] - x), radius)
+    low = mouth - _SUNK
+    neck = rod(np.array([x, low, 0.0]), np.array([x, top + 1.0, 0.0]), radius)
+    wide = rod(np.array([x, top - _FUNNEL_DEPTH, 0.0]), np.array([x, top, 0.0]), radius, funnel)
+    brim = rod(np.array([x, top - 0.01, 0.0]), np.array([x, top + 1.0, 0.0]), funnel)
+    return Sprue(x=x, mouth=mouth, radius=radius, funnel=funnel, solid=neck + wide + brim)
+
+
+def make_vents(cavity: Manifold, sprue: Sprue | None, *, low: float, high: float, top: float) -> tuple[Vent, ...]:
+    """A vent at each high point of the cavity that does not lie under the sprue.
+
+    Where the high point is at the parting plane, a groove leads up from it; elsewhere a hole leads straight out of the
+    back of the half, so that the foam in it is drawn out as the half comes off.
+
+    Args:
+        cavity: what is filled, in the coordinates of the mould [mm].
+        sprue: of the mould.
+        low: z of the back of the lower half [mm].
+        high: z of the back of the upper half [mm].
+        top: height of the top of the mould [mm].
+    """
+    vertices, triangles = triangles_of(cavity)
+    across, tops = roof(cavity)
+    vents = []
+    for number in high_points(vertices, triangles, np.array([0.0, 1.0, 0.0]), rise=SMALLEST_TRAP):
+        at = vertices[number]
+        if sprue is None or not _leaves_by_sprue(at, across, tops, sprue):
+            vents.append(_vent(at, across, tops, low=low, high=high, top=top))
+    return tuple(vents)
+
+
+def _leaves_by_sprue(at: Float[np.ndarray, "3"], across: Vector, tops: Vector, sprue: Sprue) -> bool:
+    """Whether air at a high point finds the sprue: it lies under it, or a roof leads there that hardly dips."""
+    if np.hypot(at[0] - sprue.x, at[2]) < sprue.radius and at[1] > sprue.mouth - _SUNK:
+        return True
+    first, last = sorted((at[0], sprue.x))
+    between = tops[(across >= first - _STEP) & (across <= last + _STEP)]
+    return len(between) > 0 and bool(np.abs(between - at[1]).max() <= SMALLEST_TRAP)
+
+
+def _vent(at: np.ndarray, across: Vector, tops: Vector, *, low: float, high: float, top: float) -> Vent:
+    near = float(np.interp(at[0], across, tops, left=-np.inf, right=-np.inf)) if len(across) else -np.inf
+    if abs(at[1] - near) <= SMALLEST_TRAP:
+        start = np.array([at[0], near - VENT, 0.0])
+        return Vent(at=at, upward=True, solid=rod(start, np.array([at[0], top + 1.0, 0.0]), VENT))
+    side = 1.0 if at[2] > 0 else -1.0
+    back = high + 1.0 if side > 0 else low - 1.0
+    level = at[1] - VENT + SMALLEST_TRAP / 4
+    start = np.array([at[0], level, at[2] - side * VENT])
+    return Vent(at=at, upward=False, solid=rod(start, np.array([at[0], level, back]), VENT))
+
+
+def roof(body: Manifold) -> tuple[Vector, Vector]:
+    """The highest y of a body in the parting plane [mm], at x a millimetre apart; places without body are left out."""
+    edges = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in body.slice(0.0).to_polygons()]
+    if not edges:
+        return np.empty(0), np.empty(0)
+    starts, ends = np.moveaxis(np.concatenate(edges).astype(float), 1, 0)
+    across = np.arange(starts[:, 0].min() + _STEP / 2, starts[:, 0].max(), _STEP)
+    tops = np.array([_highest(x, starts, ends) for x in across])
+    there = np.isfinite(tops)
+    return across[there], tops[there]
+
+
+def _highest(x: float, starts: Float[np.ndarray, "edges 2"], ends: Float[np.ndarray, "edges 2"]) -> float:
+    crossing = (starts[:, 0] <= x) != (ends[:, 0] <= x)
+    start, end = starts[crossing], ends[crossing]
+    if not len(start):
+        return -np.inf
+    return float((start[:, 1] + (x - start[:, 0]) / (end[:, 0] - start[:, 0]) * (end[:, 1] - start[:, 1])).max())

@@ -1,0 +1,172 @@
+"""Cores in the mould that leave pockets for winches in the foam, and small cones that leave dents where cables run."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from manifold3d import Manifold
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.moulds.body_solid import MILLIMETRES
+from hydrostat.fabrication.moulds.frame import Frame
+from hydrostat.fabrication.moulds.release import Skin, axes_along
+from hydrostat.fabrication.moulds.simple_solids import rod
+from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.surface import Surface
+from hydrostat.robot import Mount, Robot
+
+_LEAST_SKIN = 2.0
+"""Foam between a pocket and the next surface [mm]."""
+
+_OUTSIDE = 0.02
+_BARE = 0.1
+_SHARED = 0.01
+
+_DENT = 1.0
+_DENT_RADIUS = 1.5
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Pocket:
+    """Room for a winch in the foam.
+
+    Attributes:
+        winch: its name.
+        size: of the room, in the coordinates of the mould [mm].
+        upper: it is a core of the upper half; else of the lower.
+        reach: a box from the deep end of the pocket out of the body.
+        core: what of the body it takes.
+        problem: why it cannot be built well, or nothing.
+    """
+
+    winch: str
+    size: tuple[float, float, float]
+    upper: bool
+    reach: Manifold
+    core: Manifold
+    problem: str = ""
+
+
+def make_pockets(
+    robot: Robot, body: Manifold, frame: Frame, sizes: Mapping[str, tuple[float, float, float]]
+) -> tuple[Pocket, ...]:
+    """A pocket for each winch that sits in the body, from its place straight out along the pull.
+
+    Args:
+        robot: whose winches they are.
+        body: in the coordinates of the mould [mm].
+        frame: of the mould.
+        sizes: of the room for each winch [mm], in any order of sides; winches that are missing get none.
+
+    Raises:
+        InputError: a size for a winch that is not there, or that is not above 0.
+    """
+    for name, size in sizes.items():
+        robot.winch(name)
+        if not all(np.isfinite(side) and side > 0 for side in size):
+            raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {size}')
+    inside = [winch for winch in robot.winches if winch.mount is Mount.BODY and winch.name in sizes]
+    return tuple(_pocket(winch.name, body, frame.into(_spot(winch.at)[None])[0], sizes[winch.name]) for winch in inside)
+
+
+def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
+    """A place of a robot, flat or in space [mm]."""
+    return MILLIMETRES * np.array([*at, 0.0][:3])
+
+
+def _pocket(name: str, body: Manifold, at: Float[np.ndarray, "3"], size: tuple[float, float, float]) -> Pocket:
+    """The way to lay the winch that leaves most foam beside it, then the one that takes least."""
+    a, b, c = sorted(size)
+    turned = ((b, c, a), (c, b, a), (a, c, b), (c, a, b), (a, b, c), (b, a, c))
+    tried = [_laid(name, body, at, sides, upper) for sides in turned for upper in (True, False)]
+    return min(tried, key=lambda pocket: (bool(pocket.problem), round(float(pocket.core.volume()), 3)))
+
+
+def _laid(name: str, body: Manifold, at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Pocket:
+    """A pocket for a winch laid one way, open to one half."""
+    low, high = np.reshape(body.bounding_box(), (2, 3))
+    far = (high[2] if upper else low[2]) + (5.0 if upper else -5.0)
+    deep = at[2] - sides[2] / 2 if upper else at[2] + sides[2] / 2
+    reach = _box(at, sides[0], sides[1], deep, far)
+    parts = (reach ^ body).decompose()
+    core = next((part for part in parts if _holds(part, at)), Manifold())
+    skin = _skin(at, sides, upper) - reach
+    room = Manifold.cube(sides, True).translate(tuple(at.tolist()))
+    out = float((room - body).volume()) / float(room.volume())
+    side = " x ".join(f"{length:.0f}" for length in sorted(sides, reverse=True))
+    problem = ""
+    if core.is_empty() or out > _OUTSIDE:
+        problem = (
+            f'winch "{name}": the pocket of {side} mm does not fit into the body at its place, {100 * out:.0f} % of it '
+            "is outside; move the winch to where the body is thicker, or choose a smaller motor"
+        )
+    elif float((skin - body).volume()) > _BARE * float(skin.volume()):
+        problem = (
+            f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left beside the pocket of {side} mm; '
+            "move the winch to where the body is thicker, or choose a smaller motor"
+        )
+    return Pocket(winch=name, size=sides, upper=upper, reach=reach, core=core, problem=problem)
+
+
+def _skin(at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Manifold:
+    """The room with a skin round it, but for its open side."""
+    sign = 1.0 if upper else -1.0
+    deep, end = at[2] - sign * (sides[2] / 2 + _LEAST_SKIN), at[2] + sign * sides[2] / 2
+    return _box(at, sides[0] + 2 * _LEAST_SKIN, sides[1] + 2 * _LEAST_SKIN, deep, end)
+
+
+def _box(at: np.ndarray, width: float, height: float, deep: float, far: float) -> Manifold:
+    low, high = min(deep, far), max(deep, far)
+    return Manifold.cube((width, height, high - low)).translate((at[0] - width / 2, at[1] - height / 2, low))
+
+
+def _holds(part: Manifold, at: np.ndarray) -> bool:
+    """Whether a point is in a solid, seen by a small box round it."""
+    return float((Manifold.cube((0.1, 0.1, 0.1), True).translate(tuple(at.tolist())) ^ part).volume()) > 0
+
+
+def clashes(pockets: tuple[Pocket, ...]) -> list[str]:
+    """Sentences for pockets that run into each other."""
+    found = []
+    for place, one in enumerate(pockets):
+        for other in pockets[place + 1 :]:
+            shared = float((one.core ^ other.core).volume())
+            if shared > _SHARED * min(float(one.core.volume()), float(other.core.volume())):
+                found.append(
+                    f'the pockets of winches "{one.winch}" and "{other.winch}" run into each other by '
+                    f"{shared / 1e3:.1f} cm^3; move the winches apart, or choose smaller motors"
+                )
+    return found
+
+
+def cable_dents(robot: Robot, skin: Skin, frame: Frame, *, deepest: float) -> Manifold:
+    """Cones on the wall, in the coordinates of the mould, at the spot nearest to each cable point.
+
+    Args:
+        robot: whose cables they are.
+        skin: surface of the body, in its own coordinates.
+        frame: of the mould.
+        deepest: cable points further below the surface leave no mark [mm].
+    """
+    points = [_spot(point) for cable in robot.cables for point in cable.points]
+    if not points:
+        return Manifold()
+    solid = Solid(Surface(skin.vertices, skin.triangles))
+    asked = np.unique(np.array(points), axis=0)
+    spots, triangles = solid.nearest(asked)
+    near = np.linalg.norm(spots - asked, axis=1) <= deepest
+    spots = frame.into(spots[near])
+    inward = -(skin.normals[triangles[near]] @ frame.axes.T)
+    kept: list[int] = []
+    for place in range(len(spots)):
+        if all(np.linalg.norm(spots[place] - spots[other]) > 2 * _DENT_RADIUS for other in kept):
+            kept.append(place)
+    cones = [_cone(spots[place], inward[place]) for place in kept]
+    return Manifold.compose(cones) if cones else Manifold()
+
+
+def _cone(spot: Float[np.ndarray, "3"], inward: Float[np.ndarray, "3"]) -> Manifold:
+    """A blunt cone that stands on the wall with its root in it."""
+    upright = rod(np.array([0.0, 0.0, -_DENT]), np.array([0.0, 0.0, _DENT]), 2 * _DENT_RADIUS - 0.4, 0.4)
+    return upright.transform(np.column_stack([axes_along(inward).T, spot]))

@@ -1,0 +1,102 @@
+"""The positive of a body in two halves that lie flat, and the frames that hold silicone round them.
+
+One half lies on a board in a frame, its flat side down, with key domes beside it, and silicone is poured over it. That
+block is turned over, the domes are taken out, the other half is put on with dowels, the second frame on top, and the
+second pour is made: no clay is needed to bed the positive in.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from manifold3d import Manifold
+
+from hydrostat.fabrication.moulds.closing import Block
+from hydrostat.fabrication.moulds.openings import Sprue
+from hydrostat.fabrication.moulds.split import dowels_across
+from hydrostat.fabrication.solids.construct import segments
+
+SILICONE_WALL = 12.0
+"""Silicone round the body [mm]: it keeps its shape and is not wasted."""
+
+FRAME_WALL = 5.0
+"""Thickness of a frame [mm]."""
+
+DOME = 6.0
+"""Radius of a key dome [mm]."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Positive:
+    """The body to be printed, parted like the mould, in its coordinates.
+
+    Attributes:
+        upper: above the parting plane.
+        lower: below it.
+        dowels: how many join the two.
+    """
+
+    upper: Manifold
+    lower: Manifold
+    dowels: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Frames:
+    """What holds the silicone, in the coordinates of the mould.
+
+    Attributes:
+        lower: round the lower half.
+        upper: round the upper half.
+        dome: a key, flat side down; domes lie on the board at the corners.
+        inside: block of silicone with the positive in it.
+        pours: volumes of silicone [mm^3], below the parting plane and above it.
+    """
+
+    lower: Manifold
+    upper: Manifold
+    dome: Manifold
+    inside: Block
+    pours: tuple[float, float]
+
+
+def make_positive(cavity: Manifold, sprue: Sprue | None) -> Positive:
+    """Both halves of what is cast, with the sprue on it, and holes for dowels in their flat sides."""
+    whole = _with_sprue(cavity, sprue)
+    dowels = dowels_across(whole)
+    for dowel in dowels:
+        whole = whole - dowel
+    upper, lower = whole.split_by_plane((0.0, 0.0, 1.0), 0.0)
+    return Positive(upper=upper, lower=lower, dowels=len(dowels))
+
+
+def _with_sprue(cavity: Manifold, sprue: Sprue | None) -> Manifold:
+    """What is cast with as much of the sprue as the silicone is thick: there it meets the frame."""
+    if sprue is None:
+        return cavity
+    top = cavity.bounding_box()[4] + SILICONE_WALL
+    return cavity + sprue.solid.trim_by_plane((0.0, -1.0, 0.0), -top)
+
+
+def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
+    """Two open frames, and how much silicone goes into each."""
+    whole = _with_sprue(cavity, sprue)
+    low, high = (np.array(corner) for corner in np.reshape(cavity.bounding_box(), (2, 3)))
+    inside = Block(tuple((low - SILICONE_WALL).tolist()), tuple((high + SILICONE_WALL).tolist()))
+    lower, upper = (_ring(inside, *span) for span in ((inside.low[2], 0.0), (0.0, inside.high[2])))
+    silicone = inside.solid - whole
+    above, below = silicone.split_by_plane((0.0, 0.0, 1.0), 0.0)
+    return Frames(
+        lower=lower,
+        upper=upper,
+        dome=Manifold.sphere(DOME, segments(DOME)).trim_by_plane((0.0, 0.0, 1.0), 0.0),
+        inside=inside,
+        pours=(float(below.volume()), float(above.volume())),
+    )
+
+
+def _ring(inside: Block, low: float, high: float) -> Manifold:
+    """A wall round the silicone between two heights."""
+    width, length, _ = inside.size
+    outer = Manifold.cube((width + 2 * FRAME_WALL, length + 2 * FRAME_WALL, high - low))
+    inner = Manifold.cube((width, length, high - low + 2)).translate((FRAME_WALL, FRAME_WALL, -1.0))
+    return (outer - inner).translate((inside.low[0] - FRAME_WALL, inside.low[1] - FRAME_WALL, low))

@@ -1,0 +1,132 @@
+"""`find_pull`: the direction along which a mould of two halves comes off with the least undercut."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+from manifold3d import Manifold
+
+from hydrostat.arrays import Vector
+from hydrostat.fabrication.moulds.release import Release, Skin, axes_along, release, skin_of
+
+_DEPTH = 0.05
+"""Share of undercut that a mould may have more for being flat instead of as deep as the body is long: deep moulds are
+hard to print and to fill."""
+
+_LEVEL = 2e-3
+"""Shares that differ by less are the same: then the parting is nearest to the middle of the body."""
+
+_RINGS = (9.0, 4.5, 2.2, 1.1, 0.5)
+"""Angles at which neighbours of the best direction are tried [degrees]."""
+
+_AROUND = 6
+_BEST = 3
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Pull:
+    """How the halves come off.
+
+    Attributes:
+        direction: unit vector along which the upper half is drawn, in the coordinates of the body.
+        height: of the parting plane along it [mm].
+        share: of the surface that holds: neither half comes off it.
+        skin: the surface that was looked at.
+        undercut: which of its triangles hold.
+        directions: all that were tried.
+        shares: of each of them, at its best height.
+    """
+
+    direction: Float[np.ndarray, "3"]
+    height: float
+    share: float
+    skin: Skin
+    undercut: Bool[np.ndarray, " triangles"]
+    directions: Float[np.ndarray, "tried 3"]
+    shares: Vector
+
+
+def half_sphere(count: int) -> Float[np.ndarray, "count 3"]:
+    """Unit vectors spread evenly over half of all directions, along a spiral of golden angles."""
+    steps = np.arange(count) + 0.5
+    heights = 1.0 - steps / count
+    radii = np.sqrt(1.0 - heights**2)
+    angles = np.pi * (1 + np.sqrt(5)) * steps
+    return np.column_stack([radii * np.cos(angles), radii * np.sin(angles), heights])
+
+
+def best_height(skin: Skin, freed: Release) -> tuple[float, float]:
+    """The height of the plane [mm] with the least area undercut, and its share.
+
+    Of heights that are equally good it is the one nearest to the middle of the body.
+    """
+    order = np.argsort(freed.heights, kind="stable")
+    areas = skin.areas[order]
+    held_below = np.concatenate([[0.0], np.cumsum(areas * ~freed.downward[order])])
+    held_above = np.concatenate([[0.0], np.cumsum(areas * ~freed.upward[order])])
+    held = (held_below + held_above[-1] - held_above) / areas.sum()
+    sorted_heights = freed.heights[order]
+    planes = (sorted_heights[1:] + sorted_heights[:-1]) / 2
+    held = held[1:-1]
+    middle = (sorted_heights[0] + sorted_heights[-1]) / 2
+    good = np.flatnonzero(held <= held.min() + _LEVEL)
+    chosen = good[int(np.argmin(np.abs(planes[good] - middle)))]
+    return float(planes[chosen]), float(held[chosen])
+
+
+def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
+    """The best direction and height for a flat parting, by a search over all directions.
+
+    Args:
+        solid: the body [mm].
+        count: directions tried on half of the sphere, before those about the best of them.
+    """
+    skin = skin_of(solid)
+    tried = np.vstack([_own_axes(skin), np.eye(3), half_sphere(count)])
+    shares, costs = _rated(skin, tried)
+    leaders = tried[np.argsort(costs, kind="stable")[:_BEST]]
+    for angle in np.radians(_RINGS):
+        near = np.vstack([_ring(leader, angle) for leader in leaders])
+        more_shares, more_costs = _rated(skin, near)
+        tried = np.vstack([tried, near])
+        shares, costs = np.concatenate([shares, more_shares]), np.concatenate([costs, more_costs])
+        leaders = tried[np.argsort(costs, kind="stable")[:1]]
+    direction = _upright(leaders[0])
+    freed = release(skin, direction)
+    height, share = best_height(skin, freed)
+    return Pull(
+        direction=direction,
+        height=height,
+        share=share,
+        skin=skin,
+        undercut=freed.undercut(height),
+        directions=tried,
+        shares=shares,
+    )
+
+
+def _rated(skin: Skin, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
+    """Share of undercut of each direction, and what it costs with the depth of the mould."""
+    shares = np.array([best_height(skin, release(skin, direction))[1] for direction in directions])
+    depths = np.ptp(skin.vertices @ directions.T, axis=0)
+    return shares, shares + _DEPTH * depths / skin.size
+
+
+def _own_axes(skin: Skin) -> Float[np.ndarray, "3 3"]:
+    """Main axes of the surface: those of a box, a cylinder, a hand."""
+    places = skin.middles - np.average(skin.middles, axis=0, weights=skin.areas)
+    return np.linalg.eigh(places.T @ (places * skin.areas[:, None]))[1].T
+
+
+def _ring(direction: Float[np.ndarray, "3"], angle: float) -> Float[np.ndarray, "around 3"]:
+    """Directions at an angle [radians] to one, all round."""
+    one, two, _ = axes_along(direction)
+    turns = 2 * np.pi * np.arange(_AROUND)[:, None] / _AROUND
+    return np.cos(angle) * direction + np.sin(angle) * (np.cos(turns) * one + np.sin(turns) * two)
+
+
+def _upright(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+    """Of a direction and its opposite the one whose largest coordinate is positive; tiny ones are rounding."""
+    direction = np.where(np.abs(direction) < 1e-9, 0.0, direction)
+    largest = direction[int(np.argmax(np.abs(direction)))]
+    return direction * np.sign(largest) / np.linalg.norm(direction)

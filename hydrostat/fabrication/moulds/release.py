@@ -1,0 +1,183 @@
+"""`Release`: which parts of a surface come out of a mould that is drawn off in a direction.
+
+A spot comes out upwards if it does not face down and nothing of the body is straight above it; downwards likewise.
+This is asked of a point just outside the middle of each triangle.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import no_type_check
+
+import numba as nb
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from manifold3d import Manifold
+
+from hydrostat.arrays import Vector
+from hydrostat.fabrication.solids.printed import triangles_of
+from hydrostat.kernel import KERNEL
+
+_OUT = 5e-4
+"""How far outside its triangle a point is, in sizes of the body: shallower overhangs than that are none."""
+
+_STEEP = 1e-3
+"""A wall may lean by this cosine and still count as parallel to the pull: rounding, not an overhang."""
+
+_EDGE = 1 / 30
+"""Longest edge of a triangle, in sizes of the body."""
+
+_COARSE = 4e-4
+"""How far the surface that is looked at may be from the true one, in sizes of the body."""
+
+_MOST = 16_000
+"""Triangles that are looked at, about."""
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """The surface of a body in triangles so small that each is asked once.
+
+    Attributes:
+        vertices: places [mm].
+        triangles: of three vertices; seen from outside they turn counter-clockwise.
+    """
+
+    vertices: Float[np.ndarray, "vertices 3"]
+    triangles: Int[np.ndarray, "triangles 3"]
+
+    @cached_property
+    def corners(self) -> Float[np.ndarray, "triangles 3 3"]:
+        """Of each triangle [mm]."""
+        return self.vertices[self.triangles]
+
+    @cached_property
+    def crosses(self) -> Float[np.ndarray, "triangles 3"]:
+        """Normal of each triangle, outward, twice as long as its area [mm^2]."""
+        corners = self.corners
+        return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+    @cached_property
+    def areas(self) -> Vector:
+        """Of each triangle [mm^2]."""
+        return np.linalg.norm(self.crosses, axis=1) / 2
+
+    @cached_property
+    def normals(self) -> Float[np.ndarray, "triangles 3"]:
+        """Unit normals, outward."""
+        return self.crosses / np.maximum(2 * self.areas, 1e-300)[:, None]
+
+    @cached_property
+    def middles(self) -> Float[np.ndarray, "triangles 3"]:
+        """Middle of each triangle [mm]."""
+        return self.corners.mean(axis=1)
+
+    @property
+    def size(self) -> float:
+        """Longest side of its box [mm]."""
+        return float(np.ptp(self.vertices, axis=0).max())
+
+
+def skin_of(solid: Manifold) -> Skin:
+    """The surface of a solid [mm] in triangles that are small, but not too many."""
+    low, high = np.reshape(solid.bounding_box(), (2, 3))
+    size = float((high - low).max())
+    coarse, edge = _COARSE, _EDGE
+    fine = solid.simplify(coarse * size).refine_to_length(edge * size)
+    while fine.num_tri() > _MOST and edge < 1:
+        coarse, edge = 2 * coarse, 1.5 * edge
+        fine = solid.simplify(coarse * size).refine_to_length(edge * size)
+    return Skin(*triangles_of(fine))
+
+
+@dataclass(frozen=True, eq=False)
+class Release:
+    """What a pull along a direction sets free.
+
+    Attributes:
+        heights: of the middle of each triangle along the direction [mm].
+        upward: which triangles come out of a half that is drawn along the direction.
+        downward: which come out of a half that is drawn against it.
+    """
+
+    heights: Vector
+    upward: Bool[np.ndarray, " triangles"]
+    downward: Bool[np.ndarray, " triangles"]
+
+    def undercut(self, height: float) -> Bool[np.ndarray, " triangles"]:
+        """Triangles that hold when the halves part at a height [mm]."""
+        return np.where(self.heights > height, ~self.upward, ~self.downward)
+
+
+def release(skin: Skin, direction: Float[np.ndarray, "3"]) -> Release:
+    """What comes out when the mould of a body is drawn off along a unit vector."""
+    turned = axes_along(direction).T
+    facing = skin.normals @ direction
+    asked = (skin.middles + _OUT * skin.size * skin.normals) @ turned
+    above, below = _covered(np.ascontiguousarray(asked), np.ascontiguousarray(skin.corners @ turned))
+    return Release(
+        heights=skin.middles @ direction,
+        upward=(facing > -_STEEP) & ~above,
+        downward=(facing < _STEEP) & ~below,
+    )
+
+
+def axes_along(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """Three unit vectors as rows, right-handed, the last of them given."""
+    side = np.zeros(3)
+    side[int(np.argmin(np.abs(direction)))] = 1.0
+    first = np.cross(side, direction)
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(direction, first), direction])
+
+
+@nb.njit(**KERNEL)
+@no_type_check
+def _covered(points, corners):  # pragma: no cover
+    """Whether triangles lie straight above, and straight below, each point; triangles are found by a grid of cells."""
+    count = len(corners)
+    low = np.array([corners[:, :, 0].min(), corners[:, :, 1].min()])
+    high = np.array([corners[:, :, 0].max(), corners[:, :, 1].max()])
+    cell = np.sqrt((high[0] - low[0]) * (high[1] - low[1]) / count) * 1.5 + 1e-12
+    across = int((high[0] - low[0]) / cell) + 1
+    along = int((high[1] - low[1]) / cell) + 1
+    boxes = np.empty((count, 4), dtype=np.int64)
+    starts = np.zeros(across * along + 1, dtype=np.int64)
+    for triangle in range(count):
+        for axis in range(2):
+            least = min(corners[triangle, 0, axis], corners[triangle, 1, axis], corners[triangle, 2, axis])
+            most = max(corners[triangle, 0, axis], corners[triangle, 1, axis], corners[triangle, 2, axis])
+            cells = across if axis == 0 else along
+            boxes[triangle, axis] = min(int((least - low[axis]) / cell), cells - 1)
+            boxes[triangle, 2 + axis] = min(int((most - low[axis]) / cell), cells - 1)
+        for x in range(boxes[triangle, 0], boxes[triangle, 2] + 1):
+            for y in range(boxes[triangle, 1], boxes[triangle, 3] + 1):
+                starts[x * along + y + 1] += 1
+    starts = np.cumsum(starts)
+    filled = starts[:-1].copy()
+    listed = np.empty(starts[-1], dtype=np.int64)
+    for triangle in range(count):
+        for x in range(boxes[triangle, 0], boxes[triangle, 2] + 1):
+            for y in range(boxes[triangle, 1], boxes[triangle, 3] + 1):
+                listed[filled[x * along + y]] = triangle
+                filled[x * along + y] += 1
+    above = np.zeros(len(points), dtype=np.bool_)
+    below = np.zeros(len(points), dtype=np.bool_)
+    for point in range(len(points)):
+        px, py, pz = points[point]
+        if not (low[0] <= px <= high[0] and low[1] <= py <= high[1]):
+            continue
+        place = min(int((px - low[0]) / cell), across - 1) * along + min(int((py - low[1]) / cell), along - 1)
+        for entry in range(starts[place], starts[place + 1]):
+            a, b, c = corners[listed[entry]]
+            whole = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+            if whole == 0.0:
+                continue
+            one = ((b[0] - px) * (c[1] - py) - (c[0] - px) * (b[1] - py)) / whole
+            two = ((c[0] - px) * (a[1] - py) - (a[0] - px) * (c[1] - py)) / whole
+            if one < 0.0 or two < 0.0 or one + two > 1.0:
+                continue
+            if one * a[2] + two * b[2] + (1.0 - one - two) * c[2] > pz:
+                above[point] = True
+            else:
+                below[point] = True
+    return above, below
