@@ -1,0 +1,170 @@
+"""`Plan`: the base of winches outside the body, seen from above: where units stand, what is cut out, in which tiles."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from manifold3d import Manifold
+from shapely.geometry import Polygon
+from shapely.geometry.polygon import orient
+
+from hydrostat.fabrication.parts import tube_holder
+from hydrostat.fabrication.parts.housing import SHEET
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.winch_unit import WinchUnit
+from hydrostat.fabrication.solids.construct import Construction, Corner, Cylinder, Prism, segments
+
+Ring = tuple[Corner, ...]
+"""A closed line, its first corner not repeated [mm]."""
+
+FREE = 15.0
+"""From a unit to its tube holder [mm]."""
+
+_GAP = 3.0
+_STRIP = 12.0
+_LEG_SCREW = 3.4
+"""Between units; margin for the screws of the legs; hole for such a screw, M3 [mm]."""
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A round hole in the plate [mm]."""
+
+    middle: Corner
+    radius: float
+
+    @property
+    def ring(self) -> Ring:
+        """As a polygon."""
+        count = segments(self.radius)
+        angles = (2 * math.pi * corner / count for corner in range(count))
+        x, y = self.middle
+        return tuple((x + self.radius * math.cos(angle), y + self.radius * math.sin(angle)) for angle in angles)
+
+    @property
+    def raised(self) -> Construction:
+        """What is taken away."""
+        return Cylinder(SHEET + 2, self.radius).moved(*self.middle, -1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Seat:
+    """Where a unit stands on the base.
+
+    Attributes:
+        unit: index among the units outside.
+        x: of its shaft [mm].
+        y: of its shaft [mm].
+        turned: whether it is turned by half a turn, so that its cables leave along -y.
+    """
+
+    unit: int
+    x: float
+    y: float
+    turned: bool
+
+    def put(self, point: Corner) -> Corner:
+        """A point of the unit on the base [mm]."""
+        sign = -1.0 if self.turned else 1.0
+        return self.x + sign * point[0], self.y + sign * point[1]
+
+    def placed(self, solid: Manifold) -> Manifold:
+        """A solid of the unit on the base."""
+        return solid.rotate((0, 0, 180 if self.turned else 0)).translate((self.x, self.y, 0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """The plate seen from above."""
+
+    seats: tuple[Seat, ...]
+    tiles: tuple["Tile", ...]
+    bolts: tuple[Corner, ...]
+    sheet: tuple[Ring, ...]
+
+    @staticmethod
+    def of(units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]) -> "Plan":
+        """Two rows back to back, one if two are too deep for the bed, in tiles of as many columns as the bed takes."""
+        pitch = max(unit.size[0] for unit in units) + _GAP
+        back = max(-unit.low[1] for unit in units) + _GAP / 2
+        front = max(unit.high[1] for unit in units) + FREE + tube_holder.DEEP + 2.0
+        rows = 2 if len(units) > 1 and 2 * (back + front) <= bed[1] else 1
+        low, high = (-2 * back - front if rows == 2 else -back), front
+        columns = math.ceil(len(units) / rows)
+        most = max(1, math.floor((bed[0] - 2 * _STRIP) / pitch))
+        count = math.ceil(columns / most)
+        seats: list[Seat] = []
+        tiles: list[Tile] = []
+        left = 0.0
+        for share in (columns // count + (place < columns % count) for place in range(count)):
+            last = min(len(units), len(seats) + share * rows)
+            mine = [
+                Seat(
+                    unit=unit,
+                    x=left + _STRIP + (place // rows + 0.5) * pitch,
+                    y=-2 * back if place % rows else 0.0,
+                    turned=place % rows == 1,
+                )
+                for place, unit in enumerate(range(len(seats), last))
+            ]
+            right = left + share * pitch + 2 * _STRIP
+            tiles.append(Tile.of((left, low), (right, high), [(seat, units[seat.unit]) for seat in mine], options))
+            seats += mine
+            left = right
+        return Plan(
+            seats=tuple(seats),
+            tiles=tuple(tiles),
+            bolts=tuple(bolt for tile in tiles for bolt in tile.bolts),
+            sheet=(_rectangle((0.0, low), (left, high)), *(ring for tile in tiles for ring in tile.rings)),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tile:
+    """A piece of the plate that is printed in one go."""
+
+    low: Corner
+    high: Corner
+    bolts: tuple[Corner, ...]
+    cuts: tuple[Ring, ...]
+    holes: tuple[Hole, ...]
+
+    @staticmethod
+    def of(low: Corner, high: Corner, seats: Sequence[tuple[Seat, WinchUnit]], options: PartOptions) -> "Tile":
+        """With a hole for each motor, the screws of its housing and its tube holder, and one for each leg."""
+        inset = _STRIP / 2
+        bolts = tuple((x, y) for x in (low[0] + inset, high[0] - inset) for y in (low[1] + inset, high[1] - inset))
+        holes = [Hole(bolt, _LEG_SCREW / 2) for bolt in bolts]
+        cuts = []
+        for seat, unit in seats:
+            post, passage = unit.housing.post, unit.housing.screw.passage
+            cut = Polygon(unit.motor.outline).buffer(options.clearance, join_style="mitre")
+            cuts.append(tuple(seat.put((float(x), float(y))) for x, y in orient(cut).exterior.coords[:-1]))
+            holes += [Hole(seat.put((x, y)), passage / 2) for x in (-post, post) for y in (-post, post)]
+            holes.append(Hole(seat.put(holder_at(unit)), tube_holder.PASSAGE / 2))
+        return Tile(low=low, high=high, bolts=bolts, cuts=tuple(cuts), holes=tuple(holes))
+
+    @property
+    def rings(self) -> tuple[Ring, ...]:
+        """All that is cut out."""
+        return (*self.cuts, *(hole.ring for hole in self.holes))
+
+    @property
+    def raised(self) -> Construction:
+        """As it lies on the bed."""
+        body: Construction = Prism(_rectangle(self.low, self.high), SHEET)
+        for cut in self.cuts:
+            body = body - Prism(cut, SHEET + 2).moved(0, 0, -1)
+        for hole in self.holes:
+            body = body - hole.raised
+        return body.moved(-self.low[0], -self.low[1], 0)
+
+
+def _rectangle(low: Corner, high: Corner) -> Ring:
+    return low, (high[0], low[1]), high, (low[0], high[1])
+
+
+def holder_at(unit: WinchUnit) -> Corner:
+    """The middle of its tube holder, in the unit's coordinates [mm]."""
+    x, y, _ = unit.exits[0].point
+    return x, y + FREE + tube_holder.DEEP / 2
