@@ -37,12 +37,13 @@ def forget_kit(folder: Path) -> None:
 
 
 def write_kit(robot: "Robot", folder: Path) -> tuple[str, ...]:
-    """The laser pattern; returns warnings."""
+    """The laser pattern; returns what cannot be cut well, and what to mind."""
     from hydrostat.fabrication import PatternOptions, export_kit, plush_pattern
 
     options = PatternOptions(force=True)
     export_kit(robot, folder, options=options)
-    return plush_pattern(robot, options=options).warnings
+    pattern = plush_pattern(robot, options=options)
+    return (*pattern.problems, *pattern.warnings)
 
 
 def print_poses(network: "Network", seconds: float) -> None:

@@ -7,7 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from hydrostat.fabrication.patterns.shape import Place, Shape
+from hydrostat.fabrication.patterns.shape import Line, Place, Shape
 
 _CLEARANCE = 1.2
 """Empty cloth kept round whatever is placed [mm]."""
@@ -17,6 +17,9 @@ _TIGHT = 1.05
 
 _OVER_TEXT = 10
 """A label over another is as bad as one over so many more lines."""
+
+_THROUGH_TEXT = 3
+"""So is a line to a label through another, for so many."""
 
 _ROOMY = 6.0
 """Empty cloth beyond which more is no better [mm]."""
@@ -39,8 +42,10 @@ class FreeSpace:
         x = at[0] + np.cos(angle) * (reach + width / 2)
         y = at[1] + np.sin(angle) * (reach + height / 2)
         centres = np.column_stack([x.ravel(), y.ravel()])
-        boxes = _boxes(centres, width, height)
-        x, y = centres[np.argmin(self._crossings(centres, boxes))].tolist()
+        crossings = self._crossings(centres, _boxes(centres, width, height))
+        leaders = shapely.linestrings(np.stack([np.broadcast_to(at, centres.shape), centres], axis=1))
+        crossings += _THROUGH_TEXT * _hits(self._texts, leaders)
+        x, y = centres[np.argmin(crossings)].tolist()
         return x, y
 
     def clear_beside(self, at: Place, width: float, height: float, *, gap: float) -> Place | None:
@@ -75,14 +80,14 @@ class FreeSpace:
         self._taken.extend(box)
         self._texts.extend(box)
 
+    def take_line(self, line: Line) -> None:
+        """Keep what is placed later off a line to a label."""
+        self._taken.append(line.geometry)
+
     def _crossings(self, centres: np.ndarray, boxes: np.ndarray) -> np.ndarray:
         """How many things each box lies on, another label counting as many; very many for a box outside."""
-        lines, labels = (
-            np.bincount(shapely.STRtree(taken).query(boxes, predicate="intersects")[0], minlength=len(boxes))
-            for taken in (self._taken, self._texts)
-        )
         outside = ~shapely.contains_xy(self._inside, centres)
-        return lines + _OVER_TEXT * labels + 1000 * outside
+        return _hits(self._taken, boxes) + _OVER_TEXT * _hits(self._texts, boxes) + 1000 * outside
 
     def _room(self, boxes: np.ndarray) -> np.ndarray:
         """Distance from each box to what is next to it, up to `_ROOMY` [mm]."""
@@ -92,6 +97,12 @@ class FreeSpace:
         )
         room[found[0]] = distances
         return room
+
+
+def _hits(taken: list[BaseGeometry], geometries: np.ndarray) -> np.ndarray:
+    """How many of the things each geometry meets."""
+    found = shapely.STRtree(taken).query(geometries, predicate="intersects")[0]
+    return np.bincount(found, minlength=len(geometries))
 
 
 def _boxes(centres: np.ndarray, width: float, height: float, clearance: float = _CLEARANCE) -> np.ndarray:

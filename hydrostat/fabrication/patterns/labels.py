@@ -150,7 +150,9 @@ class PanelLabels:
         self._shapes.extend(lettering.lines(middle))
         self._space.take(middle, lettering.width, lettering.height)
         if np.linalg.norm(way) >= gap + _NEAR:
-            self._shapes.append(_leader(at, way, gap))
+            leader = _leader(at, way, gap)
+            self._shapes.append(leader)
+            self._space.take_line(leader)
 
 
 def _frame(middle: Place, letter: Lettering) -> Polygon:

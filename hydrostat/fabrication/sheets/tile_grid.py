@@ -2,7 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from itertools import product
 from string import ascii_uppercase
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -47,14 +49,14 @@ class Tile:
 
 @dataclass(frozen=True, kw_only=True)
 class TileGrid:
-    """All tiles of a sheet, which lies in the middle of them.
+    """All tiles of a sheet.
 
     Attributes:
         columns: of tiles.
         rows: of tiles.
         width: of a tile [mm].
         height: of a tile [mm].
-        tiles: row by row, those without any shape too.
+        tiles: row by row; without shapes where the tiles before it show all that is on it.
     """
 
     columns: int
@@ -77,36 +79,67 @@ class TileGrid:
 
 
 def tile_grid(pattern: Pattern, paper: Paper) -> TileGrid:
-    """The fewest tiles that hold a sheet."""
+    """Tiles that hold a sheet: the least rows and columns, laid so that the fewest pages show something."""
     page_width, page_height = PAPERS[paper]
     width, height = page_width - 2 * MARGIN, page_height - 2 * MARGIN - FOOTER
-    columns, left = _steps(pattern.width, width)
-    rows, top = _steps(pattern.height, height)
+    columns, lefts = _steps(pattern.width, width)
+    rows, tops = _steps(pattern.height, height)
     shapes = [*(shape for panel in pattern.panels for shape in panel.shapes), *pattern.shapes]
     tree = shapely.STRtree([shape.geometry for shape in shapes])
+    grids = []
+    for left, top in product(lefts, tops):
+        windows = _Windows(columns, rows, width, height, left, top, pattern.height)
+        grids.append((len(np.unique(tree.query(windows.own(), predicate="intersects")[0])), windows))
+    _, windows = min(grids, key=lambda grid: grid[0])
+    needed = set(np.unique(tree.query(windows.own(), predicate="intersects")[0]).tolist())
+    boxes = windows.whole()
     tiles = []
-    for row in range(rows):
-        for column in range(columns):
-            x, y = left + column * (width - OVERLAP), top + row * (height - OVERLAP)
-            box = shapely.box(x, pattern.height - y - height, x + width, pattern.height - y)
-            found = np.sort(tree.query(box, predicate="intersects")).tolist()
-            tiles.append(
-                Tile(
-                    name=f"{_letters(column)}{row + 1}",
-                    column=column,
-                    row=row,
-                    left=x,
-                    top=y,
-                    shapes=tuple(shapes[index] for index in found),
-                )
+    for index, (row, column) in enumerate(product(range(rows), range(columns))):
+        found = np.sort(tree.query(boxes[index], predicate="intersects")).tolist() if index in needed else ()
+        tiles.append(
+            Tile(
+                name=f"{_letters(column)}{row + 1}",
+                column=column,
+                row=row,
+                left=windows.left + column * (width - OVERLAP),
+                top=windows.top + row * (height - OVERLAP),
+                shapes=tuple(shapes[shape] for shape in found),
             )
+        )
     return TileGrid(columns=columns, rows=rows, width=width, height=height, tiles=tuple(tiles))
 
 
-def _steps(length: float, tile: float) -> tuple[int, float]:
-    """How many tiles a length [mm] takes, and where the first begins."""
+class _Windows(NamedTuple):
+    """Where tiles lie on a sheet: y counts up there, rows from the top."""
+
+    columns: int
+    rows: int
+    width: float
+    height: float
+    left: float
+    top: float
+    sheet: float
+
+    def whole(self) -> np.ndarray:
+        """A box for each tile, row by row."""
+        return self._boxes(0.0)
+
+    def own(self) -> np.ndarray:
+        """The same without what the tiles on the left and above show already."""
+        return self._boxes(OVERLAP)
+
+    def _boxes(self, shared: float) -> np.ndarray:
+        row, column = (grid.ravel() for grid in np.indices((self.rows, self.columns)))
+        left = self.left + column * (self.width - OVERLAP)
+        top = self.sheet - self.top - row * (self.height - OVERLAP)
+        return shapely.box(left + shared * (column > 0), top - self.height, left + self.width, top - shared * (row > 0))
+
+
+def _steps(length: float, tile: float) -> tuple[int, list[float]]:
+    """How many tiles a length [mm] takes, and where the first may begin: in the middle of the room, or elsewhere."""
     count = max(1, math.ceil((length - OVERLAP) / (tile - OVERLAP) - 1e-9))
-    return count, (length - OVERLAP - count * (tile - OVERLAP)) / 2
+    room = length - OVERLAP - count * (tile - OVERLAP)
+    return count, [room * share for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9, 0.0, 1.0)]
 
 
 def _letters(index: int) -> str:

@@ -46,7 +46,7 @@ def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
     width, height = PAPERS[paper]
     pages = [
         _STYLE,
-        f"#set document(title: {_text(f'{pattern.name} - pattern')})",
+        f"#set document(title: {_text(f'{pattern.name} - pattern')}, date: none)",
         f"#set page(width: {width}mm, height: {height}mm, margin: 0mm)",
         _overview(pattern, grid, paper),
         *(f"#pagebreak()\n{_page(pattern, grid, tile)}" for tile in grid.printed),
@@ -56,7 +56,7 @@ def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
 
 def _compile(source: str) -> bytes:
     """The PDF: the same bytes on every run, as neither the clock nor the fonts of the machine have a part in it."""
-    return typst.compile(source.encode(), format="pdf", ignore_system_fonts=True, timestamp=0)
+    return typst.compile(source.encode(), format="pdf", ignore_system_fonts=True)
 
 
 def _page(pattern: Pattern, grid: TileGrid, tile: Tile) -> str:

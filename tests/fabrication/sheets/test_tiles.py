@@ -3,11 +3,13 @@
 import io
 import shutil
 import subprocess
+import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from pypdf import PdfReader, PdfWriter, Transformation
@@ -15,7 +17,7 @@ from scipy import ndimage
 
 from hydrostat.fabrication import Circle, Layer, Line, Part, Pattern, plush_pattern
 from hydrostat.fabrication.kit_options import Paper
-from hydrostat.fabrication.sheets.tile_grid import tile_grid
+from hydrostat.fabrication.sheets.tile_grid import Tile, tile_grid
 from hydrostat.fabrication.sheets.tiles import tiled_pdf
 
 SIZES = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}
@@ -173,11 +175,14 @@ def test_tiles_overlap_by_10_mm_and_hold_the_whole_sheet(paper, size):
 
 
 def test_pages_are_the_same_bytes_on_every_run(pattern):
-    """Oracle: a second run of a second pattern; the date in the file is not that of the clock."""
+    """Oracle: a second run of a second pattern after a second; there is no date in the file."""
     content = tiled_pdf(pattern, Paper.A4)
+    time.sleep(1.1)
     assert content == tiled_pdf(plush_pattern(crossed()), Paper.A4)
-    date = read(content).metadata
-    assert date is None or date.creation_date is None or date.creation_date.year == 1970
+    metadata = read(content).metadata
+    assert metadata is not None
+    assert metadata.creation_date is None
+    assert metadata.modification_date is None
 
 
 @pytest.mark.parametrize("name", ['<b>&"Sam\'s"</b> #x \\ $y$', "Zoë 海星 \x0b", "]]> [*_", "a\nb"])
@@ -186,6 +191,37 @@ def test_any_name_makes_pages(name):
     robot = plush_robot(drawn_body(SQUARE), [(0, 0), (20, 10)], name=name)
     pages = read(tiled_pdf(plush_pattern(robot), Paper.A4)).pages
     assert "pattern" in pages[0].extract_text()
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_line_is_lost(seed):
+    """Oracle: shapely: the windows of the printed tiles together cover every shape of a sheet of scattered rings."""
+    places = np.random.default_rng(seed).uniform(10, 690, size=(9, 2))
+    rings = [Circle(layer=Layer.CUT, part=Part.EDGE, centre=(float(x), float(y)), radius=8.0) for x, y in places]
+    sheet = Pattern(name="rings", panels=(), shapes=tuple(rings), width=700.0, height=700.0)
+    assert lost(sheet, tile_grid(sheet, Paper.LETTER).printed) < 1e-6
+
+
+def test_the_check_of_lost_lines_can_fail():
+    """Oracle: one page torn out."""
+    sheet = two_spots(500.0, 700.0)
+    assert lost(sheet, tile_grid(sheet, Paper.A4).printed[1:]) > 1
+
+
+def lost(sheet: Pattern, tiles: tuple[Tile, ...]) -> float:
+    """Length of what no page shows [mm]."""
+    width, height = SIZES[Paper.LETTER][0] - 20, SIZES[Paper.LETTER][1] - 34
+    windows = [shapely.box(t.left, sheet.height - t.top - height, t.left + width, sheet.height - t.top) for t in tiles]
+    drawn = shapely.union_all([shape.geometry for shape in sheet.shapes])
+    return drawn.difference(shapely.union_all(windows)).length
+
+
+def test_a_page_with_nothing_of_its_own_is_saved():
+    """Oracle: by hand: a ring in the 10 mm that two tiles share, as far to the right as it fits on the first."""
+    ring = Circle(layer=Layer.CUT, part=Part.EDGE, centre=(185.0, 100.0), radius=4.0)
+    bar = Line(layer=Layer.MARK, part=Part.RULER, points=((1.0, 1.0), (101.0, 1.0)))
+    sheet = Pattern(name="ring", panels=(), shapes=(ring, bar), width=370.0, height=200.0)
+    assert [tile.name for tile in tile_grid(sheet, Paper.A4).printed] == ["A1"]
 
 
 def test_a_line_across_tiles_is_on_each_of_them(pattern):
