@@ -43,7 +43,7 @@ class FreeSpace:
         y = at[1] + np.sin(angle) * (reach + height / 2)
         centres = np.column_stack([x.ravel(), y.ravel()])
         crossings = self._crossings(centres, _boxes(centres, width, height))
-        leaders = shapely.linestrings(np.stack([np.broadcast_to(at, centres.shape), centres], axis=1))
+        leaders = np.array([shapely.LineString([at, centre]) for centre in centres])
         crossings += _THROUGH_TEXT * _hits(self._texts, leaders)
         x, y = centres[np.argmin(crossings)].tolist()
         return x, y

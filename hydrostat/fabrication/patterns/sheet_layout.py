@@ -94,14 +94,20 @@ def _ruler() -> tuple[Line, ...]:
 
 
 def _key(width: float) -> tuple[Line, ...]:
-    """What solid and dashed lines are, right of the bar; nothing where the sheet is too narrow."""
+    """What the lines of cables are, right of the bar, as far as the sheet is wide enough."""
+    dashes = tuple(((start, 0.0), (start + 2.0, 0.0)) for start in (0.0, 3.3, 6.7, 10.0))
+    samples: tuple[tuple[str, Part, tuple[tuple[Place, ...], ...]], ...] = (
+        ("cable outside", Part.CABLE, (((0.0, 0.0), (12.0, 0.0)),)),
+        ("cable inside", Part.CABLE, dashes),
+        ("sheath inside", Part.SHEATH, (((0.0, 1.5), (12.0, 1.5)), ((0.0, -1.5), (12.0, -1.5)))),
+    )
     lines: list[Line] = []
     left = _RULER + 40.0
-    for text, strokes in (("cable outside", ((0, 12),)), ("cable inside", ((0, 2), (3.3, 5.3), (6.7, 8.7), (10, 12)))):
+    for text, part, strokes in samples:
         letters = Lettering(text, 3.0)
-        for start, end in strokes:
-            points = ((left + start, 2.0), (left + end, 2.0))
-            lines.append(Line(layer=Layer.MARK, part=Part.CABLE, points=points))
+        if left + 15 + letters.width > width:
+            break
+        lines += [Line(layer=Layer.MARK, part=part, points=stroke).moved(left, 2.0) for stroke in strokes]
         lines += letters.lines((left + 15 + letters.width / 2, 2.0))
-        left += 15 + letters.width + 10
-    return tuple(lines) if left - 10 <= width else ()
+        left += 25 + letters.width
+    return tuple(lines)

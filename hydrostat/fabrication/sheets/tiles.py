@@ -14,6 +14,9 @@ from hydrostat.fabrication.sheets.tile_grid import FOOTER, MARGIN, OVERLAP, PAPE
 _WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
 """Of the lines [mm]: an operation is told by its width too where the printer knows no colour."""
 
+_NAMED = 12
+"""So many empty tiles are named; more would fill the page."""
+
 _BAR = 100.0
 """Length of the bar that shows whether a page was printed at its true scale [mm]."""
 
@@ -102,10 +105,9 @@ def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
     """The first page: what the lines are, how to join the tiles, the sheet in small with its tiles."""
     page_width, _ = PAPERS[paper]
     pages, empty = len(grid.printed), [tile.name for tile in grid.tiles if not tile.shapes]
-    left_out = f" Nothing is on {', '.join(empty)}: they are not printed." if empty else ""
     said = [
         f"{pattern.name}: a sheet of {pattern.width:.0f} x {pattern.height:.0f} mm on {pages} "
-        f"page{'s' if pages > 1 else ''} after this one, tiles A1 to {grid.tiles[-1].name}.{left_out}",
+        f"page{'s' if pages > 1 else ''} after this one, tiles A1 to {grid.tiles[-1].name}.{_left_out(empty)}",
         "Print all pages at 100 % (actual size, not fitted to the page) and measure the bar on each of them.",
         f"Cut each page along its dotted frame on the right and below, lay it {OVERLAP:g} mm over the next so that "
         "crosses fall on crosses, and glue or tape them.",
@@ -117,23 +119,33 @@ def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
     return "\n".join([*lines, *_key(MARGIN + 34), *_map(pattern, grid, MARGIN + 46), *_foot(pattern, grid, "map")])
 
 
+def _left_out(empty: list[str]) -> str:
+    """Which tiles have no page."""
+    if not empty:
+        return ""
+    if len(empty) > _NAMED:
+        return f" Nothing is on the {len(empty)} crossed out below: they are not printed."
+    return f" Nothing is on {', '.join(empty)}: {'they are' if len(empty) > 1 else 'it is'} not printed."
+
+
 def _key(y: float) -> list[str]:
     """What each kind of line means."""
     red, blue = (f'rgb("{COLOURS[layer]}")' for layer in (Layer.CUT, Layer.PINHOLE))
-    x = MARGIN
+    thin = f"width: {_WIDTHS[Layer.MARK]}mm"
     samples = (
-        (f"#stroke_at({{x}}, {{y}}, 12, 0, width: {_WIDTHS[Layer.CUT]}mm, paint: {red})", "cut"),
-        (f"#at({{x}} + 9, {{y}} - 1, circle(radius: 1mm, stroke: {_WIDTHS[Layer.PINHOLE]}mm + {blue}))", "pinhole"),
-        (f"#stroke_at({{x}}, {{y}}, 12, 0, width: {_WIDTHS[Layer.MARK]}mm)", "sewn, or cable outside"),
-        (f"#stroke_at({{x}}, {{y}}, 12, 0, width: {_WIDTHS[Layer.MARK]}mm, dash: (2mm, 1.3mm))", "cable inside"),
+        (f"#stroke_at({{x}}, {y}, 12, 0, width: {_WIDTHS[Layer.CUT]}mm, paint: {red})", "cut", 24.0),
+        (f"#at({{x}} + 9, {y} - 1, circle(radius: 1mm, stroke: {_WIDTHS[Layer.PINHOLE]}mm + {blue}))", "pinhole", 30.0),
+        (f"#stroke_at({{x}}, {y}, 12, 0, {thin})", "sewn, or cable outside", 52.0),
+        (f"#stroke_at({{x}}, {y}, 12, 0, {thin}, dash: (2mm, 1.3mm))", "cable inside", 37.0),
+        (f"#at({{x}}, {y} - 1.5, box(width: 12mm, height: 3mm, stroke: (y: {_WIDTHS[Layer.MARK]}mm)))", "sheath", 0.0),
     )
-    lines = []
-    for (sample, text), step in zip(samples, (30.0, 36.0, 58.0, 0.0), strict=True):
-        lines += [sample.format(x=x, y=y), f"#at({x + 14}, {y - 1.6}, [{text}])"]
+    x, lines = MARGIN, []
+    for sample, text, step in samples:
+        lines += [sample.format(x=x), f"#at({x + 14}, {y - 1.6}, [{text}])"]
         x += step
     lines.append(
         f"#at({MARGIN}, {y + 5}, [Letters mark notches that meet; small figures number the holes of a cable in "
-        "stitch order, from 2 on.])"
+        "stitch order, from 2 on; a ring is its stopper, a large circle its winch.])"
     )
     return lines
 

@@ -153,6 +153,8 @@ def test_empty_tiles_are_left_out_and_said_so():
     assert "A1, B1, B2, C2, A3" not in text
     assert "Nothing is on A1, B1, A2, B2, C2, B3, C3: they are not printed" in text
     assert [page.extract_text().count("of 3 x 3") for page in pages] == [0, 1, 1]
+    many = read(tiled_pdf(two_spots(1500.0, 700.0), Paper.A4)).pages
+    assert "Nothing is on the 25 crossed out below" in " ".join(many[0].extract_text().split())
 
 
 @pytest.mark.parametrize("paper", list(Paper))
