@@ -242,7 +242,7 @@ def choose_motor(key: str, torques: Iterable[float], margin: float) -> tuple[Mot
         InputError: no motor has this key.
     """
     largest = 1e3 * max((float(torque) for torque in torques), default=0.0)
-    needed = margin * largest
+    needed = margin * largest - 1e-9
     if key == "auto":
         motor = next((each for each in MOTORS if each.rated_torque >= needed), MOTORS[-1])
     else:

@@ -1,0 +1,125 @@
+"""The base for winches outside the body: units fit and do not touch, tubes run straight, plate and outline agree."""
+
+from itertools import combinations
+
+import pytest
+from manifold3d import Manifold
+from overhang import overhang
+from shapely.geometry import Polygon
+from winch_robots import gallery_robot, given_demand
+
+from hydrostat.fabrication.parts.base_plan import FREE
+from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
+from hydrostat.fabrication.parts.motor import MOTORS, Motor
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.tube_holder import DEEP, tube_holder
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
+from hydrostat.fabrication.solids.assembly import interferences
+from hydrostat.fabrication.solids.construct import solid_of
+from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.fabrication.solids.sound import watertight_problems
+
+BED = (220.0, 220.0, 250.0)
+OUTSIDE = ["caging_gripper", "cupping_hand", "fish_tail", "octopus_arm", "tongue", "trunk"]
+
+
+def base_of(
+    name: str, motor: Motor = MOTORS[0], bed: tuple[float, float, float] = BED
+) -> tuple[BasePlate, tuple[WinchUnit, ...]]:
+    robot = gallery_robot(name)
+    units = winch_units(robot, given_demand(robot), PartOptions(), motor)
+    base = base_plate(robot, units, PartOptions(), bed)
+    assert base is not None
+    return base, units
+
+
+def tiles(base: BasePlate) -> list[Manifold]:
+    return [part.solid for part in base.printed if part.title == "Base"]
+
+
+@pytest.mark.parametrize(
+    ("name", "motor"), [*((name, MOTORS[0]) for name in OUTSIDE), *(("trunk", motor) for motor in MOTORS[1:])]
+)
+def test_everything_fits_on_the_base(name: str, motor: Motor, unchecked: None):
+    """Oracle: boolean intersections of all pieces; boxes round the units."""
+    base, units = base_of(name, motor)
+    assert base.problems == ()
+    assert len(base.seats) == len(units)
+    assert interferences(base.assembly) == ()
+    boxes = [seat.placed(Manifold.cube(units[seat.unit].size).translate(units[seat.unit].low)) for seat in base.seats]
+    assert all(one.min_gap(other, 5.0) >= 2.9 for one, other in combinations(boxes, 2))
+    for part in base.printed:
+        assert watertight_problems(part) == ()
+
+
+def test_a_motor_beside_its_hole_is_found():
+    """The check can fail: a motor pushed by half a millimetre against the base."""
+    base, _ = base_of("fish_tail")
+    pieces = base.assembly.pieces
+    motor = next(piece for piece in pieces if piece.name.startswith("motor_n20"))
+    plate = next(piece for piece in pieces if piece.name == "base")
+    assert (plate.solid ^ motor.solid).volume() == 0.0
+    assert (plate.solid ^ motor.solid.translate((0.5, 0, 0))).volume() > 1.0
+
+
+def test_a_base_only_for_winches_outside():
+    robot = gallery_robot("starfish")
+    units = winch_units(robot, given_demand(robot), PartOptions(), MOTORS[0])
+    assert base_plate(robot, units, PartOptions(), BED) is None
+
+
+@pytest.mark.parametrize("bed", [BED, (120.0, 120.0, 100.0), (90.0, 60.0, 100.0)])
+@pytest.mark.parametrize("name", ["cupping_hand", "tongue"])
+def test_tiles_fit_the_bed_and_together_are_the_sheet(name: str, bed: tuple[float, float, float]):
+    """Oracle: area of the outline less its holes, by shapely; volume of the tiles."""
+    base, _ = base_of(name, bed=bed)
+    assert base.problems == ()
+    for part in base.printed:
+        assert all(side <= room for side, room in zip(part.size, bed, strict=True))
+    outline, *holes = (Polygon(ring) for ring in base.sheet)
+    assert all(outline.contains(hole) for hole in holes)
+    assert all(one.disjoint(other) for one, other in combinations(holes, 2))
+    area = outline.area - sum(hole.area for hole in holes)
+    assert sum(solid.volume() for solid in tiles(base)) == pytest.approx(base.thickness * area, rel=1e-6)
+    assert next(part.count for part in base.printed if part.name == "base_leg") == 4 * len(tiles(base))
+
+
+def test_the_smaller_the_bed_the_more_tiles():
+    counts = [
+        len(tiles(base_of("cupping_hand", bed=bed)[0])) for bed in (BED, (120.0, 120.0, 100.0), (90.0, 60.0, 100.0))
+    ]
+    assert counts[0] == 1
+    assert counts == sorted(set(counts))
+
+
+def test_a_bed_too_small_for_one_unit_is_a_problem():
+    base, _ = base_of("tongue", bed=(40.0, 40.0, 100.0))
+    assert any("the bed 40 x 40 x 100 mm" in text for text in base.problems)
+
+
+@pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
+def test_a_straight_tube_runs_from_its_seat_through_its_holder(motor: Motor):
+    """Oracle: a straight tube from the exit on, a hair thinner than it is, cuts nothing; beside its bore it does."""
+    base, units = base_of("trunk", motor)
+    holders = [piece.solid for piece in base.assembly.pieces if piece.name.startswith("tube_holder")]
+    others = [piece.solid for piece in base.assembly.pieces if not piece.name.startswith("tube_holder")]
+    for seat, holder in zip(base.seats, holders, strict=True):
+        (leaves,) = units[seat.unit].exits
+        length = dict(base.tubes)[leaves.cable]
+        assert length == pytest.approx(FREE + DEEP)
+        tube = Manifold.cylinder(length, 0.97, -1, 24).rotate((-90, 0, 0)).translate(leaves.point)
+        placed = seat.placed(tube.translate((0, 0.01, 0)))
+        assert all((placed ^ solid).volume() < 1e-9 for solid in others)
+        assert (placed ^ holder).volume() < 1e-9
+        assert (seat.placed(tube.translate((0.6, 0, 0))) ^ holder).volume() > 1.0
+
+
+def test_a_holder_prints_and_closes_on_its_tubes():
+    """Oracle: overhangs of its small bores only; the slot cuts every bore."""
+    for heights in ([7.0], [7.0, 12.0, 17.0]):
+        solid = solid_of(tube_holder(heights, PartOptions()))
+        part = Printed(name="holder", title="Holder", solid=solid)
+        assert watertight_problems(part) == ()
+        assert overhang(part) < 70
+        sheet = Manifold.cube((0.8, 6, 60)).translate((-0.4, -3, min(heights)))
+        assert (sheet ^ solid).volume() == 0.0

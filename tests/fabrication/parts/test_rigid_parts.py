@@ -1,0 +1,83 @@
+"""All rigid parts of a robot: counts, names, time, the same on every run."""
+
+import time
+
+import numpy as np
+import pytest
+from winch_robots import gallery_robot, given_demand
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
+from hydrostat.robot import gallery_names
+
+BED = (220.0, 220.0, 250.0)
+
+
+def parts_of(name: str, motor: str = "auto", torque: float = 0.03) -> RigidParts:
+    robot = gallery_robot(name)
+    demand = given_demand(robot, torque)
+    return rigid_parts(robot, demand, motor=motor, options=PartOptions(), bed=BED, holes=12, hole=3.0)
+
+
+@pytest.mark.parametrize("name", gallery_names())
+def test_parts_of_the_gallery(name: str, unchecked: None):
+    """Oracle: counts of winches, cables and holes of the robot; names once each, with those of all pieces."""
+    robot, parts = gallery_robot(name), parts_of(name)
+    count = {part.name: part.count for part in parts.printed}
+    assert len(count) == len(parts.printed)
+    for kind in ("spool_", "housing_", "motor_plate_"):
+        assert sum(number for part, number in count.items() if part.startswith(kind)) == len(robot.winches)
+    assert count["stopper_base"] == count["stopper_lid"] == len(robot.cables)
+    assert count["grommet"] == 12
+    assert all(part.name.replace("_", "a").isalnum() for part in parts.printed)
+    pieces = {piece.name.split(" ")[0] for made in parts.assemblies for piece in made.pieces if piece.printed}
+    assert pieces == set(count) - {"grommet"}
+    assert parts.problems == ()
+    assert parts.motor.key == "n20"
+    assert dict(parts.bought)[parts.motor.title] == len(robot.winches)
+
+
+def test_pieces_on_the_base_are_as_many_as_are_printed():
+    parts = parts_of("trunk", "xl330")
+    assert parts.base is not None
+    on_base: dict[str, int] = {}
+    for piece in parts.base.assembly.pieces:
+        if piece.printed:
+            name = piece.name.split(" ")[0]
+            on_base[name] = on_base.get(name, 0) + 1
+    printed = {part.name: part.count for part in parts.printed}
+    assert on_base == {name: printed[name] for name in on_base}
+
+
+def test_equal_winches_share_a_file_that_names_them():
+    titles = {part.name: (part.title, part.count) for part in parts_of("starfish").printed}
+    assert titles["spool_a"] == ("Spool of winch right", 1)
+    assert titles["spool_b"] == ("Spool of winches left, feet", 2)
+    assert titles["motor_plate_a"] == ("Motor plate of every winch", 3)
+
+
+def test_the_motor_grows_with_the_demand():
+    assert [parts_of("letter_s", torque=torque).motor.key for torque in (0.03, 0.06, 0.125)] == ["n20", "xl330", "25d"]
+    assert parts_of("letter_s", torque=0.4).warnings[0].startswith("the winches ask for up to 400 N mm")
+
+
+def test_an_unknown_motor_is_refused():
+    with pytest.raises(InputError, match="no motor"):
+        parts_of("letter_s", "stepper")
+
+
+def test_the_same_on_every_run():
+    for one, other in zip(parts_of("squid").printed, parts_of("squid").printed, strict=True):
+        assert (one.name, one.title, one.count, one.note) == (other.name, other.title, other.count, other.note)
+        assert np.array_equal(one.mesh[0], other.mesh[0])
+        assert np.array_equal(one.mesh[1], other.mesh[1])
+
+
+@pytest.mark.parametrize("name", ["cupping_hand", "squid"])
+def test_it_takes_little_time(name: str, unchecked: None):
+    robot = gallery_robot(name)
+    begin = time.process_time()
+    made = rigid_parts(robot, given_demand(robot), motor="xl330", options=PartOptions(), bed=BED)
+    assert sum(part.volume for part in made.printed) > 0
+    assert time.process_time() - begin < 2.0

@@ -1,0 +1,179 @@
+"""Units of winches: true to the robot file, free of interference for every robot of the gallery."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+from winch_robots import gallery_robot, given_demand, with_winches
+
+from hydrostat.fabrication.parts.motor import MOTORS, Motor
+from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.spool import capacity
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
+from hydrostat.fabrication.solids.assembly import Assembly, interferences
+from hydrostat.fabrication.solids.sound import watertight_problems
+from hydrostat.robot import Mount, Robot, gallery_names
+
+N20, XL330, POLOLU_25D = MOTORS
+
+
+def units_of(robot: Robot, motor: Motor = N20, *, torque: float = 0.03, **options: float) -> tuple[WinchUnit, ...]:
+    return winch_units(robot, given_demand(robot, torque), PartOptions(**options), motor)
+
+
+def distinct(units: tuple[WinchUnit, ...]) -> list[WinchUnit]:
+    """One unit of each kind."""
+    return list({tuple(part.name for part in unit.printed): unit for unit in units}.values())
+
+
+@pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
+@pytest.mark.parametrize("name", gallery_names())
+def test_units_of_the_gallery(name: str, motor: Motor, unchecked: None):
+    """Oracle: boolean intersections, edges of the triangles in the files, closed form of what a spool takes."""
+    robot = gallery_robot(name)
+    units = units_of(robot, motor)
+    assert [unit.winch for unit in units] == [winch.name for winch in robot.winches]
+    assert [unit.problems for unit in units] == [()] * len(units)
+    for unit in distinct(units):
+        assert interferences(unit.assembly) == ()
+        assert all(watertight_problems(part) == () for part in unit.printed)
+    for unit in units:
+        winch = robot.winch(unit.winch)
+        for cable, groove in zip(unit.cables, unit.spool.grooves, strict=True):
+            ratio = robot.spool_ratios[cable]
+            spare = 2.0 * 2 * math.pi * groove.radius
+            needed = 1e3 * ratio * (winch.travel + winch.release) + spare
+            assert groove.radius == pytest.approx(1e3 * ratio * winch.spool_radius)
+            assert groove.layers == 1
+            assert capacity(groove.width, groove.radius, 0.4, 1) >= needed - 1e-9
+    assert sorted(cable for unit in units for cable in unit.cables) == list(range(len(robot.cables)))
+
+
+def test_a_spool_too_high_is_found():
+    """The check of interference can fail: the spool half a millimetre higher."""
+    (unit, *_) = units_of(gallery_robot("letter_s"))
+    pieces = tuple(
+        replace(piece, solid=piece.solid.translate((0, 0, 0.5 if piece.name.startswith("spool") else 0)))
+        for piece in unit.assembly.pieces
+    )
+    assert {found.other for found in interferences(Assembly(name="high", pieces=pieces))} == {"housing_a"}
+
+
+@pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
+@pytest.mark.parametrize("name", ["robot", "bear", "trunk"])
+def test_exits_are_tangential_in_the_face_and_turn_the_same_way(name: str, motor: Motor):
+    """Oracle: distance of a line from the axis, sign of the moment of each cable, a tube in its seat."""
+    for unit in units_of(gallery_robot(name), motor):
+        box = next(piece.solid for piece in unit.assembly.pieces if piece.name.startswith("housing"))
+        for leaves, groove in zip(unit.exits, unit.spool.grooves, strict=True):
+            (x, y, z), (u, v, w) = leaves.point, leaves.direction
+            assert math.hypot(u, v, w) == pytest.approx(1.0)
+            assert x * v - y * u == pytest.approx(groove.radius)
+            assert max(abs(x), abs(y)) == pytest.approx(unit.housing.half)
+            assert x * u + y * v == pytest.approx(leaves.lead)
+            tube = Manifold.cylinder(leaves.seat + 3, 1.0, -1, 24).translate((0, 0, -leaves.seat + 0.01))
+            tube = tube.rotate((0, 90, math.degrees(math.atan2(v, u)))).translate((x, y, z))
+            assert (box ^ tube).volume() < 1e-9
+
+
+@pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
+def test_the_size_is_that_of_the_box_round_all_pieces(motor: Motor):
+    """Oracle: boxes round the solids."""
+    for name in ("starfish", "trunk"):
+        for unit in units_of(gallery_robot(name), motor):
+            boxes = np.array([piece.solid.bounding_box() for piece in unit.assembly.pieces])
+            assert boxes[:, :3].min(axis=0) == pytest.approx(unit.low, abs=0.03)
+            assert boxes[:, 3:].max(axis=0) == pytest.approx(unit.high, abs=0.03)
+            assert unit.size == pytest.approx(np.subtract(unit.high, unit.low))
+
+
+def test_a_radius_too_small_is_refused_with_the_least_there_is():
+    robot = gallery_robot("letter_s")
+    for motor, least in ((N20, 3.45), (XL330, 4.95), (POLOLU_25D, 3.95)):
+        (unit,) = units_of(with_winches(robot, spool_radius=1e-3 * (least - 0.01)), motor)
+        assert len(unit.problems) == len(unit.cables)
+        assert f"at least {least:.2f} mm" in unit.problems[0]
+        assert interferences(unit.assembly) == ()
+        (unit,) = units_of(with_winches(robot, spool_radius=1e-3 * least), motor)
+        assert unit.problems == ()
+        assert interferences(unit.assembly) == ()
+
+
+def test_long_travel_lies_in_layers_and_says_how_much_the_radius_grows():
+    (unit,) = units_of(with_winches(gallery_robot("letter_s"), travel=0.5))
+    layers = unit.spool.grooves[0].layers
+    assert layers > 1
+    grown = 100 * (layers - 1) * 0.4 / 6.0
+    assert any(f"in {layers} layers" in text and f"{grown:.0f} % more" in text for text in unit.warnings)
+    assert unit.problems == ()
+    assert unit.spool.body <= 20.0
+    spare = 2.0 * 2 * math.pi * 6
+    for groove in unit.spool.grooves:
+        assert capacity(groove.width, groove.radius, 0.4, layers) >= 500 + 10 + spare - 1e-9
+    assert interferences(unit.assembly) == ()
+
+
+def test_more_than_a_spool_takes_is_refused():
+    (unit,) = units_of(with_winches(gallery_robot("letter_e"), travel=20.0))
+    assert any("do not fit on a spool" in text for text in unit.problems)
+
+
+def test_a_shaft_too_short_for_thick_walls_is_refused():
+    robot = gallery_robot("letter_s")
+    (unit,) = units_of(with_winches(robot, spool_radius=0.012), wall=5.0)
+    assert any("of the shaft" in text and "3.6 mm are needed" in text for text in unit.problems)
+    assert units_of(with_winches(robot, spool_radius=0.012), POLOLU_25D, wall=2.0)[0].problems == ()
+
+
+def test_a_weak_or_slow_motor_is_said():
+    robot = gallery_robot("letter_s")
+    assert units_of(robot)[0].warnings == ()
+    assert "stalls at 196 N mm" in units_of(robot, torque=0.2)[0].warnings[0]
+    texts = units_of(robot, torque=0.16)[0].warnings
+    assert "should carry 49 N mm at most" in texts[0]
+    seconds = 60 / (45 / 60 * 2 * math.pi * 6 * (1 - 160 / 196))
+    assert f"takes {seconds:.0f} s" in texts[1]
+
+
+def test_a_unit_thicker_than_a_flat_body_is_said():
+    robot = gallery_robot("letter_s")
+    thin = replace(robot, body=replace(robot.body, thickness=0.02))
+    assert any("thicker than the body of 20 mm" in text for text in units_of(thin)[0].warnings)
+    assert units_of(robot)[0].warnings == ()
+
+
+def test_a_unit_stands_across_a_body_that_is_thick_enough_and_else_lies():
+    robot = gallery_robot("starfish")
+    assert all(unit.across == (unit.size[2] <= 40.0) for unit in units_of(robot))
+    assert not any(unit.across for unit in units_of(robot, POLOLU_25D))
+
+
+def test_cables_leave_an_upright_unit_as_they_go_on():
+    """Oracle: angles between first segments, to the nearest quarter turn."""
+    robot = gallery_robot("pig")
+    (unit,) = units_of(robot)
+    assert unit.across
+    ends = [robot.cables[cable].points[:2] for cable in unit.cables]
+    steps = [np.subtract(second, first) for first, second in ends]
+    (x, y), (u, v) = steps
+    turned = math.degrees(math.atan2(x * v - y * u, x * u + y * v))
+    exits = math.degrees(math.atan2(*reversed(unit.exits[1].direction[:2]))) - 90
+    assert abs((exits - turned + 180) % 360 - 180) <= 45 + 1e-6
+
+
+def test_winches_too_close_are_named():
+    units = units_of(gallery_robot("bear"))
+    (text,) = crowded(gallery_robot("bear"), units)
+    assert '"hug" and "nod" are 20.1 mm apart' in text
+    assert crowded(gallery_robot("starfish"), units_of(gallery_robot("starfish"))) == ()
+    assert crowded(gallery_robot("trunk"), units_of(gallery_robot("trunk"))) == ()
+
+
+def test_screws_are_counted():
+    (unit,) = units_of(gallery_robot("letter_s"), XL330)
+    assert [count for _, count in unit.bought] == [4, 4, 4]
+    outside = units_of(gallery_robot("trunk"), N20)[0]
+    assert outside.mount is Mount.WORLD
+    assert ("M2 nut", 4) in outside.bought
