@@ -1,0 +1,208 @@
+"""`flat_map`, `space_map`: the very robot with its cables, holes, winches and stoppers, numbered."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from jaxtyping import Float
+
+from hydrostat.fabrication.patterns.stitches import CableStitches, Side
+from hydrostat.fabrication.sheets.canvas import (
+    MIDDLE,
+    THICK,
+    THIN,
+    Box,
+    Canvas,
+    Frame,
+    Spot,
+    balloon_radius,
+    snug,
+    text_size,
+)
+from hydrostat.fabrication.sheets.label_places import LabelPlaces, box_round
+from hydrostat.fabrication.sheets.line_art import LineDrawing, Piece, line_drawing
+from hydrostat.fabrication.sheets.sight import Sight
+from hydrostat.fabrication.sheets.view import View
+from hydrostat.robot import Mount, Robot
+
+_MARGIN = 7.0
+"""Room round the body for labels [mm]."""
+
+_HOLE = 0.65
+"""Radius of a drawn hole [mm]."""
+
+_SHARP = 70.0
+"""On a body, edges are drawn that are sharper than this [degrees]: scans are rough."""
+
+_SOFT = 0.008
+"""Over what share of the picture the light on a body is blurred."""
+
+
+def winch_letter(index: int) -> str:
+    """By which a winch is known on the sheet: A to Z, then AA, AB ..."""
+    before, last = divmod(index, 26)
+    return (winch_letter(before - 1) if before else "") + chr(ord("A") + last)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One cable on paper.
+
+    Attributes:
+        cable: number, from 1.
+        spots: of its points, from the winch [mm].
+        solid: which of its segments run on the outside, or in front.
+        sheathed: which of them run in a tube.
+        holes: at which points it goes through the skin or is held by it.
+    """
+
+    cable: int
+    spots: list[Spot]
+    solid: Sequence[bool]
+    sheathed: Sequence[bool]
+    holes: Sequence[bool]
+
+
+def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:
+    """A flat body from the front; dashed is what runs on the inside of the cloth.
+
+    Args:
+        robot: with a flat body.
+        stitches: of each cable.
+        width: of the picture [mm].
+        height: of the picture at most [mm]; it is no higher than what is drawn.
+    """
+    rings = [1e3 * ring for ring in flat_rings(robot)]
+    places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
+    box = np.array([places.min(axis=0), places.max(axis=0)])
+    height = snug(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN
+    canvas = Canvas(width, height)
+    frame = Frame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
+    canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
+    canvas.line([frame.way(ring) for ring in rings], width=THICK, closed=True)
+    labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
+    for ring in rings:
+        labels.take_line(frame.way([*ring, ring[0]]), weight=3)
+    runs = [_stitched(robot, sewn, frame) for sewn in stitches]
+    _put_runs(canvas, labels, runs, [frame.on(1e3 * np.array(winch.at)) for winch in robot.winches])
+    return canvas
+
+
+def space_map(robot: Robot, *, width: float, height: float, views: Sequence[View]) -> Canvas:
+    """A body in space, side by side as it is seen from one or several places; dashed is what lies in its far half."""
+    canvas = Canvas(width, height)
+    piece = body_piece(robot)
+    drawings = [line_drawing([piece], view, soft=_SOFT) for view in views]
+    shares = np.array([float(np.ptp(drawing.box[:, 0])) for drawing in drawings])
+    walls = np.r_[0.0, np.cumsum(shares) / shares.sum()] * (width - 2 * _MARGIN * len(views))
+    for index, drawing in enumerate(drawings):
+        left, right = (float(walls[side]) + 2 * _MARGIN * side for side in (index, index + 1))
+        _put_view(canvas, robot, drawing, (left, 0.0, right, height))
+    return canvas
+
+
+def _put_view(canvas: Canvas, robot: Robot, drawing: LineDrawing, room: Box) -> None:
+    sight = Sight.of(body_piece(robot), drawing.view)
+    near = [sight.see(1e3 * np.array(cable.points)) for cable in robot.cables]
+    stands = [sight.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
+    everything = np.concatenate([drawing.box, *(way[:, :2] for way in near)])
+    left, top, right, bottom = room
+    inner = (left + _MARGIN, top + _MARGIN, right - _MARGIN, bottom - _MARGIN)
+    frame = Frame.fit(np.array([everything.min(axis=0), everything.max(axis=0)]), inner)
+    canvas.drawing(drawing, frame)
+    labels = LabelPlaces((left + 0.2, top + 0.2, right - 0.2, bottom - 0.2))
+    for way in drawing.outlines:
+        labels.take_line(frame.way(way), weight=3)
+    runs = [_sighted(robot, index, way, sight, frame) for index, way in enumerate(near)]
+    _put_runs(canvas, labels, runs, [frame.on(stand) for stand in stands])
+
+
+def _stitched(robot: Robot, sewn: CableStitches, frame: Frame) -> Run:
+    """A cable that is sewn through cloth."""
+    sides = [stitch.after is Side.OUTSIDE for stitch in sewn.stitches[:-1]]
+    cable = robot.cables[sewn.cable - 1]
+    holes = [stitch.passes for stitch in sewn.stitches]
+    return Run(sewn.cable, frame.way(1e3 * np.array(cable.points)), sides, (~cable.bare).tolist(), holes)
+
+
+def _sighted(robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Sight, frame: Frame) -> Run:
+    """A cable in space."""
+    cable = robot.cables[index]
+    solid = sight.in_front((way[:-1] + way[1:]) / 2).tolist()
+    holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (len(cable.points) - 1)]
+    return Run(index + 1, frame.way(way), solid, (~cable.bare).tolist(), holes)
+
+
+def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run], stands: Sequence[Spot]) -> None:
+    """Cables, then holes and stoppers on them, then winches, then all words where they fit."""
+    for run in runs:
+        _put_cable(canvas, run)
+        labels.take_line(run.spots)
+    for run in runs:
+        for spot, hole in zip(run.spots[:-1], run.holes[:-1], strict=True):
+            if hole:
+                canvas.disc(spot, _HOLE)
+                labels.take_box(box_round(spot, _HOLE))
+        _put_stopper(canvas, run)
+        labels.take_box(box_round(run.spots[-1], 1.4))
+    for index, stand in enumerate(stands):
+        canvas.balloon(stand, winch_letter(index), dark=True)
+        labels.take_box(box_round(stand, balloon_radius(winch_letter(index))))
+    for run in runs:
+        words = f"C{run.cable}"
+        middle = labels.beside(run.spots[-1], text_size(words, 9.0), gap=1.7)
+        if middle is not None:
+            canvas.text(middle, words, size=9.0, bold=True, halo=True)
+    for run in runs:
+        for number, (spot, hole) in enumerate(zip(run.spots[:-1], run.holes[:-1], strict=True), start=1):
+            if hole:
+                _put_number(canvas, labels, str(number), spot)
+
+
+def _put_number(canvas: Canvas, labels: LabelPlaces, words: str, spot: Spot) -> None:
+    middle = labels.beside(spot, text_size(words, 7.5), gap=0.75, most=3)
+    if middle is not None and np.hypot(*np.subtract(middle, spot)) < 3.2:
+        canvas.text(middle, words, size=7.5)
+
+
+def _put_cable(canvas: Canvas, run: Run) -> None:
+    for start, end, solid, sheathed in zip(run.spots[:-1], run.spots[1:], run.solid, run.sheathed, strict=True):
+        if sheathed:
+            canvas.line([[start, end]], width=1.25)
+            canvas.line([[start, end]], width=0.8, grey=1.0)
+            canvas.line([[start, end]], width=THIN, dash=None if solid else (1.0, 0.7))
+        else:
+            canvas.line([[start, end]], width=MIDDLE, dash=None if solid else (1.1, 0.8))
+
+
+def _put_stopper(canvas: Canvas, run: Run) -> None:
+    """A black bar across the end of a cable."""
+    end = np.array(run.spots[-1])
+    way = end - np.array(run.spots[-2])
+    length = float(np.hypot(*way))
+    way = way / length if length > 1e-6 else np.array([1.0, 0.0])
+    aside = np.array([-way[1], way[0]])
+    corners = [end + 1.35 * a * aside + 0.55 * b * way for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
+    canvas.fill([[(float(x), float(y)) for x, y in corners]], grey=0.0)
+
+
+def flat_rings(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
+    """The outline of a flat body and its holes [m]; of a ready mesh, the rim of its triangles."""
+    if robot.body.outline is not None:
+        return list(robot.body.outline.rings)
+    mesh = robot.body.mesh
+    whole = shapely.union_all(shapely.polygons(mesh.nodes[mesh.elements]))
+    polygons = [part for part in shapely.get_parts(whole) if isinstance(part, shapely.Polygon)]
+    return [np.array(ring.coords)[:-1] for part in polygons for ring in (part.exterior, *part.interiors)]
+
+
+def body_piece(robot: Robot) -> Piece:
+    """The surface of a body in space [mm]."""
+    if robot.body.healing is not None:
+        surface = robot.body.healing.surface
+        return Piece(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=_SHARP)
+    mesh = robot.body.mesh
+    faces = mesh.elements[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
+    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    return Piece(vertices=1e3 * mesh.nodes, triangles=faces[np.sort(first[counts == 1])], sharp=_SHARP)

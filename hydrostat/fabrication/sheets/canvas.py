@@ -1,0 +1,188 @@
+"""`Canvas`: a picture as SVG, in millimetres of paper, so that lines and letters have the same size on all of them."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from typing import Self
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.fabrication.sheets.line_art import LineDrawing
+
+Spot = tuple[float, float]
+"""A place on the canvas [mm]: to the right, down."""
+
+Box = tuple[float, float, float, float]
+"""Left, top, right, bottom [mm]."""
+
+THICK, MIDDLE, THIN = 0.5, 0.32, 0.18
+"""Widths of lines [mm]."""
+
+POINT = 25.4 / 72
+"""Millimetres of a typographic point."""
+
+FONT = "Libertinus Serif"
+"""Comes with typst, so that a sheet is the same on every machine."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where true places come to lie on a canvas.
+
+    Attributes:
+        scale: millimetres of paper for one of the thing.
+        left: on the canvas of what is at 0 [mm].
+        base: on the canvas, downwards, of what is at height 0 [mm].
+    """
+
+    scale: float
+    left: float
+    base: float
+
+    @classmethod
+    def fit(cls, box: Float[np.ndarray, "2 2"], room: Box) -> Self:
+        """As large as there is room for, in its middle; `box`: lowest and highest place of the thing."""
+        left, top, right, bottom = room
+        wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
+        scale = min((right - left) / wide, (bottom - top) / high)
+        middle_x, middle_y = ((box[0] + box[1]) / 2).tolist()
+        return cls(scale, (left + right) / 2 - scale * middle_x, (top + bottom) / 2 + scale * middle_y)
+
+    def on(self, place: Sequence[float] | np.ndarray) -> Spot:
+        """Where a place lies on the canvas [mm]."""
+        return self.left + self.scale * float(place[0]), self.base - self.scale * float(place[1])
+
+    def way(self, places: Iterable[Sequence[float] | np.ndarray]) -> list[Spot]:
+        """Where places lie on the canvas [mm]."""
+        return [self.on(place) for place in places]
+
+
+@dataclass
+class Canvas:
+    """A picture that is drawn from back to front.
+
+    Attributes:
+        width: [mm].
+        height: [mm].
+    """
+
+    width: float
+    height: float
+    _parts: list[str] = field(default_factory=list)
+
+    @property
+    def svg(self) -> str:
+        """The picture so far."""
+        size = f'width="{self.width:g}mm" height="{self.height:g}mm" viewBox="0 0 {self.width:g} {self.height:g}"'
+        style = f'stroke-linecap="round" stroke-linejoin="round" font-family="{FONT}" fill="none"'
+        return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {style}>{"".join(self._parts)}</svg>'
+
+    def line(
+        self,
+        ways: Iterable[Sequence[Spot]],
+        *,
+        width: float = MIDDLE,
+        grey: float = 0.0,
+        dash: tuple[float, float] | None = None,
+        closed: bool = False,
+    ) -> None:
+        """Lines through spots; `grey` from 0 for black to 1, `dash`: length of strokes and gaps [mm]."""
+        path = "".join(_path(way, closed=closed) for way in ways if len(way) > 1)
+        if path:
+            dashes = f' stroke-dasharray="{dash[0]:g} {dash[1]:g}" stroke-linecap="butt"' if dash else ""
+            self._parts.append(f'<path d="{path}" stroke="{_ink(grey)}" stroke-width="{width:g}"{dashes}/>')
+
+    def fill(self, rings: Iterable[Sequence[Spot]], *, grey: float) -> None:
+        """What rings enclose, by the even-odd rule."""
+        path = "".join(_path(ring, closed=True) for ring in rings if len(ring) > 2)
+        if path:
+            self._parts.append(f'<path d="{path}" fill="{_ink(grey)}" fill-rule="evenodd"/>')
+
+    def disc(self, at: Spot, radius: float, *, grey: float = 1.0, edge: float = THIN) -> None:
+        """A round spot with a black edge of some width [mm]; 0 for none."""
+        stroke = f' stroke="black" stroke-width="{edge:g}"' if edge else ""
+        self._parts.append(
+            f'<circle cx="{_number(at[0])}" cy="{_number(at[1])}" r="{_number(radius)}" fill="{_ink(grey)}"{stroke}/>'
+        )
+
+    def text(
+        self,
+        at: Spot,
+        words: str,
+        *,
+        size: float = 8.5,
+        anchor: str = "middle",
+        bold: bool = False,
+        grey: float = 0.0,
+        halo: bool = False,
+    ) -> None:
+        """Words of a size [pt], their middle at the height of `at`; with `halo` lines behind them stop short."""
+        place = f'x="{_number(at[0])}" y="{_number(at[1] + 0.32 * size * POINT)}" text-anchor="{anchor}"'
+        face = f'font-size="{_number(size * POINT)}"' + (' font-weight="bold"' if bold else "")
+        if halo:
+            wide, high = text_size(words, size)
+            left = at[0] - wide * {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
+            self.fill([_rectangle((left - 0.3, at[1] - high / 2, left + wide + 0.3, at[1] + high / 2))], grey=1.0)
+        self._parts.append(f'<text {place} {face} fill="{_ink(grey)}">{escape(words)}</text>')
+
+    def balloon(self, at: Spot, words: str, *, dark: bool = False, size: float = 9.0) -> None:
+        """Words in a circle, white on black if `dark`."""
+        radius = balloon_radius(words, size)
+        self.disc(at, radius, grey=0.0 if dark else 1.0, edge=MIDDLE)
+        self.text(at, words, size=size, bold=True, grey=1.0 if dark else 0.0)
+
+    def arrow(self, start: Spot, end: Spot, *, width: float = THICK, head: float = 2.2) -> None:
+        """A straight arrow with a filled head."""
+        way = np.subtract(end, start)
+        way = way / max(float(np.hypot(*way)), 1e-9)
+        aside, foot = np.array([-way[1], way[0]]), np.array(end) - head * way
+        corners = [np.array(end), foot + 0.38 * head * aside, foot - 0.38 * head * aside]
+        self.line([[start, _spot(foot)]], width=width)
+        self.fill([[_spot(corner) for corner in corners]], grey=0.0)
+
+    def drawing(self, drawing: LineDrawing, frame: Frame) -> None:
+        """The lines and tones of solids."""
+        for grey, rings in drawing.tones:
+            self.fill([frame.way(ring) for ring in rings], grey=grey)
+        self.line([frame.way(way) for way in drawing.lines], width=THIN)
+        self.line([frame.way(way) for way in drawing.outlines], width=MIDDLE)
+
+
+def snug(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
+    """How high a thing is drawn that is as wide as may be, or as high as may be [mm]."""
+    wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
+    return min(height, width * high / wide)
+
+
+def text_size(words: str, size: float) -> tuple[float, float]:
+    """About how wide and high words of a size [pt] are [mm]."""
+    return 0.5 * size * POINT * len(words), 0.75 * size * POINT
+
+
+def balloon_radius(words: str, size: float = 9.0) -> float:
+    """Of the circle round words [mm]."""
+    return max(0.62 * size * POINT, 0.56 * text_size(words, size)[0] + 0.35)
+
+
+def _rectangle(box: Box) -> list[Spot]:
+    left, top, right, bottom = box
+    return [(left, top), (right, top), (right, bottom), (left, bottom)]
+
+
+def _path(way: Sequence[Spot], *, closed: bool) -> str:
+    return "M" + "L".join(f"{_number(x)} {_number(y)}" for x, y in way) + ("Z" if closed else "")
+
+
+def _number(value: float) -> str:
+    """To a hundredth of a millimetre, without a minus before nought."""
+    return f"{round(value, 2) + 0.0:g}"
+
+
+def _ink(grey: float) -> str:
+    level = round(255 * min(max(grey, 0.0), 1.0))
+    return f"#{level:02x}{level:02x}{level:02x}"
+
+
+def _spot(place: np.ndarray) -> Spot:
+    return float(place[0]), float(place[1])

@@ -1,0 +1,186 @@
+"""`line_drawing`: solids as lines without what is hidden, with light grey on sides that are turned from the lamp."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Self
+
+import contourpy
+import numpy as np
+import shapely
+from jaxtyping import Bool, Float, Int
+from manifold3d import Manifold
+from scipy.ndimage import distance_transform_edt, gaussian_filter
+
+from hydrostat.fabrication.sheets.contours import Facets, Segments
+from hydrostat.fabrication.sheets.depth import DepthBuffer
+from hydrostat.fabrication.sheets.view import View
+from hydrostat.fabrication.solids.printed import triangles_of
+
+Way = Float[np.ndarray, "_ 2"]
+"""A line on the drawing: to the right, up [mm]."""
+
+_LAMP = np.array([-0.40, 0.75, 0.55]) / np.linalg.norm([-0.40, 0.75, 0.55])
+"""Where the light comes from as seen: from above, from the left, from behind the shoulder."""
+
+_SHADES = ((0.6, 0.93), (0.05, 0.84))
+"""Below which light a side is grey, and how bright that grey is: pale enough to write on."""
+
+_JUMP = 0.02
+"""A line is thick where what lies behind it is so much deeper, as a share of the picture."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Piece:
+    """One solid of a drawing.
+
+    Attributes:
+        vertices: [mm].
+        triangles: seen from outside they turn counter-clockwise.
+        sharp: edges are drawn where the sides turn by more than this [degrees].
+    """
+
+    vertices: Float[np.ndarray, "vertices 3"]
+    triangles: Int[np.ndarray, "triangles 3"]
+    sharp: float = 30.0
+
+    @classmethod
+    def of(cls, solid: Manifold, *, shift: Sequence[float] = (0.0, 0.0, 0.0)) -> Self:
+        """A piece of a solid, moved by a shift [mm]."""
+        vertices, triangles = triangles_of(solid)
+        return cls(vertices=vertices + np.array(shift, dtype=float), triangles=triangles)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LineDrawing:
+    """Lines and tones as they are seen, in true size [mm].
+
+    Attributes:
+        view: from where.
+        outlines: lines before something deeper, or before nothing: to be drawn thick.
+        lines: what else is seen, to be drawn thin.
+        tones: how bright, from 0 for black to 1, and the rings round it by the even-odd rule; later ones lie on top.
+        buffer: of depths, from which it was drawn.
+        piece_of: index of the piece of each triangle of the buffer.
+        source: its index in that piece.
+    """
+
+    view: View
+    outlines: tuple[Way, ...]
+    lines: tuple[Way, ...]
+    tones: tuple[tuple[float, tuple[Way, ...]], ...]
+    buffer: DepthBuffer = field(repr=False)
+    piece_of: Int[np.ndarray, " triangles"] = field(repr=False)
+    source: Int[np.ndarray, " triangles"] = field(repr=False)
+
+    @cached_property
+    def box(self) -> Float[np.ndarray, "2 2"]:
+        """Lowest and highest place of what is drawn [mm]."""
+        ways = np.concatenate([*self.outlines, *self.lines])
+        return np.array([ways.min(axis=0), ways.max(axis=0)])
+
+    def seen_of(self, way: Float[np.ndarray, "points 3"]) -> tuple[Way, ...]:
+        """The parts of a line in space [mm] that nothing hides."""
+        seen = self.view.see(way)
+        ahead, behind = _visible(np.stack([seen[:-1], seen[1:]], axis=1), self.buffer)
+        return (*ahead, *behind)
+
+    def spot_on(self, piece: int) -> Float[np.ndarray, " 2"] | None:
+        """A place well inside what is seen of a piece [mm]; None if all of it is hidden."""
+        mask = (self.buffer.owner >= 0) & (self.piece_of[self.buffer.owner] == piece)
+        if not mask.any():
+            return None
+        rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+        part = np.pad(mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], 1)
+        row, column = np.unravel_index(int(np.argmax(np.asarray(distance_transform_edt(part)))), part.shape)
+        return self.buffer.low + self.buffer.pixel * np.array(
+            [float(columns[0] + column - 1), float(rows[0] + row - 1)]
+        )
+
+    def rings_of(self, piece: int, chosen: Bool[np.ndarray, " triangles"]) -> tuple[Way, ...]:
+        """Rings round what is seen of some triangles of a piece [mm]."""
+        wanted = (self.piece_of == piece) & chosen[np.minimum(self.source, len(chosen) - 1)]
+        mask = (self.buffer.owner >= 0) & wanted[self.buffer.owner]
+        return _rings(gaussian_filter(mask.astype(float), 1.0), 0.5, self.buffer)
+
+
+def line_drawing(pieces: Sequence[Piece], view: View, *, soft: float = 0.0) -> LineDrawing:
+    """Draw solids as they are seen, each edge and rim only as far as nothing hides it.
+
+    Args:
+        pieces: what is drawn.
+        view: from where.
+        soft: over what share of the picture the light is blurred, for a body with dents.
+    """
+    facets = [Facets.of(piece.vertices, piece.triangles, sharp=piece.sharp) for piece in pieces]
+    spots = np.concatenate([view.see(item.vertices)[item.triangles] for item in facets])
+    lights = np.concatenate([item.corners @ (view.axes.T @ _LAMP) for item in facets])
+    buffer = DepthBuffer.of(spots, lights)
+    segments = np.concatenate([part for item in facets for part in (item.sharp_edges(), item.rims(view.axes[2]))])
+    seen = view.see(segments.reshape(-1, 3)).reshape(-1, 2, 3)
+    outlines, lines = _visible(seen, buffer)
+    return LineDrawing(
+        view=view,
+        outlines=outlines,
+        lines=lines,
+        tones=_tones(buffer, soft),
+        buffer=buffer,
+        piece_of=np.repeat(np.arange(len(facets)), [len(item.triangles) for item in facets]),
+        source=np.concatenate([item.source for item in facets]),
+    )
+
+
+def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Way, ...], tuple[Way, ...]]:
+    """The parts of lines that are seen, those with a jump of depth behind them first."""
+    lengths = np.linalg.norm(segments[:, 1, :2] - segments[:, 0, :2], axis=1)
+    steps = np.maximum(np.ceil(2 * lengths / buffer.pixel).astype(int), 1)
+    owner = np.repeat(np.arange(len(segments)), steps)
+    place = np.arange(len(owner)) - np.repeat(np.cumsum(steps) - steps, steps)
+    share = ((place + 0.5) / steps[owner])[:, None]
+    middles = (1 - share) * segments[owner, 0] + share * segments[owner, 1]
+    seen = buffer.behind(middles, 1) > -1.5 * buffer.pixel
+    jump = _JUMP * buffer.pixel * max(buffer.depth.shape)
+    thick = seen & (buffer.behind(middles, 2) > jump)
+    half = 0.5 / steps[owner][:, None]
+    ends = [(1 - at) * segments[owner, 0] + at * segments[owner, 1] for at in (share - half, share + half)]
+    parts = np.stack(ends, axis=1)[:, :, :2]
+    least = 6 * buffer.pixel
+    return _joined(parts, owner, thick, least), _joined(parts, owner, seen & ~thick, least)
+
+
+def _joined(
+    parts: Float[np.ndarray, "parts 2 2"], owner: Int[np.ndarray, " parts"], chosen: np.ndarray, least: float
+) -> tuple[Way, ...]:
+    """Chosen small steps as long lines, without those shorter than `least` [mm]."""
+    places = np.flatnonzero(chosen)
+    if not len(places):
+        return ()
+    breaks = np.flatnonzero((np.diff(places) > 1) | (np.diff(owner[places]) != 0))
+    starts, stops = places[np.r_[0, breaks + 1]], places[np.r_[breaks, len(places) - 1]]
+    runs = np.stack([parts[starts, 0], parts[stops, 1]], axis=1)
+    # Ends that meet are the same only to rounding: on a grid of a hundredth of the least length they are equal.
+    runs = np.unique(np.round(runs / (least / 100)) * (least / 100), axis=0)
+    runs = runs[np.linalg.norm(runs[:, 1] - runs[:, 0], axis=1) > 0]
+    merged = shapely.line_merge(shapely.MultiLineString([*runs]))
+    whole = shapely.simplify(shapely.get_parts(merged), least / 30)
+    return tuple(shapely.get_coordinates(line) for line in whole if line.length >= least)
+
+
+def _tones(buffer: DepthBuffer, soft: float) -> tuple[tuple[float, tuple[Way, ...]], ...]:
+    """Rings round what is darker than each shade."""
+    dark = 1.0 - buffer.light
+    if soft:
+        solid, reach = np.isfinite(buffer.depth), soft * max(buffer.depth.shape)
+        weight = np.maximum(gaussian_filter(solid.astype(float), reach), 1e-9)
+        dark = np.where(solid, gaussian_filter(np.where(solid, dark, 0.0), reach) / weight, 0.0)
+    return tuple((grey, _rings(dark, 1.0 - light, buffer)) for light, grey in _SHADES)
+
+
+def _rings(field: Float[np.ndarray, "rows columns"], level: float, buffer: DepthBuffer) -> tuple[Way, ...]:
+    """Closed lines at a level of something known at each pixel [mm]."""
+    rings = []
+    for ring in contourpy.contour_generator(z=field, line_type=contourpy.LineType.Separate).lines(level):
+        smooth = shapely.get_coordinates(shapely.simplify(shapely.linestrings(np.asarray(ring)), 0.6))
+        if len(smooth) > 3:
+            rings.append(buffer.low + buffer.pixel * smooth)
+    return tuple(rings)

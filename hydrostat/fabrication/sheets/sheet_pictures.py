@@ -1,0 +1,71 @@
+"""`sheet_pictures`: all pictures of a sheet, made from the very robot."""
+
+from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.sheets.cable_map import body_piece, flat_map, space_map, winch_letter
+from hydrostat.fabrication.sheets.canvas import Canvas
+from hydrostat.fabrication.sheets.exploded import exploded_picture
+from hydrostat.fabrication.sheets.mould_picture import undercut_picture
+from hydrostat.fabrication.sheets.portrait import portrait
+from hydrostat.fabrication.sheets.schemes import skin_scheme, stitch_scheme, stopper_scheme
+from hydrostat.fabrication.sheets.sheet_facts import piece_numbers, shown_stitches
+from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.sheets.sight import best_views
+from hydrostat.fabrication.sheets.view import View
+from hydrostat.robot import Mount
+
+WIDE, HALF = 182.0, 88.0
+"""Widths of a page and of half a page without its margins [mm]; both fit both papers."""
+
+
+def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
+    """Pictures by name, in millimetres of paper."""
+    tight = 18.0 if given.paper is Paper.LETTER else 0.0
+    minds = 8.0 * min(len(given.problems) + len(given.warnings), 7)
+    robot = given.robot
+    views = best_views(robot, body_piece(robot)) if robot.body.mesh.dim == 3 else ()
+    pictures = {"portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)}
+    if views:
+        pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + minds) / 2, views=views[:1])
+        pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views)
+    else:
+        pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + minds) / 2)
+    outside = any(winch.mount is Mount.WORLD for winch in robot.winches)
+    pictures["calibration"] = stopper_scheme(outside=outside, width=HALF, height=30.0)
+    left = 201.0 - tight - minds - pictures["map"].height
+    return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
+
+
+def _schemes(given: SheetInput) -> dict[str, Canvas]:
+    if given.method is Method.FOAM:
+        return {"skin": skin_scheme(width=HALF, height=24.0)}
+    shown = shown_stitches(given)
+    if shown is None:
+        return {}
+    place = [winch.name for winch in given.robot.winches].index(shown.winch)
+    return {"stitches": stitch_scheme(shown, winch_letter(place), width=HALF, height=38.0)}
+
+
+def _parts(given: SheetInput, height: float) -> dict[str, Canvas]:
+    pictures: dict[str, Canvas] = {}
+    of_winch, of_stopper = piece_numbers(given)
+    if given.winch is not None:
+        pictures["winch"] = exploded_picture(given.winch, of_winch, width=74.0, height=height)
+    if given.stopper is not None:
+        pictures["stopper"] = exploded_picture(given.stopper, of_stopper, width=38.0, height=min(0.6 * height, 52.0))
+    if given.base is not None:
+        pictures["base"] = exploded_picture(given.base, {}, width=HALF, height=56.0)
+    return pictures
+
+
+def _mould(given: SheetInput) -> dict[str, Canvas]:
+    mould = given.mould
+    if given.method is not Method.FOAM or mould is None:
+        return {}
+    numbers = {placed.name: number for number, placed in enumerate(mould.assembly.pieces, start=1)}
+    surface = mould.surface
+    return {
+        "mould": exploded_picture(mould.assembly, numbers, width=HALF, height=92.0, view=View.at(-50.0, 24.0)),
+        "undercut": undercut_picture(
+            surface.vertices, surface.triangles, surface.undercut, mould.pull, width=50.0, height=62.0
+        ),
+    }

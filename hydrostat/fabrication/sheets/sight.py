@@ -1,0 +1,73 @@
+"""`Sight`: which half of a body something lies in, as it is seen, and from where most of its cables are in front."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from hydrostat.fabrication.sheets.depth import DepthBuffer
+from hydrostat.fabrication.sheets.line_art import Piece
+from hydrostat.fabrication.sheets.view import View
+from hydrostat.robot import Robot
+
+_COARSE = 160
+"""Pixels along a body: enough to know its near and its far side."""
+
+_TURNS = tuple(range(0, 360, 30))
+"""Compass directions that are tried [degrees]."""
+
+_RISES = (15.0, 40.0)
+"""Heights over the horizon that are tried [degrees]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sight:
+    """The near and the far side of a body.
+
+    Attributes:
+        view: from where.
+        front: depths of the near side.
+        back: of the far side, as seen from there: x and depth change their sign.
+    """
+
+    view: View
+    front: DepthBuffer
+    back: DepthBuffer
+
+    @classmethod
+    def of(cls, piece: Piece, view: View) -> Self:
+        """Look at a body."""
+        seen = view.see(piece.vertices)[piece.triangles]
+        lights = np.ones(seen.shape[:2])
+        turned = seen * np.array([1.0, 1.0, -1.0])
+        return cls(view, DepthBuffer.of(seen, lights, pixels=_COARSE), DepthBuffer.of(turned, lights, pixels=_COARSE))
+
+    def see(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
+        """Points [mm] as they are seen."""
+        return self.view.see(points)
+
+    def in_front(self, seen: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, " points"]:
+        """Whether points, as seen, lie in the near half of the body or before it; so do those beside it."""
+        before = -self.front.behind(seen, 0)
+        after = -self.back.behind(seen * np.array([1.0, 1.0, -1.0]), 0)
+        return ~((before > 0) & (before > after))
+
+
+def best_views(robot: Robot, piece: Piece) -> tuple[View, View]:
+    """Two views: from where most of the cables lie in front, and then from where most of the others do."""
+    cables = [1e3 * np.array(cable.points)[1:] for cable in robot.cables]
+    points = np.concatenate([(way[:-1] + way[1:]) / 2 for way in cables if len(way) > 1] or [np.zeros((1, 3))])
+    views = [View.at(float(turn), rise) for rise in _RISES for turn in _TURNS]
+    fronts = []
+    for view in views:
+        sight = Sight.of(piece, view)
+        fronts.append(sight.in_front(view.see(points)))
+    seen = np.array(fronts, dtype=float)
+    # Of views that are as good, the one that shows most of the body, then the first.
+    areas = np.array([np.prod(np.ptp(view.see(piece.vertices)[:, :2], axis=0)) for view in views])
+    first = int(np.argmax(seen.mean(axis=1) + 0.4 * areas / areas.max()))
+    rest = seen * (1 - seen[first])
+    apart = np.array([1 - float(view.axes[2] @ views[first].axes[2]) for view in views])
+    second = int(np.argmax(rest.mean(axis=1) + 0.3 * areas / areas.max() + 0.1 * np.minimum(apart, 1.0)))
+    return views[first], views[second]
