@@ -116,13 +116,6 @@ def test_any_name_makes_whole_files(name):
     assert not ezdxf.read(io.StringIO(pattern_dxf(pattern).decode())).audit().errors
 
 
-def test_export_kit_writes_both_files_and_nothing_else(tmp_path):
-    """Oracle: the folder's listing."""
-    files = export_kit(crossed(), tmp_path / "build" / "sam")
-    assert [file.name for file in files] == ["pattern.svg", "pattern.dxf"]
-    assert sorted(file.name for file in (tmp_path / "build" / "sam").iterdir()) == ["pattern.dxf", "pattern.svg"]
-
-
 def test_export_kit_writes_nothing_that_cannot_be_cut(tmp_path):
     """Oracle: the folder is not even made."""
     with pytest.raises(Exception, match="from the seam"):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import shapely
 from shapely import MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
+from shapely.geometry.polygon import orient
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
@@ -22,7 +23,7 @@ class Skin:
     """One panel of cloth, seen from the front.
 
     Attributes:
-        seam: the body's own outline [mm].
+        seam: the body's own outline [mm], counter-clockwise, its holes clockwise.
         cut: its parallel, one seam allowance out into the cloth [mm].
         slits: further cuts, in bays too narrow for two allowances [mm].
         problems: why it cannot be cut and sewn as drawn, a line each.
@@ -42,7 +43,7 @@ def flat_skin(body: Body, options: PatternOptions) -> Skin:
     Raises:
         InputError: the body is not flat, or is in several pieces.
     """
-    seam = shapely.transform(_silhouette(body), lambda points: 1e3 * points)
+    seam = orient(shapely.transform(_silhouette(body), lambda points: 1e3 * points))
     outside = _offset(Polygon(seam.exterior), options.seam_allowance, options)
     slits, problems = _slits(seam, outside, options)
     holes = []

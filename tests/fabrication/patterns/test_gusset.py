@@ -1,15 +1,22 @@
+import io
 import math
 from dataclasses import replace
 from itertools import pairwise
 
+import ezdxf
 import numpy as np
 import pytest
 import shapely
 from plush_robots import HOLED, SQUARE, crossed, disc_path, drawn_body, plush_robot
+from read_back import see_dxf, see_svg
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Panel, Part, Pattern, PatternOptions, plush_pattern
+from hydrostat.fabrication import Panel, Part, Pattern, PatternOptions, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.fabrication.patterns.gusset import stuffed_thickness
+from hydrostat.fabrication.patterns.notches import find_notches
+from hydrostat.fabrication.patterns.skin import flat_skin
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot import MATERIALS, Body, Source
 
 GUSSET = PatternOptions(gusset=True)
 
@@ -94,6 +101,40 @@ def test_the_check_of_notches_can_fail():
     (strip,) = pattern.gusset
     wrong = replace(strip, shapes=tuple(shape.mirrored() for shape in strip.shapes))
     assert mismatch(replace(pattern, panels=(*pattern.panels[:2], wrong))) > 1
+
+
+def test_strips_follow_a_body_with_a_hole_with_the_cloth_on_the_left():
+    """Oracle: by hand: the second notch is 5 mm off the top: to the left on the outer seam, to the right in a hole."""
+    robot = plush_robot(drawn_body(disc_path(60.0) + disc_path(25.0)), marker=(0, 40))
+    skin = flat_skin(robot.body, GUSSET)
+    for ring, turn in ((0, -1), (1, 1)):
+        top, second = (notch for notch in find_notches(skin) if notch.ring == ring and notch.along < 6)
+        assert second.stroke.coords[0][0] - top.stroke.coords[0][0] == pytest.approx(5 * turn, abs=0.05)
+        assert (top.name, second.name) == (("A", "") if ring == 0 else ("F", ""))
+
+
+def test_a_mesh_drawn_clockwise_is_the_same_cloth():
+    """Oracle: shapely's direction of the seam."""
+    nodes = np.array([[-0.05, -0.05], [0.05, -0.05], [0.05, 0.05], [-0.05, 0.05]])
+    for order in ([0, 1, 2, 3], [3, 2, 1, 0], [2, 1, 0, 3]):
+        mesh = Mesh(nodes[order], np.array([[0, 1, 2], [0, 2, 3]])[:, :: 1 if order[0] == 0 else -1])
+        material = MATERIALS["polyester fibre"]
+        body = Body(source=Source.MESH, file="t.vtk", content=b"", material=material, thickness=0.03, mesh=mesh)
+        assert flat_skin(body, GUSSET).seam.exterior.is_ccw
+
+
+@pytest.mark.parametrize(("write", "see"), [(pattern_svg, see_svg), (pattern_dxf, see_dxf)])
+def test_strips_are_in_the_files(write, see):
+    """Oracle: svgelements and ezdxf: closed cuts of 116 mm for both panels, and each strip's own size."""
+    pattern = plush_pattern(crossed(), options=PatternOptions(gusset=True, gusset_piece=200))
+    seen = see(write(pattern))
+    edges = [line for line, closed in zip(seen.lines["CUT"], seen.closed["CUT"], strict=True) if closed]
+    sizes = sorted(tuple(np.round(np.ptp(edge, axis=0), 2).tolist()) for edge in edges)
+    assert sizes == sorted([(116.0, 116.0)] * 2 + [(176.0, 46.0)] * 2 + [(96.0, 46.0)])
+    if write is pattern_dxf:
+        audit = ezdxf.read(io.StringIO(write(pattern).decode())).audit()
+        assert not audit.errors
+        assert not audit.fixes
 
 
 def test_nothing_overlaps_on_a_sheet_with_strips():
