@@ -38,7 +38,8 @@ def test_a_shaft_needs_a_bore_as_wide():
 
 
 def test_what_is_less_than_asked_for_is_not_told():
+    """Oracle: two boxes that share 0.1 x 4 x 4 mm."""
     box = solid_of(Box((4, 4, 4)))
     lapped = put_together(box, box.translate((3.9, 0, 0)))
     assert interferences(lapped, least=2.0) == ()
-    assert len(interferences(lapped, least=1.0)) == 1
+    assert len(interferences(lapped, least=0.09)) == 1
