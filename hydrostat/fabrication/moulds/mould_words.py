@@ -64,7 +64,7 @@ def mould_problems(
         found += [
             f"the {half} half of the mould falls into {len(parts)} pieces: the body reaches through its walls"
             for half, parts in (("upper", halves.upper.decompose()), ("lower", halves.lower.decompose()))
-            if len(parts) > 1
+            if sum(part.volume() > 0 for part in parts) > 1
         ]
     for piece in printed:
         if any(side > most + 1e-6 for side, most in zip(_sorted(piece.size), _sorted(options.bed), strict=True)):

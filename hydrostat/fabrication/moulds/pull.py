@@ -1,6 +1,7 @@
 """`find_pull`: the direction along which a mould of two halves comes off with the least undercut."""
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -18,6 +19,14 @@ _LEVEL = 2e-3
 
 _RINGS = (9.0, 4.5, 2.2, 1.1, 0.5)
 """Angles at which neighbours of the best direction are tried [degrees]."""
+
+_APART = 1e-7
+
+_FLATS = 6
+"""Flat faces whose normals are tried: along walls that are flat the good directions are few and sharp."""
+
+_FLAT_SHARE = 0.02
+_CROSSED = 0.2
 
 _AROUND = 6
 _BEST = 3
@@ -69,6 +78,7 @@ def best_height(skin: Skin, freed: Release) -> tuple[float, float]:
     planes = (sorted_heights[1:] + sorted_heights[:-1]) / 2
     held = held[1:-1]
     middle = (sorted_heights[0] + sorted_heights[-1]) / 2
+    held = np.where(np.diff(sorted_heights) > _APART * skin.size, held, np.inf)  # no plane within a level face
     good = np.flatnonzero(held <= held.min() + _LEVEL)
     chosen = good[int(np.argmin(np.abs(planes[good] - middle)))]
     return float(planes[chosen]), float(held[chosen])
@@ -82,7 +92,7 @@ def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
         count: directions tried on half of the sphere, before those about the best of them.
     """
     skin = skin_of(solid)
-    tried = np.vstack([_own_axes(skin), np.eye(3), half_sphere(count)])
+    tried = np.vstack([_own_axes(skin), np.eye(3), _flat_directions(skin), half_sphere(count)])
     shares, costs = _rated(skin, tried)
     leaders = tried[np.argsort(costs, kind="stable")[:_BEST]]
     for angle in np.radians(_RINGS):
@@ -116,6 +126,21 @@ def _own_axes(skin: Skin) -> Float[np.ndarray, "3 3"]:
     """Main axes of the surface: those of a box, a cylinder, a hand."""
     places = skin.middles - np.average(skin.middles, axis=0, weights=skin.areas)
     return np.linalg.eigh(places.T @ (places * skin.areas[:, None]))[1].T
+
+
+def _flat_directions(skin: Skin) -> Float[np.ndarray, "tried 3"]:
+    """Normals of the largest flat faces, and the directions along each two of them."""
+    signs = np.where(skin.normals[np.arange(len(skin.normals)), np.abs(skin.normals).argmax(axis=1)] < 0, -1.0, 1.0)
+    normals = signs[:, None] * skin.normals
+    groups = np.unique((50 * normals).round(), axis=0, return_inverse=True)[1].reshape(-1)
+    areas = np.bincount(groups, weights=skin.areas)
+    largest = np.argsort(-areas, kind="stable")[:_FLATS]
+    flats = [np.average(normals[groups == group], axis=0, weights=skin.areas[groups == group]) for group in largest]
+    kept = [flat for flat, group in zip(flats, largest, strict=True) if areas[group] > _FLAT_SHARE * areas.sum()]
+    found = [*kept, *(np.cross(one, other) for one, other in combinations(kept, 2))]
+    lengths = [float(np.linalg.norm(direction)) for direction in found]
+    along = [direction / length for direction, length in zip(found, lengths, strict=True) if length > _CROSSED]
+    return np.array(along).reshape(-1, 3)
 
 
 def _ring(direction: Float[np.ndarray, "3"], angle: float) -> Float[np.ndarray, "around 3"]:

@@ -72,12 +72,18 @@ def split(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...])
         normal = (1.0, 0.0, 0.0) if axis == 0 else (0.0, 1.0, 0.0)
         for place in places:
             pieces = [part for piece in pieces for part in piece.split_by_plane(normal, place)]
-    parts = [part for piece in pieces for part in piece.decompose() if _printable(part)]
+    parts = [part for piece in pieces for part in _bodies(piece) if _printable(part)]
     return Pieces(
         solids=tuple(sorted(parts, key=_corner)),
         dowels=len(dowels),
         lost=float(solid.volume() - sum(part.volume() for part in parts)),
     )
+
+
+def _bodies(piece: Manifold) -> list[Manifold]:
+    """What of a piece hangs together; one with a closed room in it stays as it is."""
+    shells = piece.decompose()
+    return shells if all(shell.volume() > 0 for shell in shells) else [piece]
 
 
 def _printable(part: Manifold) -> bool:
