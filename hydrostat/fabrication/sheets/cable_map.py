@@ -10,6 +10,7 @@ from jaxtyping import Float
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.canvas import (
     MIDDLE,
+    PIXELS,
     THICK,
     THIN,
     Box,
@@ -93,7 +94,8 @@ def space_map(robot: Robot, *, width: float, height: float, views: Sequence[View
     """A body in space, side by side as it is seen from one or several places; dashed is what lies in its far half."""
     canvas = Canvas(width, height)
     piece = body_piece(robot)
-    drawings = [line_drawing([piece], view, soft=_SOFT) for view in views]
+    pixels = round(PIXELS * max(width / len(views), height))
+    drawings = [line_drawing([piece], view, soft=_SOFT, pixels=pixels) for view in views]
     shares = np.array([float(np.ptp(drawing.box[:, 0])) for drawing in drawings])
     walls = np.r_[0.0, np.cumsum(shares) / shares.sum()] * (width - 2 * _MARGIN * len(views))
     for index, drawing in enumerate(drawings):

@@ -22,6 +22,9 @@ THICK, MIDDLE, THIN = 0.5, 0.32, 0.18
 POINT = 25.4 / 72
 """Millimetres of a typographic point."""
 
+PIXELS = 10
+"""For each millimetre of paper, to know what is hidden: a tenth of a millimetre is less than a line."""
+
 FONT = "Libertinus Serif"
 """Comes with typst, so that a sheet is the same on every machine."""
 

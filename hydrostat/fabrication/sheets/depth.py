@@ -11,9 +11,6 @@ from scipy.ndimage import minimum_filter
 
 from hydrostat.kernel import KERNEL
 
-_PIXELS = 1400
-"""Along the longer side of a picture: a tenth of a millimetre on the widest of them."""
-
 _RIM = 4
 """Pixels of nothing round the picture."""
 
@@ -42,9 +39,15 @@ class DepthBuffer:
         corners: Float[np.ndarray, "triangles 3 3"],
         lights: Float[np.ndarray, "triangles 3"],
         *,
-        pixels: int = _PIXELS,
+        pixels: int,
     ) -> Self:
-        """The buffer of triangles as they are seen [mm], with the light at each corner."""
+        """The buffer of triangles as they are seen [mm], with the light at each corner.
+
+        Args:
+            corners: of the triangles.
+            lights: at them.
+            pixels: along the longer side.
+        """
         low, high = corners[:, :, :2].min(axis=(0, 1)), corners[:, :, :2].max(axis=(0, 1))
         pixel = max(float((high - low).max()) / pixels, 1e-9)
         low = low - _RIM * pixel

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hydrostat.fabrication.sheets.canvas import THIN, Box, Canvas, Frame, Spot, balloon_radius, snug
+from hydrostat.fabrication.sheets.canvas import PIXELS, THIN, Box, Canvas, Frame, Spot, balloon_radius, snug
 from hydrostat.fabrication.sheets.line_art import LineDrawing, Piece, line_drawing
 from hydrostat.fabrication.sheets.view import View
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
@@ -26,7 +26,7 @@ def exploded_picture(
         view: from where; isometric if left out.
     """
     pieces = [Piece.of(placed.solid, shift=placed.pulled) for placed in assembly.pieces]
-    drawing = line_drawing(pieces, view or View.isometric())
+    drawing = line_drawing(pieces, view or View.isometric(), pixels=round(PIXELS * max(width, height)))
     side = _SIDE if numbers else 0.6
     height = snug(drawing.box, width - 2 * side, height - 1.2) + 1.2
     canvas = Canvas(width, height)

@@ -11,6 +11,9 @@ from hydrostat.fabrication.sheets.canvas import Box, Spot
 _WAYS = [(np.cos(turn), np.sin(turn)) for turn in np.radians(np.arange(0, 360, 30))]
 """Directions that are tried, to the right first."""
 
+_RINGS = (0.0, 1.5, 3.5, 6.0)
+"""How much further off than asked for a label may be, each tried in turn [mm]."""
+
 _STEP = 0.5
 """Between points that stand for a line [mm]."""
 
@@ -48,8 +51,8 @@ class LabelPlaces:
             most: points of lines that may be covered.
         """
         best, least = None, float("inf")
-        points = np.concatenate(self._points) if self._points else np.zeros((0, 2))
-        for ring, further in enumerate((0.0, 1.5, 3.5, 6.0)):
+        points = self._points_about(at, gap + _RINGS[-1] + max(size))
+        for ring, further in enumerate(_RINGS):
             for turn, (x, y) in enumerate(_WAYS):
                 reach = gap + further
                 middle = (at[0] + x * (reach + size[0] / 2), at[1] + y * (reach + size[1] / 2))
@@ -63,6 +66,13 @@ class LabelPlaces:
         if best is not None:
             self.take_box(_round(best, size, 0.15))
         return best
+
+    def _points_about(self, at: Spot, reach: float) -> np.ndarray:
+        """The points of lines that a label near a spot could cover."""
+        if len(self._points) > 1:
+            self._points = [np.concatenate(self._points)]
+        points = self._points[0] if self._points else np.zeros((0, 2))
+        return points[_within(points, (at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach))]
 
     def _free(self, box: Box) -> bool:
         left, top, right, bottom = self.room

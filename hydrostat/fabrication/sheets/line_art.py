@@ -104,18 +104,19 @@ class LineDrawing:
         return _rings(gaussian_filter(mask.astype(float), 1.0), 0.5, self.buffer)
 
 
-def line_drawing(pieces: Sequence[Piece], view: View, *, soft: float = 0.0) -> LineDrawing:
+def line_drawing(pieces: Sequence[Piece], view: View, *, soft: float = 0.0, pixels: int = 1400) -> LineDrawing:
     """Draw solids as they are seen, each edge and rim only as far as nothing hides it.
 
     Args:
         pieces: what is drawn.
         view: from where.
         soft: over what share of the picture the light is blurred, for a body with dents.
+        pixels: along the longer side, to which it is known what is hidden; ten for a millimetre of paper are enough.
     """
     facets = [Facets.of(piece.vertices, piece.triangles, sharp=piece.sharp) for piece in pieces]
     spots = np.concatenate([view.see(item.vertices)[item.triangles] for item in facets])
     lights = np.concatenate([item.corners @ (view.axes.T @ _LAMP) for item in facets])
-    buffer = DepthBuffer.of(spots, lights)
+    buffer = DepthBuffer.of(spots, lights, pixels=pixels)
     segments = np.concatenate([part for item in facets for part in (item.sharp_edges(), item.rims(view.axes[2]))])
     seen = view.see(segments.reshape(-1, 3)).reshape(-1, 2, 3)
     outlines, lines = _visible(seen, buffer)
@@ -171,8 +172,8 @@ def _tones(buffer: DepthBuffer, soft: float) -> tuple[tuple[float, tuple[Way, ..
     dark = 1.0 - buffer.light
     if soft:
         solid, reach = np.isfinite(buffer.depth), soft * max(buffer.depth.shape)
-        weight = np.maximum(gaussian_filter(solid.astype(float), reach), 1e-9)
-        dark = np.where(solid, gaussian_filter(np.where(solid, dark, 0.0), reach) / weight, 0.0)
+        weight = np.maximum(gaussian_filter(solid.astype(float), reach, truncate=2.5), 1e-9)
+        dark = np.where(solid, gaussian_filter(np.where(solid, dark, 0.0), reach, truncate=2.5) / weight, 0.0)
     return tuple((grey, _rings(dark, 1.0 - light, buffer)) for light, grey in _SHADES)
 
 

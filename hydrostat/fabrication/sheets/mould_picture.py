@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 from jaxtyping import Bool, Float, Int
 
-from hydrostat.fabrication.sheets.canvas import MIDDLE, THIN, Canvas, Frame, snug
+from hydrostat.fabrication.sheets.canvas import MIDDLE, PIXELS, THIN, Canvas, Frame, snug
 from hydrostat.fabrication.sheets.line_art import Piece, line_drawing
 from hydrostat.fabrication.sheets.view import View
 
@@ -26,7 +26,7 @@ def undercut_picture(
 ) -> Canvas:
     """The body with the pull upright, hatched where it holds in its half; seen from where most of that is in sight."""
     piece = Piece(vertices=vertices, triangles=triangles, sharp=70.0)
-    drawing = line_drawing([piece], _view(piece, held, pull), soft=0.008)
+    drawing = line_drawing([piece], _view(piece, held, pull), soft=0.008, pixels=round(PIXELS * max(width, height)))
     height = snug(drawing.box, width - 1.2, height - 9.6) + 9.6
     canvas = Canvas(width, height)
     frame = Frame.fit(drawing.box, (0.6, 9.0, width - 0.6, height - 0.6))

@@ -6,7 +6,7 @@ import shapely
 from scipy.ndimage import distance_transform_edt, gaussian_filter
 
 from hydrostat.fabrication.sheets.cable_map import body_piece, flat_rings
-from hydrostat.fabrication.sheets.canvas import MIDDLE, THIN, Canvas, Frame
+from hydrostat.fabrication.sheets.canvas import MIDDLE, PIXELS, THIN, Canvas, Frame
 from hydrostat.fabrication.sheets.line_art import line_drawing
 from hydrostat.fabrication.sheets.view import View
 from hydrostat.robot import Robot
@@ -23,7 +23,7 @@ def portrait(robot: Robot, view: View | None, *, width: float, height: float) ->
     canvas = Canvas(width, height)
     room = (0.6, 0.6, width - 0.6, height - 0.6)
     if view is not None:
-        drawing = line_drawing([body_piece(robot)], view, soft=0.01)
+        drawing = line_drawing([body_piece(robot)], view, soft=0.01, pixels=round(PIXELS * max(width, height)))
         canvas.drawing(drawing, Frame.fit(drawing.box, room))
         return canvas
     rings = [1e3 * ring for ring in flat_rings(robot)]

@@ -1,0 +1,199 @@
+"""Small inputs of sheets: a square of plush, a box of foam, parts of a few shapes, lists of a few rows."""
+
+from typing import Any
+
+import numpy as np
+from builders import box_mesh, mesh_body
+from plush_robots import SQUARE, drawn_body
+
+from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.moulds.casting import make_casting
+from hydrostat.fabrication.moulds.mould import Mould, MouldSurface
+from hydrostat.fabrication.moulds.mould_options import MouldKind
+from hydrostat.fabrication.patterns.stitches import cable_stitches
+from hydrostat.fabrication.self_check import Check
+from hydrostat.fabrication.sheets.cable_map import body_piece
+from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
+from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot import MATERIALS, Body, Cable, Mount, Pin, Robot, Winch
+
+
+def winch() -> Assembly:
+    """A motor, a spool and a housing on one axis."""
+    spool = Cylinder(2, 9) + Cylinder(12, 6) + Cylinder(2, 9).moved(0, 0, 10) - Cylinder(12, 1.5)
+    housing = Box((24, 24, 17)).moved(-12, -12, 0) - Cylinder(14, 10).moved(0, 0, 3) - Cylinder(30, 2.2)
+    motor = Box((12, 10, 25)).moved(-6, -5, -25) + Cylinder(12, 1.5)
+    return Assembly(
+        name="winch",
+        pieces=(
+            Placed(name="motor", title="Geared motor", solid=solid_of(motor), pulled=(0, 0, -22), printed=False),
+            Placed(name="housing", title="Housing", solid=solid_of(housing)),
+            Placed(name="spool", title="Spool", solid=solid_of(spool.moved(0, 0, 4)), pulled=(0, 0, 26)),
+        ),
+    )
+
+
+def stopper() -> Assembly:
+    """Two blocks."""
+    block = solid_of(Box((10, 8, 3)))
+    return Assembly(
+        name="stopper",
+        pieces=(
+            Placed(name="stopper_base", title="Stopper base", solid=block),
+            Placed(name="stopper_lid", title="Stopper lid", solid=block.translate((0, 0, 3)), pulled=(0, 0, 9)),
+        ),
+    )
+
+
+def printed(winches: int, cables: int) -> tuple[Printed, ...]:
+    """The printed pieces of both."""
+    pieces = [(placed, winches) for placed in winch().pieces] + [(placed, cables) for placed in stopper().pieces]
+    return tuple(
+        Printed(name=placed.name, title=placed.title, solid=placed.solid, count=count)
+        for placed, count in pieces
+        if placed.printed
+    )
+
+
+def tables(cables: int, bill: int = 8) -> dict[str, Table]:
+    """Lists as the room of lists names their columns."""
+    words = [Column(title=title, align=Align.LEFT) for title in ("cable", "winch", "from", "to")]
+    lengths = [Column(title=title, unit="mm") for title in ("cut to", "stopper from exit", "slack")]
+    bought = (Column(title="what", align=Align.LEFT), Column(title="quantity"), Column(title="unit", align=Align.LEFT))
+    return {
+        "cable_cuts": Table(
+            name="cable_cuts",
+            title="Cables",
+            columns=(*words[:2], *lengths),
+            rows=tuple((f"C{number}", "pull", 400.0 + number, 121.5, 0.0) for number in range(1, cables + 1)),
+        ),
+        "sheath_cuts": Table(
+            name="sheath_cuts",
+            title="Sheaths",
+            columns=(*words, lengths[0]),
+            rows=tuple((f"C{number}", "pull", "1 (winch)", "2", 23.25) for number in range(1, cables + 1)),
+        ),
+        "bill_of_materials": Table(
+            name="bill_of_materials",
+            title="Bill of materials",
+            columns=(*bought, Column(title="cost", unit="USD", decimals=2)),
+            rows=tuple((f"thing number {number}", 0.25 * number, "m", 3.0) for number in range(1, bill + 1)),
+        ),
+    }
+
+
+def checks(count: int, *, failed: int = 0) -> tuple[Check, ...]:
+    """Claims, of which the last fail."""
+    return tuple(
+        Check(what=f"claim {number}", measured="0.004 mm", allowed="0.1 mm", passed=number < count - failed)
+        for number in range(count)
+    )
+
+
+def plush(*, name: str = "Sam", winches: int = 1, cables: int = 2, **more: Any) -> SheetInput:
+    """A square of plush with cables side by side."""
+    body = drawn_body(SQUARE)
+    routes = [
+        tuple((1e-3 * x, 1e-3 * y) for x, y in ((at, -30.0), (at, -10.0), (at, 10.0), (at, 30.0)))
+        for at in np.linspace(-40, 40, cables).tolist()
+    ]
+    robot = _robot(name, body, routes, winches, Mount.BODY)
+    seam = body.outline.polygon if body.outline is not None else None
+    assert seam is not None
+    known = _known(robot, Method.PLUSH) | {"stitches": cable_stitches(robot, _millimetres(seam))}
+    return SheetInput(**(known | more))
+
+
+def foam(*, name: str = "Sam", winches: int = 2, cables: int = 2, silicone: bool = False, **more: Any) -> SheetInput:
+    """A box of foam with cables side by side, their winches below it."""
+    mesh = box_mesh((5, 4, 3), size=(0.1, 0.08, 0.06))
+    body = mesh_body(Mesh(mesh.nodes - 0.04, mesh.elements), material=MATERIALS["flexfoam-it x"])
+    routes = [
+        ((at, -0.08, 0.0), (at, -0.03, 0.0), (at, 0.0, 0.01), (at, 0.03, 0.0))
+        for at in np.linspace(-0.03, 0.05, cables).tolist()
+    ]
+    robot = _robot(name, body, routes, winches, Mount.WORLD)
+    known = _known(robot, Method.FOAM) | {"mould": mould(robot, silicone=silicone)}
+    return SheetInput(**(known | more))
+
+
+def mould(robot: Robot, *, silicone: bool = False) -> Mould:
+    """Two halves of a box, parted along z; what looks down along y is said to hold."""
+    piece = body_piece(robot)
+    one, two, three = (piece.vertices[corner] for corner in piece.triangles.T)
+    held = np.cross(two - one, three - one)[:, 1] < 0
+    half = Box((120, 100, 40)) - Box((100, 80, 30)).moved(10, 10, 10)
+    casting, _ = make_casting(robot.body.material, 480e3, pours=(400e3, 300e3) if silicone else ())
+    pieces = (
+        Placed(name="mould_lower", title="lower half", solid=solid_of(half), pulled=(0, 0, -40)),
+        Placed(name="mould_upper", title="upper half", solid=solid_of(half.turned(x=180).moved(0, 100, 80))),
+    )
+    return Mould(
+        kind=MouldKind.SILICONE if silicone else MouldKind.PRINTED,
+        pull=np.array([0.0, 0.0, 1.0]),
+        up=np.array([0.0, 1.0, 0.0]),
+        height=0.0,
+        share=0.123,
+        directions=np.eye(3),
+        shares=np.zeros(3),
+        surface=MouldSurface(vertices=piece.vertices, triangles=piece.triangles, undercut=held),
+        printed=(),
+        assembly=Assembly(name="mould", pieces=pieces),
+        volumes={},
+        box=(120.0, 100.0, 80.0),
+        bolts=0 if silicone else 6,
+        dowels=0,
+        vents=2,
+        stands="It stands on its edge, the funnel on top.",
+        casting=casting,
+        problems=(),
+        warnings=(),
+    )
+
+
+def _robot(name: str, body: Body, routes: list[Any], winches: int, mount: Mount) -> Robot:
+    """Cables shared among winches in turn; each winch is where its first cable begins."""
+    names = [f"pull {number}" for number in range(1, winches + 1)]
+    if mount is Mount.WORLD:
+        routes = [(routes[index % winches][0], *route[1:]) for index, route in enumerate(routes)]
+        return _made(name, body, routes, names, mount, {})
+    return _made(name, body, routes, names, mount, {"spool_radius": 0.05})
+
+
+def _made(name: str, body: Body, routes: list[Any], names: list[str], mount: Mount, winch: dict[str, float]) -> Robot:
+    count = len(names)
+    return Robot(
+        name=name,
+        body=body,
+        pins=(Pin(at=(0.0,) * body.mesh.dim, radius=1.0),),
+        winches=tuple(Winch(name=own, at=routes[index][0], mount=mount, **winch) for index, own in enumerate(names)),
+        cables=tuple(
+            Cable(winch=names[index % count], points=route, sheathed=((0, 1),)) for index, route in enumerate(routes)
+        ),
+        poses={},
+    )
+
+
+def _known(robot: Robot, method: Method) -> dict[str, Any]:
+    winches, cables = len(robot.winches), len(robot.cables)
+    return {
+        "robot": robot,
+        "method": method,
+        "paper": Paper.A4,
+        "motor": "Geared motor, 6 V",
+        "winch": winch(),
+        "stopper": stopper(),
+        "printed": printed(winches, cables),
+        "tables": tables(cables),
+        "checks": checks(6),
+    }
+
+
+def _millimetres(polygon: Any) -> Any:
+    from shapely.affinity import scale
+
+    return scale(polygon, 1e3, 1e3, origin=(0, 0))
