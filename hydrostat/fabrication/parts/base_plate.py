@@ -18,7 +18,7 @@ from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, 
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 
-_LEG = 10.0
+_LEG = 12.0
 _BELOW = 10.0
 """Width of a leg; room below the motors for their wires [mm]."""
 
@@ -81,7 +81,7 @@ def base_plate(
         title="Leg of the base",
         solid=solid_of(leg),
         count=len(plan.bolts),
-        note="Standing, no support; holes for screws M3 at both ends.",
+        note="Standing, with a brim, no support; holes for screws M3 at both ends.",
         model=leg,
     )
     used = {holder.name: sum(mine is holder for mine in holders) for holder in holders}

@@ -69,6 +69,11 @@ def drive_of(motor: Motor, options: PartOptions) -> Drive:
     return Drive(floor=floor, plate=plate, disc=disc, start=start, tip=start + STUB)
 
 
+def roof_of(options: PartOptions) -> float:
+    """Thickness of the roof of a housing [mm]."""
+    return max(options.wall, _ROOF)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Housing:
     """A plate and a box round a spool; lengths in millimetres, z above the face of the motor.
@@ -95,7 +100,7 @@ class Housing:
     @property
     def roof(self) -> float:
         """Its thickness [mm]."""
-        return max(self.options.wall, _ROOF)
+        return roof_of(self.options)
 
     @property
     def under_roof(self) -> float:

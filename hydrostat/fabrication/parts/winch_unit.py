@@ -1,29 +1,22 @@
 """`WinchUnit`: motor, spool and housing of one winch, as parts to print, an assembly, and what to mind."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.parts.housing import Housing, drive_of
+from hydrostat.fabrication.parts.housing import Housing
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.part_options import PartOptions
-from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, width_for, wraps
+from hydrostat.fabrication.parts.spool import Spool
+from hydrostat.fabrication.parts.spool_for import spool_for
 from hydrostat.fabrication.parts.winch_parts import WinchParts
 from hydrostat.fabrication.solids.assembly import Assembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot, Winch
-
-_LONGEST = 20.0
-"""A spool is no longer than this where several layers can avoid it [mm]: its far end is held by a thin roof."""
-
-_MOST_LAYERS = 6
-
-_INSIDE = 1.2
-"""The least of a shaft in a spool over its diameter: less, and a flat of plastic wears round."""
 
 _SLOW = 10.0
 """A winch that takes longer for its full travel is called slow [s]."""
@@ -139,7 +132,7 @@ def _unit(
     motor: Motor,
     parts: WinchParts,
 ) -> WinchUnit:
-    spool, problems, warnings = _spool(robot, winch, cables, options, motor)
+    spool, problems, warnings = spool_for(robot, winch, cables, options, motor)
     outside = winch.mount is Mount.WORLD
     thickness = 1e3 * robot.body.thickness if robot.body.thickness is not None else None
     housing = Housing(motor=motor, spool=spool, azimuths=(90,) * len(cables), outside=outside, options=options)
@@ -174,75 +167,6 @@ def _checked_thickness(unit: WinchUnit, thickness: float) -> WinchUnit:
         "take a smaller motor or spool, or a thicker body"
     )
     return replace(unit, warnings=(*unit.warnings, text))
-
-
-def _spool(
-    robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor
-) -> tuple[Spool, tuple[str, ...], tuple[str, ...]]:
-    problems, warnings = [], []
-    drive = drive_of(motor, options)
-    diameter = motor.shaft.diameter
-    if drive.inside < _INSIDE * diameter:
-        problems.append(
-            f'winch "{winch.name}": only {max(drive.inside, 0):.1f} mm of the shaft of {motor.title} would be in the '
-            f"spool, {_INSIDE * diameter:.1f} mm are needed: take thinner walls or another motor"
-        )
-    least = diameter / 2 + options.fit + options.wall + options.cable / 2
-    radii = []
-    for index in cables:
-        radius = 1e3 * (robot.cables[index].spool_radius or winch.spool_radius)
-        if radius < least - 1e-9:
-            problems.append(
-                f'winch "{winch.name}": spool radius {radius:.2f} mm of cable C{index + 1} is too small for the shaft '
-                f"of {motor.title} in a wall of {options.wall:g} mm: at least {least:.2f} mm"
-            )
-        radii.append(max(radius, least))
-    turns = wraps(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
-    spool, fits = _wound(radii, turns, drive.inside, options, motor)
-    if not fits:
-        problems.append(
-            f'winch "{winch.name}": {turns:.1f} turns of cable do not fit on a spool of {_LONGEST:g} mm in '
-            f"{_MOST_LAYERS} layers: take a larger spool radius or less travel"
-        )
-    for index, groove in zip(cables, spool.grooves, strict=True):
-        if groove.layers > 1:
-            outer = groove.radius + (groove.layers - 1) * options.cable
-            warnings.append(
-                f'cable C{index + 1} of winch "{winch.name}" lies in {groove.layers} layers: its radius grows from '
-                f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns take in "
-                f"{100 * (outer / groove.radius - 1):.0f} % more than was simulated (E13)"
-            )
-    return spool, tuple(problems), tuple(warnings)
-
-
-def _wound(
-    radii: Sequence[float], turns: float, inside: float, options: PartOptions, motor: Motor
-) -> tuple[Spool, bool]:
-    """The spool with the fewest layers that is short enough, and whether there is one."""
-    journal = options.clearance + max(options.wall, 2.0) - 0.2
-    spool = None
-    for layers in range(1, _MOST_LAYERS + 1):
-        grooves = tuple(_groove(radius, turns, layers, options.cable) for radius in radii)
-        spool = Spool(
-            grooves=grooves,
-            cable=options.cable,
-            shaft=motor.shaft,
-            inside=max(inside, 0.5),
-            play=options.fit,
-            wall=options.wall,
-            journal=journal,
-        )
-        if spool.body <= _LONGEST:
-            return spool, True
-    assert spool is not None
-    return spool, False
-
-
-def _groove(radius: float, turns: float, layers: int, cable: float) -> Groove:
-    """The narrowest that takes so many turns of the first layer's length in these layers."""
-    length = turns * 2 * math.pi * radius
-    one_turn = capacity(cable * 2.25, radius, cable, layers)
-    return Groove(radius=radius, width=width_for(length / one_turn, cable), layers=layers)
 
 
 def _azimuths(robot: Robot, cables: tuple[int, ...], *, across: bool, outside: bool) -> tuple[int, ...]:
