@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from hydrostat.design import Constraints, Network, RouteOptions, TreeOptions, Zone, design_cables
     from hydrostat.errors import HydrostatError, InputError, NotConvergedError
-    from hydrostat.fabrication import PatternOptions, export_kit
+    from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, build_kit, export_kit
     from hydrostat.ik import (
         CentreGoal,
         Closeness,
@@ -66,6 +66,8 @@ __all__ = [
     "InverseOptions",
     "InverseReason",
     "Keyframe",
+    "Kit",
+    "KitOptions",
     "Limits",
     "Marker",
     "MarkerGoal",
@@ -94,9 +96,11 @@ __all__ = [
     "Trajectory",
     "TrajectoryOptions",
     "TreeOptions",
+    "UnbuildableError",
     "Winch",
     "Zone",
     "__version__",
+    "build_kit",
     "design_cables",
     "drawn_pose",
     "export_kit",
@@ -120,6 +124,8 @@ _HOMES = {
     "InverseOptions": "ik",
     "InverseReason": "ik",
     "Keyframe": "ik",
+    "Kit": "fabrication",
+    "KitOptions": "fabrication",
     "Limits": "ik",
     "Marker": "robot",
     "MarkerGoal": "ik",
@@ -148,8 +154,10 @@ _HOMES = {
     "Trajectory": "ik",
     "TrajectoryOptions": "ik",
     "TreeOptions": "design",
+    "UnbuildableError": "fabrication",
     "Winch": "robot",
     "Zone": "design",
+    "build_kit": "fabrication",
     "design_cables": "design",
     "drawn_pose": "ik",
     "export_kit": "fabrication",

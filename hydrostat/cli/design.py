@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.design_results import STALE, forget_kit, print_front, print_poses, write_kit, write_results
+from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import AUTO, Limits, wanted_constraints, wanted_options, winch_count
+from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.one_interrupt import one_interrupt
 from hydrostat.cli.prepare import read_robot
 from hydrostat.cli.result_folder import result_folder
-from hydrostat.errors import InputError
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.design import Network
-    from hydrostat.robot import Robot
 
 
 def design(
@@ -73,7 +72,7 @@ def design(
     fibres: Annotated[
         str | None, typer.Option(metavar="edges|elements", help="Muscles of trees; on mesh edges if left out.")
     ] = None,
-    kit: Annotated[bool, typer.Option("--kit", help="Also write the laser pattern.")] = False,
+    kit: Annotated[bool, typer.Option("--kit", help="Also write the fabrication kit.")] = False,
 ) -> None:
     """Find winches and cables that reach a robot's poses.
 
@@ -86,6 +85,7 @@ def design(
     """
     from hydrostat.cli.progress import progress_bar
     from hydrostat.design import design_cables
+    from hydrostat.fabrication.kit_folder import forget_files
 
     require_folder(out)
     count = winch_count(winches)
@@ -101,8 +101,6 @@ def design(
     )
     began = time.perf_counter()
     source = read_robot(robot)
-    if kit and source.body.mesh.dim != 2:
-        raise InputError("--kit: patterns are for flat bodies, this body lies in space; leave the option out")
     options = wanted_options(method, winches=count, improve=improve, tolerance=tolerance, seed=seed, fibres=fibres)
     asked: dict[str, Any] = {"winches": count, "cables": cables, "method": method, "options": options}
     asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
@@ -117,8 +115,8 @@ def design(
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE) as folder:
             write_results(network, folder)
-        forget_kit(out / "pattern")
-        warnings = write_kit(network.robot, out / "pattern") if kit else ()
+        forget_files(out / "kit")
+        made = write_kit(network.robot, out / "kit") if kit else None
         progress("Writing results", 1, 1)
     print_poses(network, time.perf_counter() - began)
     found = len(network.robot.winches), len(network.robot.cables)
@@ -127,22 +125,22 @@ def design(
         print(f"{asked_for}: more would not help, or could not be built")
     if count == AUTO:
         print_front(network)
-    for warning in warnings:
-        print(f"warning: {warning}")
-    _tell_next(network, source, out, kit=kit)
+    if made is not None:
+        print_kit(made)
+    _tell_next(network, out, kit=kit)
     if not network.complete:
         print("stopped early: the best network so far")
         raise typer.Exit(130)
 
 
-def _tell_next(network: "Network", source: "Robot", out: Path, *, kit: bool) -> None:
+def _tell_next(network: "Network", out: Path, *, kit: bool) -> None:
     """Where things are."""
     if network.alternatives:
         print(f"Alternatives: {out / 'alternatives'}")
     if kit:
-        print(f"Laser pattern: {out / 'pattern' / 'pattern.svg'} and pattern.dxf")
-    elif source.body.mesh.dim == 2:
-        print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))} --out {quote(str(out / 'pattern'))}")
+        print(f"To build it, begin with {out / 'kit' / 'assembly_sheet.pdf'}")
+    else:
+        print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))} --out {quote(str(out / 'kit'))}")
     limit = f"{network.constraints.tension_limit:g}N"
     print(f"Its poses keep to {limit}: hydrostat pose {quote(str(out / 'robot'))} --tension {limit} --out DIR")
     print(f"Open {out / 'report.html'}")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hydrostat.design import Constraints, Network
+    from hydrostat.fabrication import Kit
     from hydrostat.ik import ReachedPose
     from hydrostat.robot import Robot
 
@@ -30,20 +31,11 @@ def write_results(network: "Network", folder: Path) -> None:
     write_report(network, folder / "report.html", facts=_facts(network))
 
 
-def forget_kit(folder: Path) -> None:
-    """No pattern of an earlier design must lie beside a new one."""
-    for name in ("pattern.svg", "pattern.dxf"):
-        (folder / name).unlink(missing_ok=True)
+def write_kit(robot: "Robot", folder: Path) -> "Kit":
+    """The fabrication kit, in which what cannot be built well is told."""
+    from hydrostat.fabrication import KitOptions, export_kit
 
-
-def write_kit(robot: "Robot", folder: Path) -> tuple[str, ...]:
-    """The laser pattern; returns what cannot be cut well, and what to mind."""
-    from hydrostat.fabrication import PatternOptions, export_kit, plush_pattern
-
-    options = PatternOptions(force=True)
-    export_kit(robot, folder, options=options)
-    pattern = plush_pattern(robot, options=options)
-    return (*pattern.problems, *pattern.warnings)
+    return export_kit(robot, folder, options=KitOptions(force=True))
 
 
 def print_poses(network: "Network", seconds: float) -> None:

@@ -1,32 +1,126 @@
 """`hydrostat fabricate`."""
 
-from typing import Annotated
+import re
+import time
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.prepare import read_robot
+from hydrostat.cli.progress import progress_bar
+from hydrostat.cli.quantities import positive
+from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.fabrication import Kit, KitOptions
 
 
 def fabricate(
     robot: RobotFolder,
     out: OutFolder,
-    force: Annotated[bool, typer.Option(help="Write the pattern even if it cannot be built well.")] = False,
+    method: Annotated[
+        str | None,
+        typer.Option(metavar="plush|foam", help="Plush for a flat body, foam for one in space, if left out."),
+    ] = None,
+    motor: Annotated[
+        str, typer.Option(metavar="NAME", help="n20, xl330, 25d; auto takes the first that is strong enough.")
+    ] = "auto",
+    mould: Annotated[
+        str, typer.Option(metavar="printed|silicone", help="Of foam: what the mould is made of.")
+    ] = "printed",
+    bed: Annotated[
+        str, typer.Option(metavar="LENGTHS", help="The most that your 3D printer takes, along x, y and z.")
+    ] = "220 x 220 x 250 mm",
+    paper: Annotated[str, typer.Option(metavar="a4|letter", help="What the pages are printed on.")] = "a4",
+    step: Annotated[
+        bool, typer.Option("--step", help='Also write printed parts as STEP; needs pip install "hydrostat[cad]".')
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write the kit even if it cannot be built well; the sheet says why.")
+    ] = False,
 ) -> None:
-    """Write the laser pattern of a flat robot.
+    """Write all that is needed to build a robot.
 
-    Writes pattern.svg and pattern.dxf, in mm, true to scale.
+    Begin with assembly_sheet.pdf. pattern/ is for the laser cutter, or for a printer and scissors; parts/ and mould/
+    are for a 3D printer; lists/ tells what to buy and how long to cut cables; manifest.json is what all is made from.
 
     Example: hydrostat fabricate examples/starfish --out build/kit
     """
-    from hydrostat.fabrication import PatternOptions, export_kit, plush_pattern
+    from hydrostat.fabrication import UnbuildableError, build_kit
+    from hydrostat.units import counted
 
     require_folder(out)
+    options = wanted_kit(method=method, motor=motor, mould=mould, bed=bed, paper=paper, step=step, force=force)
+    began = time.perf_counter()
     loaded = read_robot(robot)
-    options = PatternOptions(force=force)
-    pattern = plush_pattern(loaded, options=options)
-    for warning in pattern.warnings:
+    try:
+        with progress_bar() as progress:
+            kit = build_kit(loaded, options=options, progress=progress)
+    except UnbuildableError as error:
+        for reason in error.reasons:
+            print(f"cannot be built: {reason}")
+        count = counted(len(error.reasons), "reason")
+        raise InputError(
+            f"{robot}: cannot be built well, for {count}; mend it, or write it anyway with --force"
+        ) from None
+    kit.write(out)
+    print_kit(kit)
+    print(
+        f"Wrote {len(kit.files)} files in {time.perf_counter() - began:.1f} s; begin with {out / 'assembly_sheet.pdf'}"
+    )
+
+
+def wanted_kit(
+    *, method: str | None, motor: str, mould: str, bed: str, paper: str, step: bool, force: bool
+) -> "KitOptions":
+    """Options of a kit as they are given on the command line.
+
+    Raises:
+        InputError: a word or a length that is not allowed.
+    """
+    from hydrostat.fabrication import KitOptions, Method, MouldKind, MouldOptions, Paper
+
+    return KitOptions(
+        method=None if method is None else Method(_one_of("--method", method, [item.value for item in Method])),
+        motor=motor,
+        mould=MouldOptions(
+            kind=MouldKind(_one_of("--mould", mould, [item.value for item in MouldKind])), bed=_lengths("--bed", bed)
+        ),
+        paper=Paper(_one_of("--paper", paper, [item.value for item in Paper])),
+        step=step,
+        force=force,
+    )
+
+
+def print_kit(kit: "Kit") -> None:
+    """What is in a kit, what to mind, and whether it is true to the robot."""
+    for problem in kit.problems:
+        print(f"cannot be built well: {problem}")
+    for warning in kit.warnings:
         print(f"warning: {warning}")
-    files = export_kit(loaded, out, options=options)
-    print(f"Sheet of {pattern.width:.0f} x {pattern.height:.0f} mm: front and back panel, {len(loaded.cables)} cables")
-    print("Wrote " + ", ".join(str(file) for file in files))
+    for line in kit.summary:
+        print(line)
+    held = sum(check.passed for check in kit.checks)
+    print(f"Self-check: {held} of {len(kit.checks)} hold")
+    for check in kit.checks:
+        if not check.passed:
+            print(f"  does not hold: {check.what}: {check.measured} (allowed: {check.allowed})")
+
+
+def _one_of(option: str, text: str, allowed: list[str]) -> str:
+    if text not in allowed:
+        raise InputError(f"{option} {text}: must be {' or '.join(allowed)}")
+    return text
+
+
+def _lengths(option: str, text: str) -> tuple[float, float, float]:
+    """Three lengths such as "220 x 220 x 250 mm" [mm]."""
+    from hydrostat.units import LENGTH
+
+    match = re.fullmatch(r"\s*([\d.]+)\s*x\s*([\d.]+)\s*x\s*([\d.]+)\s*([^\W\d].*)", text)
+    if match is None:
+        raise InputError(f'{option} {text}: must be three lengths and their unit, such as "220 x 220 x 250 mm"')
+    *sides, unit = match.groups()
+    x, y, z = (1e3 * positive(option, f"{side} {unit}", LENGTH) for side in sides)
+    return x, y, z

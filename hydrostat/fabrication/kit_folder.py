@@ -40,6 +40,15 @@ def write_files(files: Mapping[str, bytes], folder: str | Path) -> list[Path]:
     return sorted(replace_file(folder / path, files[path]) for path in last)
 
 
+def forget_files(folder: str | Path) -> None:
+    """Remove a kit from a folder, but for what was changed or added since."""
+    folder = Path(folder)
+    for path in (*_written_before(folder), NAME):
+        _remove(folder / path, folder)
+    with suppress(OSError):
+        folder.rmdir()
+
+
 def _written_before(folder: Path) -> Iterator[str]:
     """Files of the kit whose manifest is in a folder, as far as they are unchanged."""
     try:

@@ -14,8 +14,8 @@ from hydrostat.robot import Robot, robot_hash
 NAME = "manifest.json"
 """Its file in a kit; written last, so that a kit without it is not whole."""
 
-_MAKERS = ("ezdxf", "manifold3d", "numpy", "shapely", "typst")
-"""Packages on which the bytes of a kit depend, beside hydrostat."""
+_MAKERS = ("hydrostat", "ezdxf", "manifold3d", "numpy", "shapely", "typst")
+"""Packages on which the bytes of a kit depend."""
 
 
 def manifest(
@@ -30,14 +30,12 @@ def manifest(
         checks: the self-check table.
         told: what else to keep, such as warnings and sizes.
     """
-    from hydrostat import __version__
-
     told = {
         "robot": {"name": robot.name, "sha256": robot_hash(robot)},
         **told,
         "options": asdict(options),
         "checks": [asdict(check) for check in checks],
-        "versions": {"hydrostat": __version__, **{name: version(name) for name in _MAKERS}},
+        "versions": {name: version(name) for name in _MAKERS},
         "files": {
             path: {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
             for path, content in sorted(files.items())

@@ -88,7 +88,7 @@ def test_pose_writes_one_pose_or_a_folder_for_each(run: Run, tmp_path: Path, sta
     assert {folder.name for folder in (tmp_path / "all").iterdir()} == set(robot.poses)
 
 
-def test_design_writes_robot_report_score_and_pattern(run: Run, tmp_path: Path, starfish: Path) -> None:
+def test_design_writes_robot_report_score_and_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
     arguments = (
         *("--pose", "wave", "--method", "trees", "--winches", 1, "--cables", 2, "--kit"),
         *("--out", tmp_path / "out"),
@@ -104,12 +104,7 @@ def test_design_writes_robot_report_score_and_pattern(run: Run, tmp_path: Path, 
     again = hs.solve_ik(hs.Simulation(robot), robot.poses["wave"])
     assert card["poses"]["wave"]["rms_error"] == pytest.approx(again.rms_error, rel=1e-6)
     assert card["rms_error"] < card["rms_error_at_rest"]
-    for file in ("report.html", "pattern/pattern.svg", "pattern/pattern.dxf"):
+    for file in ("report.html", "kit/pattern/pattern.svg", "kit/assembly_sheet.pdf"):
         assert (tmp_path / "out" / file).stat().st_size > 1000
-
-
-def test_fabricate_writes_the_pattern(run: Run, tmp_path: Path, starfish: Path) -> None:
-    code, out, _ = run("fabricate", starfish, "--out", tmp_path)
-    assert code == 0
-    assert "front and back panel" in out
-    assert {file.name for file in tmp_path.iterdir()} == {"pattern.svg", "pattern.dxf"}
+    told = json.loads((tmp_path / "out" / "kit" / "manifest.json").read_text())
+    assert told["robot"]["sha256"] == card["robot"]

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from builders import box_robot
-from plot.designs import plain_network, written
+from plot.designs import plain_network
 
 import hydrostat as hs
 from hydrostat.design import Alternative, Constraints, FibreKind, Network, RouteOptions, TreeOptions, Zone
@@ -246,14 +245,6 @@ def test_what_is_wrong_is_one_line(
     assert (code, out, errors) == (2, "", f"hydrostat: {BAD[options]}\n")
     assert search.asked == {}
     assert not (tmp_path / "out").exists()
-
-
-def test_a_pattern_of_a_body_in_space_is_refused_before_the_work(run: Run, search: Search, tmp_path: Path) -> None:
-    save_robot(written(box_robot()), tmp_path / "box")
-    code, _, errors = run("design", tmp_path / "box", "--kit", "--out", tmp_path / "out")
-    assert code == 2
-    assert errors == "hydrostat: --kit: patterns are for flat bodies, this body lies in space; leave the option out\n"
-    assert search.asked == {}
 
 
 def test_help_shows_an_example(run: Run) -> None:

@@ -11,7 +11,7 @@ import pytest
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from read_back import Seen, see_dxf, see_svg
 
-from hydrostat.fabrication import Part, Pattern, export_kit, pattern_dxf, pattern_svg, plush_pattern
+from hydrostat.fabrication import Part, Pattern, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.robot import Robot
 
 READERS = [(pattern_svg, see_svg), (pattern_dxf, see_dxf)]
@@ -114,13 +114,6 @@ def test_any_name_makes_whole_files(name):
     page = ElementTree.fromstring(pattern_svg(pattern))
     assert page.findtext("{http://www.w3.org/2000/svg}title") == name.replace("\x0b", "")
     assert not ezdxf.read(io.StringIO(pattern_dxf(pattern).decode())).audit().errors
-
-
-def test_export_kit_writes_nothing_that_cannot_be_cut(tmp_path):
-    """Oracle: the folder is not even made."""
-    with pytest.raises(Exception, match="from the seam"):
-        export_kit(plush_robot(drawn_body(SQUARE), [(0, 0), (49, 0)]), tmp_path / "build")
-    assert not list(tmp_path.iterdir())
 
 
 def test_numbers_are_short():

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from hydrostat.fabrication.self_check import Check
-from hydrostat.fabrication.solids.assembly import Assembly, interferences
+from hydrostat.fabrication.solids.assembly import LEAST, Assembly, interferences
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.sound import watertight_problems
 
@@ -28,7 +28,7 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[Assembly]) -> 
         Check(
             what=f"the {pieces} pieces of {len(assemblies)} assemblies do not overlap",
             measured="; ".join(clashes) or "nothing shared",
-            allowed="0.001 mm^3",
+            allowed=f"a film of {1e3 * LEAST:g} micrometre",
             passed=not clashes,
         ),
     )

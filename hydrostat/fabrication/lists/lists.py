@@ -7,7 +7,7 @@ from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
 from hydrostat.fabrication.lists.cable_cuts import cable_cuts, cable_table, check_lengths
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.lists.list_input import ListInput
-from hydrostat.fabrication.lists.motor_sizing import motor_table, size_winches
+from hydrostat.fabrication.lists.motor_sizing import motor_table, motor_warnings, size_winches
 from hydrostat.fabrication.lists.needs import all_needs
 from hydrostat.fabrication.lists.sheath_cuts import check_sheaths, sheath_cuts, sheath_table
 from hydrostat.fabrication.lists.stitching import close_warnings, deep_warnings, depth_table, stitch_table
@@ -33,6 +33,12 @@ class Lists:
     problems: tuple[str, ...]
     warnings: tuple[str, ...]
     checks: tuple[Check, ...]
+
+    @property
+    def cost(self) -> float:
+        """Of all that is bought, in whole packs [USD]."""
+        total = self.table("bill_of_materials").column("in whole packs")[-1]
+        return float(total or 0.0)
 
     def table(self, name: str) -> Table:
         """The table of this name.
@@ -74,7 +80,7 @@ def make_lists(given: ListInput) -> Lists:
         warnings=(
             *(f"not solved, so its loads are in no list: {missed}" for missed in demand.missed),
             *strength.warnings,
-            *(warning for sizing in sizings for warning in sizing.warnings),
+            *motor_warnings(sizings),
             *deep,
         ),
         checks=(check_lengths(cables, simulation), check_sheaths(pieces, simulation, outside=given.outside)),

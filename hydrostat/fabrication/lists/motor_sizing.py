@@ -75,28 +75,44 @@ class WinchSizing:
         return slower * self.travel / (2 * math.pi * self.radius * self.free / 60)
 
     @property
-    def warnings(self) -> tuple[str, ...]:
-        """What the motor cannot do."""
-        asks = f'winch "{self.winch}" asks for {self.torque:.0f} N mm'
-        more = f"{asks}, {self.needed:.0f} N mm with the margin of {MARGIN:g}"
-        found = []
+    def verdict(self) -> str:
+        """Whether the motor will do."""
         if self.torque >= self.stall:
-            found.append(
-                f"{asks}, but the motor stalls at {self.stall:.0f} N mm: it cannot reach the poses; take a stronger "
-                "motor or a smaller spool"
-            )
-        elif self.needed > self.stall:
-            found.append(
-                f"{more}, but the motor stalls at {self.stall:.0f} N mm: it may stand still before a pose is reached"
-            )
-        elif self.needed > self.rated:
-            found.append(
-                f"{more}, more than the {self.rated:.0f} N mm that the motor bears for long: hold such poses for "
-                "seconds only"
-            )
-        if self.time is not None and self.time > SLOW:
-            found.append(f'winch "{self.winch}" takes {self.time:.0f} s for its travel of {self.travel:.0f} mm')
-        return tuple(found)
+            return "too weak"
+        if self.needed > self.stall:
+            return "no margin"
+        return "holds for seconds" if self.needed > self.rated else "good"
+
+
+_MINDS = {
+    "too weak": "but the motor stalls at {stall:.0f} N mm: it cannot reach the poses; take a stronger one, or a "
+    "smaller spool",
+    "no margin": "but the motor stalls at {stall:.0f} N mm: it may stand still before a pose is reached",
+    "holds for seconds": "more than the {rated:.0f} N mm that the motor bears for long: hold such poses for seconds "
+    "only",
+}
+"""What a person should mind of a winch, by its verdict."""
+
+
+def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
+    """What the motor cannot do, a sentence for all winches of one verdict, and for each that is slow."""
+    found = []
+    for verdict, mind in _MINDS.items():
+        alike = [sizing for sizing in sizings if sizing.verdict == verdict]
+        if alike:
+            worst = max(alike, key=lambda sizing: sizing.torque)
+            names = ", ".join(f'"{sizing.winch}"' for sizing in alike)
+            who = f"winch {names} asks for" if len(alike) == 1 else f"winches {names} ask for up to"
+            margin = "" if verdict == "too weak" else f", {worst.needed:.0f} N mm with the margin of {MARGIN:g}"
+            found.append(f"{who} {worst.torque:.0f} N mm{margin}, {mind.format(stall=worst.stall, rated=worst.rated)}")
+    slow = (sizing for sizing in sizings if sizing.time is not None and sizing.time > SLOW)
+    return (
+        *found,
+        *(
+            f'winch "{sizing.winch}" takes {sizing.time:.0f} s for its travel of {sizing.travel:.0f} mm'
+            for sizing in slow
+        ),
+    )
 
 
 def size_winches(robot: Robot, demand: Demand, motor: Motor) -> tuple[WinchSizing, ...]:
@@ -165,7 +181,7 @@ def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) 
             (
                 *(sizing.winch, sizing.cables, sizing.tension, sizing.radius, sizing.torque, sizing.needed),
                 *(sizing.stall, sizing.rated, sizing.turns, sizing.free, sizing.loaded, sizing.pull, sizing.time),
-                _verdict(sizing),
+                sizing.verdict,
             )
             for sizing in sizings
         ),
@@ -175,11 +191,3 @@ def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) 
             *(f"Not solved: {missed}." for missed in demand.missed),
         ),
     )
-
-
-def _verdict(sizing: WinchSizing) -> str:
-    if sizing.torque >= sizing.stall:
-        return "too weak"
-    if sizing.needed > sizing.stall:
-        return "no margin"
-    return "holds for seconds" if sizing.needed > sizing.rated else "good"

@@ -178,7 +178,7 @@ def _winches(given: ListInput) -> list[Item]:
         Item(
             group=_WINCHES,
             what="PLA for printed parts",
-            specification=f"{pieces} pieces, as if solid",
+            specification=f"{pieces} pieces, with a little infill",
             quantity=1e-3 * printed,
             price=PRICES["pla"],
             mass=printed,
@@ -238,7 +238,7 @@ def _mould(given: ListInput) -> list[Item]:
         Item(
             group=_MOULD,
             what="PLA for the mould",
-            specification=f"{sum(part.count for part in given.mould)} pieces, as if solid",
+            specification=f"{sum(part.count for part in given.mould)} pieces, with a little infill",
             quantity=1e-3 * printed,
             price=PRICES["pla"],
             mass=printed,

@@ -120,18 +120,17 @@ def _reach(cable: Cable, step: int, depth: float) -> str:
 
 
 def close_warnings(robot: Robot) -> tuple[str, ...]:
-    """Which cables have points too close for two stitches, a sentence each."""
-    found = []
-    for number, cable in enumerate(robot.cables, start=1):
-        close = np.flatnonzero((1e3 * cable.segments < CLOSE) & cable.bare)
-        if len(close):
-            pairs = ", ".join(f"{place + 1} and {place + 2}" for place in close.tolist())
-            least = 1e3 * float(cable.segments[close].min())
-            found.append(
-                f"cable C{number}: points {pairs} are less than {CLOSE:g} mm apart ({least:.1f} mm): one stitch serves "
-                "both"
-            )
-    return tuple(found)
+    """Which cables have points too close for two stitches."""
+    close = {
+        f"C{number}": 1e3 * float(cable.segments[cable.bare].min())
+        for number, cable in enumerate(robot.cables, start=1)
+        if 1e3 * cable.segments[cable.bare].min() < CLOSE
+    }
+    if not close:
+        return ()
+    cables = f"cable{'s' if len(close) > 1 else ''} {', '.join(close)}"
+    least = min(close.values())
+    return (f"{cables}: points as near to each other as {least:.1f} mm, below {CLOSE:g} mm, are sewn by one stitch",)
 
 
 def deep_warnings(table: Table) -> tuple[str, ...]:

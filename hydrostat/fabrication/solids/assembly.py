@@ -5,6 +5,9 @@ from itertools import combinations
 
 from manifold3d import Manifold
 
+LEAST = 1e-3
+"""Mean thickness of what two pieces share, above which they are in each other's way [mm]."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Placed:
@@ -53,11 +56,24 @@ class Interference:
     volume: float
 
 
-def interferences(assembly: Assembly, *, least: float = 1e-3) -> tuple[Interference, ...]:
-    """All pairs of pieces that share more than `least` [mm^3], by boolean intersection."""
+def interferences(assembly: Assembly, *, least: float = LEAST) -> tuple[Interference, ...]:
+    """All pairs of pieces that share room, by boolean intersection.
+
+    Faces that touch are rounded, each by itself: what they share is a film. So that it counts, what is shared must have
+    a mean thickness (twice its volume over its area) of more than `least` [mm].
+    """
     found = []
     for one, other in combinations(assembly.pieces, 2):
-        shared = float((one.solid ^ other.solid).volume())
-        if shared > least:
-            found.append(Interference(one.name, other.name, shared))
+        if not _near(one.solid, other.solid):
+            continue
+        shared = one.solid ^ other.solid
+        volume = float(shared.volume())
+        if volume > 0 and 2 * volume / float(shared.surface_area()) > least:
+            found.append(Interference(one.name, other.name, volume))
     return tuple(found)
+
+
+def _near(one: Manifold, other: Manifold) -> bool:
+    """Whether the boxes of two solids meet."""
+    mine, theirs = one.bounding_box(), other.bounding_box()
+    return all(mine[axis] <= theirs[axis + 3] and theirs[axis] <= mine[axis + 3] for axis in range(3))

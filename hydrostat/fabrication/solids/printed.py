@@ -13,6 +13,12 @@ from hydrostat.fabrication.solids.file_mesh import FileMesh, file_mesh
 PLA = 1.24e-3
 """Density of PLA [g/mm^3]."""
 
+SHELL = 1.2
+"""Thickness of the shell that slicers print whole by themselves [mm]: three lines of 0.4 mm."""
+
+INFILL = 0.15
+"""Share of what is inside the shell that is plastic, as slicers have it by themselves."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Printed:
@@ -41,8 +47,9 @@ class Printed:
 
     @property
     def mass(self) -> float:
-        """Of one, filled, in PLA [g]."""
-        return PLA * self.volume
+        """Of one in PLA [g], estimated: a whole shell under all of its surface, little inside; at most all plastic."""
+        shell = min(SHELL * float(self.solid.surface_area()), self.volume)
+        return PLA * (shell + INFILL * (self.volume - shell))
 
     @property
     def size(self) -> tuple[float, float, float]:

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from small_inputs import PLAIN, demand_of, square
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.motor_sizing import MARGIN, WinchSizing, motor_table, size_winches
+from hydrostat.fabrication.lists.motor_sizing import MARGIN, WinchSizing, motor_table, motor_warnings, size_winches
 from hydrostat.robot import Cable
 
 START = (-0.02, -0.01)
@@ -51,9 +51,9 @@ def test_time_for_the_travel_is_the_integral_of_slowness(tension: float) -> None
 def test_a_motor_that_stalls_never_gets_there() -> None:
     found = sizing(40.0, stall_torque=240.0)
     assert found.time is None
-    assert "cannot reach" in found.warnings[0]
-    assert '"pull"' in found.warnings[0]
-    assert "240 N mm" in found.warnings[0]
+    assert "cannot reach" in motor_warnings((found,))[0]
+    assert '"pull"' in motor_warnings((found,))[0]
+    assert "240 N mm" in motor_warnings((found,))[0]
 
 
 @pytest.mark.parametrize(
@@ -67,13 +67,13 @@ def test_a_motor_that_stalls_never_gets_there() -> None:
     ],
 )
 def test_what_is_warned_of(tension: float, words: list[str]) -> None:
-    warnings = sizing(tension, stall_torque=200.0, rated_torque=80.0).warnings
+    warnings = motor_warnings((sizing(tension, stall_torque=200.0, rated_torque=80.0),))
     assert len(warnings) == len(words)
     assert all(word in warning for word, warning in zip(words, warnings, strict=True))
 
 
 def test_a_slow_winch_is_called_slow() -> None:
-    assert "takes" in sizing(1.0, speed=1.0).warnings[0]
+    assert "takes" in motor_warnings((sizing(1.0, speed=1.0),))[0]
 
 
 def test_a_winch_without_cables_asks_for_nothing() -> None:
@@ -91,3 +91,9 @@ def test_a_demand_of_another_robot_is_refused() -> None:
     with pytest.raises(InputError, match="stall_torque of plain motor must be above 0"):
         size_winches(robot, demand_of(robot), replace(PLAIN, stall_torque=0.0))
     assert np.isfinite(sizing(1.0).time or np.nan)
+
+
+def test_winches_alike_share_a_sentence() -> None:
+    one, other = (sizing(tension, stall_torque=200.0, rated_torque=80.0) for tension in (10.0, 12.0))
+    (warning,) = motor_warnings((replace(one, winch="left"), replace(other, winch="right")))
+    assert warning.startswith('winches "left", "right" ask for up to 72 N mm, 144 N mm with the margin of 2')

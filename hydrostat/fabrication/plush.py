@@ -1,0 +1,61 @@
+"""`plush_work`: what a body of felt takes: its pattern as drawings and as pages (R10)."""
+
+from dataclasses import replace
+
+from hydrostat.fabrication.body_work import BodyWork
+from hydrostat.fabrication.checks.pattern_checks import pattern_checks
+from hydrostat.fabrication.kit_options import KitOptions
+from hydrostat.fabrication.lists.list_input import Cloth
+from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
+from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
+from hydrostat.fabrication.patterns.shape import Circle, Part
+from hydrostat.fabrication.patterns.svg_writer import pattern_svg
+from hydrostat.fabrication.sheets.tiles import tiled_pdf
+from hydrostat.robot import Robot
+from hydrostat.units import counted
+
+
+def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
+    """The pattern of a flat body, with what is wrong with it.
+
+    Raises:
+        InputError: the body is not flat, or is in several pieces.
+    """
+    drawn = replace(options.pattern, force=True)
+    pattern = plush_pattern(robot, options=drawn)
+    svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
+    front = pattern.panel("front").shapes
+    return BodyWork(
+        files={
+            "pattern/pattern.svg": svg,
+            "pattern/pattern.dxf": dxf,
+            f"pattern/pattern_{options.paper}.pdf": tiled_pdf(pattern, options.paper),
+        },
+        holes=sum(shape.part is Part.PINHOLE for shape in front),
+        stitches=pattern.stitches,
+        gusset=bool(pattern.gusset),
+        cloth=_cloth(pattern),
+        summary=(f"Pattern: {counted(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
+        problems=pattern.problems,
+        warnings=pattern.warnings,
+        checks=pattern_checks(robot, pattern, svg, dxf, drawn),
+    )
+
+
+def _size(pattern: Pattern) -> str:
+    return f"{pattern.width:.0f} x {pattern.height:.0f}"
+
+
+def _cloth(pattern: Pattern) -> Cloth:
+    """What the sheet takes: all of its felt, and every seam that is drawn once for each of two panels."""
+    seams = (
+        shape.geometry.length
+        for panel in pattern.panels
+        for shape in panel.shapes
+        if shape.part is Part.SEAM and not isinstance(shape, Circle)
+    )
+    return Cloth(
+        felt=pattern.width * pattern.height,
+        seam=sum(seams) / 2,
+        zipper=0.0 if pattern.opening is None else float(pattern.opening.zipper),
+    )

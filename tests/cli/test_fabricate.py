@@ -1,0 +1,66 @@
+"""`hydrostat fabricate` as a user meets it."""
+
+import json
+from pathlib import Path
+
+import pytest
+from conftest import Run
+from plush import near_the_edge
+
+from hydrostat.robot import save_robot
+
+
+def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
+    code, out, err = run("fabricate", starfish, "--out", tmp_path)
+    assert code == 0
+    assert "Self-check: 8 of 8 hold" in out
+    assert f"begin with {tmp_path / 'assembly_sheet.pdf'}" in out
+    assert "Pattern ..." in err
+    told = json.loads((tmp_path / "manifest.json").read_text())
+    files = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}
+    assert files == {*told["files"], "manifest.json"}
+    assert {"pattern/pattern.svg", "pattern/pattern_a4.pdf", "parts/parts.3mf", "lists/cable_cuts.csv"} <= files
+
+
+BAD = {
+    ("--method", "clay"): "--method clay: must be plush or foam",
+    ("--mould", "sand"): "--mould sand: must be printed or silicone",
+    ("--paper", "a5"): "--paper a5: must be a4 or letter",
+    ("--bed", "220 mm"): '--bed 220 mm: must be three lengths and their unit, such as "220 x 220 x 250 mm"',
+    ("--bed", "0x220x250mm"): "--bed 0 mm: must be above 0, such as 12 mm",
+}
+
+
+@pytest.mark.parametrize("options", BAD, ids=" ".join)
+def test_bad_options_are_refused_before_the_work(
+    run: Run, tmp_path: Path, starfish: Path, options: tuple[str, str]
+) -> None:
+    code, out, err = run("fabricate", starfish, *options, "--out", tmp_path / "kit")
+    assert (code, out, err) == (2, "", f"hydrostat: {BAD[options]}\n")
+    assert not (tmp_path / "kit").exists()
+
+
+def test_an_unknown_motor_is_refused(run: Run, tmp_path: Path, starfish: Path) -> None:
+    code, _, err = run("fabricate", starfish, "--motor", "v8", "--out", tmp_path / "kit")
+    assert code == 2
+    assert err.splitlines()[-1].startswith('hydrostat: there is no motor "v8"')
+    assert not (tmp_path / "kit").exists()
+
+
+def test_what_cannot_be_built_is_refused_with_every_reason(run: Run, tmp_path: Path) -> None:
+    save_robot(near_the_edge(), tmp_path / "robot")
+    code, out, err = run("fabricate", tmp_path / "robot", "--out", tmp_path / "kit")
+    assert code == 2
+    reasons = [line for line in out.splitlines() if line.startswith("cannot be built: ")]
+    assert len(reasons) == 2
+    assert "2 reasons" in err.splitlines()[-1]
+    assert "--force" in err.splitlines()[-1]
+    assert not (tmp_path / "kit").exists()
+
+
+def test_force_builds_it_and_says_why_not(run: Run, tmp_path: Path) -> None:
+    save_robot(near_the_edge(), tmp_path / "robot")
+    code, out, _ = run("fabricate", tmp_path / "robot", "--force", "--out", tmp_path / "kit")
+    assert code == 0
+    assert out.count("cannot be built well: ") == 2
+    assert (tmp_path / "kit" / "assembly_sheet.pdf").is_file()

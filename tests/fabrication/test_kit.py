@@ -1,0 +1,158 @@
+"""The kit as a whole: the same bytes, true to its robot, readable by other programs, refused with reasons."""
+
+import hashlib
+import io
+import json
+from dataclasses import replace
+from importlib.util import find_spec
+
+import pypdf
+import pytest
+import trimesh
+from plush_robots import crossed, drawn_body, plush_robot
+
+import hydrostat as hs
+from hydrostat.errors import InputError
+from hydrostat.fabrication import Kit, KitOptions, Method, Paper, UnbuildableError, build_kit, export_kit
+from hydrostat.robot import robot_hash
+from hydrostat.robot.gallery import gallery_folder
+
+TOO_NEAR = [(-20, -10), (5, 12), (49.5, 22)]
+"""A route [mm] whose last hole would be half a millimetre from the seam of the square."""
+
+
+def words_of(content: bytes) -> str:
+    """All text of a PDF, by another program."""
+    return " ".join(" ".join(page.extract_text().split()) for page in pypdf.PdfReader(io.BytesIO(content)).pages)
+
+
+@pytest.fixture(params=["plush_kit", "foam_kit"])
+def kit(request: pytest.FixtureRequest) -> Kit:
+    return request.getfixturevalue(request.param)
+
+
+def test_a_kit_is_the_same_bytes_on_every_run(kit):
+    """Oracle: a second kit of the robot read again."""
+    again = build_kit(hs.load_robot(gallery_folder(kit.robot.name)))
+    assert list(again.files) == list(kit.files)
+    assert [path for path in kit.files if kit.files[path] != again.files[path]] == []
+
+
+def test_the_manifest_tells_what_is_there(kit):
+    """Oracle: hashlib, and the robot's own hash."""
+    told = json.loads(kit.files["manifest.json"])
+    assert told["robot"] == {"name": kit.robot.name, "sha256": robot_hash(kit.robot)}
+    assert told["versions"]["hydrostat"] == hs.__version__
+    assert sorted([*told["files"], "manifest.json"]) == sorted(kit.files)
+    for path, facts in told["files"].items():
+        content = kit.files[path]
+        assert facts == {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+
+
+def test_a_kit_is_true_to_its_robot(kit):
+    """Oracle: each check measures the finished files; tests of its own show that it can fail."""
+    assert [check.what for check in kit.checks if not check.passed] == []
+    assert len(kit.checks) >= 5
+
+
+def test_every_part_is_a_file_that_another_program_finds_whole(kit):
+    """Oracle: trimesh, on every STL."""
+    solids = {path: content for path, content in kit.files.items() if path.endswith(".stl")}
+    assert {f"parts/{part.name}.stl" for part in kit.printed} | {f"mould/{part.name}.stl" for part in kit.printed} >= {
+        path for path in solids if not path.startswith("positive/")
+    }
+    assert len(solids) >= len(kit.printed)
+    for path, content in solids.items():
+        mesh = trimesh.load_mesh(io.BytesIO(content), file_type="stl")
+        assert mesh.is_watertight, path
+        assert mesh.volume > 0, path
+
+
+def test_the_sheet_has_two_pages_for_plush_and_four_for_foam(kit):
+    """Oracle: pypdf, and the size of A4."""
+    pages = pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages
+    assert len(pages) == (2 if kit.method is Method.PLUSH else 4)
+    for page in pages:
+        assert [float(side) * 25.4 / 72 for side in page.mediabox[2:]] == pytest.approx([210, 297], abs=0.1)
+
+
+def test_every_check_stands_on_the_sheet(kit):
+    """Oracle: pypdf's text of the pages."""
+    words = words_of(kit.files["assembly_sheet.pdf"]).replace(" ", "")
+    for check in kit.checks:
+        assert check.measured.replace(" ", "")[:40] in words, check.what
+
+
+def test_a_robot_that_cannot_be_built_is_refused_with_all_reasons(tmp_path):
+    """Oracle: two holes too near the seam; nothing is written."""
+    robot = plush_robot(drawn_body("M0 0H100V100H0Z"), TOO_NEAR, [(-20, -10), (-49.5, 20)])
+    with pytest.raises(UnbuildableError, match=r"for 2 reasons") as refused:
+        export_kit(robot, tmp_path / "kit")
+    assert ["cable[0].points[2]" in refused.value.reasons[0], "cable[1].points[1]" in refused.value.reasons[1]] == [
+        True
+    ] * 2
+    assert not (tmp_path / "kit").exists()
+
+
+def test_by_force_it_is_built_with_the_reasons_on_the_sheet():
+    """Oracle: pypdf's text of the first page."""
+    robot = plush_robot(drawn_body("M0 0H100V100H0Z"), TOO_NEAR)
+    kit = build_kit(robot, options=KitOptions(force=True))
+    assert len(kit.problems) == 1
+    assert "cable[0].points[2]".replace(" ", "") in words_of(kit.files["assembly_sheet.pdf"]).replace(" ", "")
+
+
+def test_a_spool_too_small_for_the_shaft_is_refused():
+    """Oracle: a drum of 1 mm on a shaft of 3 mm."""
+    robot = crossed()
+    thin = replace(robot, winches=(replace(robot.winches[0], spool_radius=0.001),))
+    with pytest.raises(UnbuildableError, match=r'winch "pull": spool radius 1\.00 mm'):
+        build_kit(thin)
+
+
+def test_letter_paper():
+    """Oracle: pypdf, and 8.5 x 11 inch."""
+    kit = build_kit(crossed(), options=KitOptions(paper=Paper.LETTER))
+    for path in ("assembly_sheet.pdf", "pattern/pattern_letter.pdf"):
+        page = pypdf.PdfReader(io.BytesIO(kit.files[path])).pages[0]
+        assert [float(side) for side in page.mediabox[2:]] == pytest.approx([612, 792], abs=0.5)
+
+
+def test_an_unknown_motor_is_refused():
+    with pytest.raises(InputError, match="n20, "):
+        build_kit(crossed(), options=KitOptions(motor="v8"))
+
+
+def test_plush_is_for_flat_bodies():
+    with pytest.raises(InputError, match="in space"):
+        build_kit(hs.load_robot(gallery_folder("fish_tail")), options=KitOptions(method=Method.PLUSH))
+
+
+def test_a_flat_body_can_be_cast():
+    """Oracle: the volume of its mould's cavity is its area times its thickness."""
+    kit = build_kit(replace(crossed(), cables=()), options=KitOptions(method=Method.FOAM))
+    assert [check.what for check in kit.checks if not check.passed] == []
+    halves = [content for path, content in kit.files.items() if path.startswith("positive/") and path.endswith(".stl")]
+    volumes = [trimesh.load_mesh(io.BytesIO(half), file_type="stl").volume for half in halves]
+    assert sum(volumes) == pytest.approx(100 * 100 * 30, rel=0.02)
+
+
+@pytest.mark.skipif(find_spec("build123d") is not None, reason="the extra cad is there")
+def test_step_without_its_extra_says_what_to_install():
+    with pytest.raises(InputError, match=r"hydrostat\[cad\]"):
+        build_kit(crossed(), options=KitOptions(step=True))
+
+
+def test_stages_are_told():
+    told = []
+    build_kit(crossed(), progress=lambda stage, done, total: told.append((stage, done, total)))
+    stages = list(dict.fromkeys(stage for stage, _, _ in told))
+    assert len(stages) >= 5
+    assert told[-1][1] == told[-1][2]
+
+
+def test_a_robot_without_cables_still_has_a_body():
+    """Oracle: its pattern, and no winch."""
+    kit = build_kit(replace(crossed(), cables=()))
+    assert "pattern/pattern.svg" in kit.files
+    assert not any("spool" in part.name for part in kit.printed)
