@@ -9,7 +9,7 @@ from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, width_for, wraps
 from hydrostat.robot import Robot, Winch
 
-_LONGEST = 20.0
+_LONGEST = 30.0
 """A spool is no longer than this where several layers can avoid it [mm]: its far end is held by a thin roof."""
 
 _MOST_LAYERS = 6

@@ -102,17 +102,27 @@ def test_a_radius_too_small_is_refused_with_the_least_there_is():
 
 
 def test_long_travel_lies_in_layers_and_says_how_much_the_radius_grows():
-    (unit,) = units_of(with_winches(gallery_robot("letter_s"), travel=0.5))
+    (unit,) = units_of(with_winches(gallery_robot("letter_s"), travel=0.8))
     layers = unit.spool.grooves[0].layers
     assert layers > 1
     grown = 100 * (layers - 1) * 0.4 / 6.0
     assert any(f"in {layers} layers" in text and f"{grown:.0f} % more" in text for text in unit.warnings)
     assert unit.problems == ()
-    assert unit.spool.body <= 20.0
+    assert unit.spool.body <= 30.0
     spare = 2.0 * 2 * math.pi * 6
     for groove in unit.spool.grooves:
-        assert capacity(groove.width, groove.radius, 0.4, layers) >= 500 + 10 + spare - 1e-9
+        assert capacity(groove.width, groove.radius, 0.4, layers) >= 800 + 10 + spare - 1e-9
     assert interferences(unit.assembly) == ()
+
+
+def test_a_thick_cable_lies_in_one_layer_on_a_longer_spool():
+    options = PartOptions(cable=1.0, tube=4.0, bore=2.0, clearance=0.4, fit=0.25)
+    robot = gallery_robot("letter_s")
+    for motor in MOTORS:
+        (unit,) = winch_units(robot, given_demand(robot), options, motor)
+        assert unit.problems == ()
+        assert {groove.layers for groove in unit.spool.grooves} == {1}
+        assert interferences(unit.assembly) == ()
 
 
 def test_more_than_a_spool_takes_is_refused():
