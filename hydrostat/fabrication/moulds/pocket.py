@@ -22,6 +22,7 @@ _LEAST_SKIN = 2.0
 _OUTSIDE = 0.02
 _BARE = 0.1
 _SHARED = 0.01
+_SWEEPS = 5
 
 _DENT = 1.0
 _DENT_RADIUS = 1.5
@@ -37,6 +38,7 @@ class Pocket:
         upper: it is a core of the upper half; else of the lower.
         reach: a box from the deep end of the pocket out of the body.
         core: what of the body it takes.
+        outside: share of the room that is outside the body.
         problem: why it cannot be built well, or nothing.
     """
 
@@ -45,6 +47,7 @@ class Pocket:
     upper: bool
     reach: Manifold
     core: Manifold
+    outside: float
     problem: str = ""
 
 
@@ -67,7 +70,35 @@ def make_pockets(
         if not all(np.isfinite(side) and side > 0 for side in size):
             raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {size}')
     inside = [winch for winch in robot.winches if winch.mount is Mount.BODY and winch.name in sizes]
-    return tuple(_pocket(winch.name, body, frame.into(_spot(winch.at)[None])[0], sizes[winch.name]) for winch in inside)
+    ways = [_ways(winch.name, body, frame.into(_spot(winch.at)[None])[0], sizes[winch.name]) for winch in inside]
+    return _together(ways)
+
+
+def _together(ways: list[list[Pocket]]) -> tuple[Pocket, ...]:
+    """One way to lay each winch, so that they are least in each other's way: each in turn, until none changes."""
+    chosen = [min(tried, key=lambda pocket: _worth(pocket, [])) for tried in ways]
+    for _ in range(_SWEEPS):
+        before = list(chosen)
+        for place, tried in enumerate(ways):
+            others = chosen[:place] + chosen[place + 1 :]
+            rated = [(_worth(pocket, others), number) for number, pocket in enumerate(tried)]
+            chosen[place] = tried[min(rated)[1]]
+        if chosen == before:
+            break
+    return tuple(chosen)
+
+
+def _worth(pocket: Pocket, others: list[Pocket]) -> tuple[float, bool, float, float]:
+    """The lower the better: whether it is in the body, well inside, what it shares with others, how large it is."""
+    shared = sum(_shared(pocket.reach, other.reach) for other in others)
+    outside = round(max(pocket.outside, _OUTSIDE), 3)
+    return outside, bool(pocket.problem), round(shared, 3), round(float(pocket.core.volume()), 3)
+
+
+def _shared(one: Manifold, other: Manifold) -> float:
+    """What two boxes along the axes share [mm^3]."""
+    (low, high), (low_other, high_other) = (np.reshape(box.bounding_box(), (2, 3)) for box in (one, other))
+    return float(np.prod(np.maximum(np.minimum(high, high_other) - np.maximum(low, low_other), 0.0)))
 
 
 def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
@@ -75,12 +106,11 @@ def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
     return MILLIMETRES * np.array([*at, 0.0][:3])
 
 
-def _pocket(name: str, body: Manifold, at: Float[np.ndarray, "3"], size: tuple[float, float, float]) -> Pocket:
-    """The way to lay the winch that leaves most foam beside it, then the one that takes least."""
+def _ways(name: str, body: Manifold, at: Float[np.ndarray, "3"], size: tuple[float, float, float]) -> list[Pocket]:
+    """All ways to lay a winch with its sides along those of the mould."""
     a, b, c = sorted(size)
     turned = ((b, c, a), (c, b, a), (a, c, b), (c, a, b), (a, b, c), (b, a, c))
-    tried = [_laid(name, body, at, sides, upper) for sides in turned for upper in (True, False)]
-    return min(tried, key=lambda pocket: (bool(pocket.problem), round(float(pocket.core.volume()), 3)))
+    return [_laid(name, body, at, sides, upper) for sides in dict.fromkeys(turned) for upper in (True, False)]
 
 
 def _laid(name: str, body: Manifold, at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Pocket:
@@ -106,7 +136,7 @@ def _laid(name: str, body: Manifold, at: np.ndarray, sides: tuple[float, float, 
             f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left beside the pocket of {side} mm; '
             "move the winch to where the body is thicker, or choose a smaller motor"
         )
-    return Pocket(winch=name, size=sides, upper=upper, reach=reach, core=core, problem=problem)
+    return Pocket(winch=name, size=sides, upper=upper, reach=reach, core=core, outside=out, problem=problem)
 
 
 def _skin(at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Manifold:

@@ -65,3 +65,12 @@ def test_dents_are_where_cables_come_near_the_surface() -> None:
     assert [(x_low + x_high) / 2, (y_low + y_high) / 2] == pytest.approx([20, 10], abs=1e-3)
     assert [z_low, z_high] == pytest.approx([29, 30])  # 1 mm deep; the winch's end lies too deep
     assert cable_dents(robot, skin_of(solid), PLAIN, deepest=2.0).is_empty()
+
+
+def test_winches_are_laid_beside_each_other_if_they_can_be() -> None:
+    robot = foam_robot(SLAB, (0.0, -0.0065, 0.012), (0.0, 0.0065, 0.012))
+    alone = pockets(robot, w0=(60.0, 14.0, 12.0)) + pockets(robot, w1=(60.0, 14.0, 12.0))
+    assert len(clashes(alone)) == 1
+    pair = pockets(robot, w0=(60.0, 14.0, 12.0), w1=(60.0, 14.0, 12.0))
+    assert clashes(pair) == []
+    assert all(pocket.size[1] == 12 for pocket in pair)
