@@ -195,7 +195,8 @@ def _inside(
     cavity = make_cavity(body, dents, pockets)
     block = _block(body, options)
     top = block.high[1]
-    sprue = make_sprue(cavity, top=top, room=(block.low[0] + RIM, block.high[0] - RIM))
+    deep = min(-block.low[2], block.high[2])
+    sprue = make_sprue(cavity, top=top, room=(block.low[0] + RIM, block.high[0] - RIM), deep=deep)
     vents = make_vents(cavity, sprue, low=block.low[2], high=block.high[2], top=top)
     return _Inside(body=body, dents=dents, pockets=pockets, cavity=cavity, block=block, sprue=sprue, vents=vents)
 

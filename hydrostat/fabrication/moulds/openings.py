@@ -26,6 +26,7 @@ FUNNEL = 8.0
 
 _FUNNEL_DEPTH = 12.0
 _SUNK = 2.0
+_BEHIND = 3.0
 _DROP = 6.0
 _STEP = 1.0
 
@@ -64,35 +65,38 @@ class Vent:
     solid: Manifold
 
 
-def make_sprue(body: Manifold, *, top: float, room: tuple[float, float]) -> Sprue | None:
+def make_sprue(body: Manifold, *, top: float, room: tuple[float, float], deep: float) -> Sprue | None:
     """The widest sprue over the highest place of the parting plane that is wide enough; None if there is none.
 
     Args:
         body: in the coordinates of the mould [mm].
         top: height of the top of the mould [mm].
         room: lowest and highest x that the funnel may reach [mm].
+        deep: from the parting plane to the nearer back of the mould [mm].
     """
     across, tops = roof(body)
     if not len(across):
         return None
     best = float(tops.max())
-    for radius in NECKS:
+    necks = [radius for radius in NECKS if radius <= deep - _BEHIND] or [NECKS[-1]]
+    widest = deep - _BEHIND
+    for radius in necks:
         window = int(np.ceil(radius / _STEP))
         levels = np.array([tops[max(place - window, 0) : place + window + 1].min() for place in range(len(across))])
         inside = (across - radius >= across[0] - _STEP) & (across + radius <= across[-1] + _STEP)
         levels = np.where(inside, levels, -np.inf)
-        if not (levels.max() >= best - _DROP or radius == NECKS[-1]) or not np.isfinite(levels.max()):
+        if not (levels.max() >= best - _DROP or radius == necks[-1]) or not np.isfinite(levels.max()):
             continue
         level = float(levels.max())
         flat = np.flatnonzero(levels > level - 0.25)
         x = float(across[flat[len(flat) // 2]])
-        return _sprue(x, level, radius, top, room)
+        return _sprue(x, level, radius, top, room, widest)
     middle = int(np.argmax(tops))
-    return _sprue(float(across[middle]), best - NECKS[-1], NECKS[-1], top, room)
+    return _sprue(float(across[middle]), best - NECKS[-1], NECKS[-1], top, room, widest)
 
 
-def _sprue(x: float, mouth: float, radius: float, top: float, room: tuple[float, float]) -> Sprue:
-    funnel = max(min(radius + FUNNEL, x - room[0], room[1] - x), radius)
+def _sprue(x: float, mouth: float, radius: float, top: float, room: tuple[float, float], widest: float) -> Sprue:
+    funnel = max(min(radius + FUNNEL, x - room[0], room[1] - x, widest), radius)
     low = mouth - _SUNK
     neck = rod(np.array([x, low, 0.0]), np.array([x, top + 1.0, 0.0]), radius)
     wide = rod(np.array([x, top - _FUNNEL_DEPTH, 0.0]), np.array([x, top, 0.0]), radius, funnel)

@@ -175,6 +175,11 @@ def test_flat_body_is_parted_at_half_its_thickness() -> None:
     assert mould.share == 0
     assert abs(mould.pull) == pytest.approx([0, 0, 1])
     assert mould.volumes["cavity"] == pytest.approx(100 * 50 * 20)
+    for half in (mould.assembly.pieces[0].solid, mould.assembly.pieces[2].solid):
+        low, high = (0, 18) if half.bounding_box()[5] > 17 else (-18, 0)
+        back = half.slice(high - 1.0 if high else low + 1.0)
+        outline = mould.box[0] * mould.box[1] - mould.bolts * np.pi * 2.25**2
+        assert back.area() == pytest.approx(outline, rel=2e-3)  # the funnel does not break through
     assert abs(left_over(mould)) < 1e-9
 
 
@@ -205,7 +210,7 @@ def problems_of(share: float, material: str, kind: MouldKind) -> tuple[str, ...]
     cube = Manifold.cube((50, 50, 50), True)
     pull = replace(find_pull(cube, count=1), share=share)
     halves = Halves(upper=cube, lower=cube, cavity=cube, volumes={})
-    sprue = make_sprue(cube, top=45, room=(-40, 40))
+    sprue = make_sprue(cube, top=45, room=(-40, 40), deep=33)
     return mould_problems(pull, MATERIALS[material], sprue, (), (), MouldOptions(kind=kind), halves)
 
 
