@@ -90,34 +90,57 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     return canvas
 
 
+@dataclass(frozen=True, eq=False)
+class _Pane:
+    """A body in space and all that belongs to it, as they are seen."""
+
+    drawing: LineDrawing
+    sight: Sight
+    cables: list[Float[np.ndarray, "_ 3"]]
+    winches: list[Float[np.ndarray, " 3"]]
+    box: Float[np.ndarray, "2 2"]
+
+
 def space_map(robot: Robot, *, width: float, height: float, views: Sequence[View]) -> Canvas:
-    """A body in space, side by side as it is seen from one or several places; dashed is what lies in its far half."""
-    canvas = Canvas(width, height)
-    piece = body_piece(robot)
+    """A body in space, side by side as it is seen from one or several places; dashed is what lies in its far half.
+
+    Args:
+        robot: with a body in space.
+        width: of the picture [mm].
+        height: of the picture at most [mm]; it is no higher than what is drawn.
+        views: from where.
+    """
     pixels = round(PIXELS * max(width / len(views), height))
-    drawings = [line_drawing([piece], view, soft=_SOFT, pixels=pixels) for view in views]
-    shares = np.array([float(np.ptp(drawing.box[:, 0])) for drawing in drawings])
-    walls = np.r_[0.0, np.cumsum(shares) / shares.sum()] * (width - 2 * _MARGIN * len(views))
-    for index, drawing in enumerate(drawings):
-        left, right = (float(walls[side]) + 2 * _MARGIN * side for side in (index, index + 1))
-        _put_view(canvas, robot, drawing, (left, 0.0, right, height))
+    panes = [_pane(robot, view, pixels) for view in views]
+    breadths = np.array([float(np.ptp(pane.box[:, 0])) for pane in panes])
+    rooms = breadths / breadths.sum() * (width - 2 * _MARGIN * len(views))
+    inner = max(snug(pane.box, float(room), height - 2 * _MARGIN) for pane, room in zip(panes, rooms, strict=True))
+    canvas, left = Canvas(width, inner + 2 * _MARGIN), 0.0
+    for pane, room in zip(panes, rooms.tolist(), strict=True):
+        _put_pane(canvas, robot, pane, (left, 0.0, left + room + 2 * _MARGIN, canvas.height))
+        left += room + 2 * _MARGIN
     return canvas
 
 
-def _put_view(canvas: Canvas, robot: Robot, drawing: LineDrawing, room: Box) -> None:
-    sight = Sight.of(body_piece(robot), drawing.view)
-    near = [sight.see(1e3 * np.array(cable.points)) for cable in robot.cables]
-    stands = [sight.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
-    everything = np.concatenate([drawing.box, *(way[:, :2] for way in near)])
+def _pane(robot: Robot, view: View, pixels: int) -> _Pane:
+    piece = body_piece(robot)
+    drawing = line_drawing([piece], view, soft=_SOFT, pixels=pixels)
+    cables = [view.see(1e3 * np.array(cable.points)) for cable in robot.cables]
+    winches = [view.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
+    places = np.concatenate([drawing.box, *(way[:, :2] for way in cables)])
+    box = np.array([places.min(axis=0), places.max(axis=0)])
+    return _Pane(drawing, Sight.of(piece, view), cables, winches, box)
+
+
+def _put_pane(canvas: Canvas, robot: Robot, pane: _Pane, room: Box) -> None:
     left, top, right, bottom = room
-    inner = (left + _MARGIN, top + _MARGIN, right - _MARGIN, bottom - _MARGIN)
-    frame = Frame.fit(np.array([everything.min(axis=0), everything.max(axis=0)]), inner)
-    canvas.drawing(drawing, frame)
+    frame = Frame.fit(pane.box, (left + _MARGIN, top + _MARGIN, right - _MARGIN, bottom - _MARGIN))
+    canvas.drawing(pane.drawing, frame)
     labels = LabelPlaces((left + 0.2, top + 0.2, right - 0.2, bottom - 0.2))
-    for way in drawing.outlines:
+    for way in pane.drawing.outlines:
         labels.take_line(frame.way(way), weight=3)
-    runs = [_sighted(robot, index, way, sight, frame) for index, way in enumerate(near)]
-    _put_runs(canvas, labels, runs, [frame.on(stand) for stand in stands])
+    runs = [_sighted(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
+    _put_runs(canvas, labels, runs, [frame.on(stand) for stand in pane.winches])
 
 
 def _stitched(robot: Robot, sewn: CableStitches, frame: Frame) -> Run:
@@ -148,9 +171,7 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run], stands: 
                 labels.take_box(box_round(spot, _HOLE))
         _put_stopper(canvas, run)
         labels.take_box(box_round(run.spots[-1], 1.4))
-    for index, stand in enumerate(stands):
-        canvas.balloon(stand, winch_letter(index), dark=True)
-        labels.take_box(box_round(stand, balloon_radius(winch_letter(index))))
+    _put_winches(canvas, labels, stands)
     for run in runs:
         words = f"C{run.cable}"
         middle = labels.beside(run.spots[-1], text_size(words, 9.0), gap=1.7)
@@ -160,6 +181,21 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run], stands: 
         for number, (spot, hole) in enumerate(zip(run.spots[:-1], run.holes[:-1], strict=True), start=1):
             if hole:
                 _put_number(canvas, labels, str(number), spot)
+
+
+def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) -> None:
+    """A letter on each winch; where one is on another already, beside it, led to its place by a line."""
+    taken: list[Spot] = []
+    for index, stand in enumerate(stands):
+        letter = winch_letter(index)
+        radius, at = balloon_radius(letter), stand
+        if any(np.hypot(*np.subtract(stand, other)) < 2 * radius for other in taken):
+            at = labels.beside(stand, (2 * radius, 2 * radius), gap=0.8) or stand
+            canvas.line([[stand, at]], width=MIDDLE)
+            canvas.disc(stand, 0.7, grey=0.0)
+        canvas.balloon(at, letter, dark=True)
+        labels.take_box(box_round(at, radius))
+        taken.append(at)
 
 
 def _put_number(canvas: Canvas, labels: LabelPlaces, words: str, spot: Spot) -> None:

@@ -104,6 +104,34 @@ def _closing(mould: Mould) -> str:
     return "Push the keys home and strap it between two boards, not so hard that it bulges."
 
 
+def _outside(cables: int, winches: int) -> tuple[Step, ...]:
+    return (
+        Step(
+            "Put the winches together",
+            15 * winches,
+            f"Build {count_text(winches, 'winch', 'winches')} as drawn on page 1, write the letter on each, screw them "
+            "to the base plate in the order of the letters.",
+        ),
+        Step(
+            "Lay the tubes",
+            5 * cables,
+            "Push each tube into its holder on the base and lead it to where its cable begins, in wide bends, none "
+            "tighter than a cup. Both ends must be held: only so does the tube keep the cable's length.",
+        ),
+    )
+
+
+def _inside(winches: int) -> tuple[Step, ...]:
+    return (
+        Step(
+            "Put the winches in",
+            20 * winches,
+            f"Build {count_text(winches, 'winch', 'winches')} as drawn on page 1, write the letter on each, and push "
+            "each into its pocket in the foam. Lead the wires out together; sew the skin round them.",
+        ),
+    )
+
+
 def skin_steps(given: SheetInput) -> tuple[Step, ...]:
     """From a body of foam to a robot."""
     cables, winches = len(given.robot.cables), len(given.robot.winches)
@@ -136,20 +164,7 @@ def skin_steps(given: SheetInput) -> tuple[Step, ...]:
             "press. Clamp the stoppers loosely at their marks.",
             wait="15 min",
         ),
-        Step(
-            "Put the winches together",
-            15 * winches,
-            f"Build {count_text(winches, 'winch', 'winches')} as drawn on page 1, write the letter on each, screw "
-            "them to "
-            "the base plate in the order of the letters.",
-        ),
-        Step(
-            "Lay the tubes",
-            5 * cables,
-            "Push each tube into its holder on the base and lead it to where its cable begins, in wide bends, none "
-            "tighter "
-            "than a cup. Both ends must be held: only so does the tube keep the cable's length.",
-        ),
+        *(_outside(cables, winches) if given.outside else _inside(winches)),
         Step(
             "Tie the cables on",
             5 * cables,
@@ -178,7 +193,7 @@ FOAM_CHECKLIST = (
     "Parts A and B weighed, not measured by eye",
     "The body came out whole, no hole larger than a pea",
     "Body and skin weigh what the bill says, within a tenth",
-    "Every cable in its own tube, both ends held",
+    "Every cable in its own channel, every tube held at both ends",
     "All spools turn freely by hand",
     "Stoppers tight, tails trimmed",
     "Each winch ran to full travel and back",

@@ -94,17 +94,20 @@ PLUSH_SAFETY = (
 )
 """What to mind."""
 
-CALIBRATION = (
-    "Turn all winches to zero: the spool mark of each cable stands where the line meets the spool.",
-    "Pull the first cable straight by its tail, not hard: the body must not move.",
-    "Clamp its stopper at the stopper mark: “stopper” in the list is how far it is from the exit of the winch, along "
-    "the line. The list's slack is in it: so much the line stays loose.",
-    "Do the next cable; then take in 10 mm with every winch, one after the other. Each limb must begin to move, and "
-    "come "
-    "back when you let out.",
-    "Moves late: shift the stopper towards the winch. Is bent at zero: shift it away. Then trim the tail to 30 mm.",
-)
-"""How the stoppers are set."""
+
+def calibration(*, outside: bool) -> tuple[str, ...]:
+    """How the stoppers are set; with motors outside the body the exits are those of the base."""
+    place = "where its tube leaves the base" if outside else "the exit of the winch"
+    return (
+        "Turn all winches to zero: the spool mark of each cable stands where the line meets the spool.",
+        "Pull the first cable straight by its tail, not hard: the body must not move.",
+        f"Clamp its stopper at the stopper mark: “stopper” in the list is how far it is from {place}, along the line. "
+        "The list's slack is in it: so much the line stays loose.",
+        "Do the next cable; then take in 10 mm with every winch, one after the other. Each limb must begin to move, "
+        "and come back when you let out.",
+        "Moves late: shift the stopper towards the winch. Is bent at zero: shift it away. Then trim the tail to 30 mm.",
+    )
+
 
 PLUSH_CHECKLIST = (
     "The printed bar measured 100 mm",

@@ -21,7 +21,7 @@ def stitch_scheme(sewn: CableStitches, letter: str, *, width: float, height: flo
     """
     canvas = Canvas(width, height)
     front, back = 0.36 * height, height - 4.5
-    stitches = sewn.stitches
+    stitches = [stitch for stitch in sewn.stitches if stitch.passes or stitch is sewn.stitches[-1]]
     chosen = [*stitches] if len(stitches) <= _MOST else [*stitches[: _MOST - 2], stitches[-1]]
     skipped = len(chosen) < len(stitches)
     left, right = 13.0, width - 9.0
@@ -40,7 +40,7 @@ def stitch_scheme(sewn: CableStitches, letter: str, *, width: float, height: flo
         if skipped and place == len(chosen) - 2:
             canvas.line([[*way, (x + 0.3 * step, after)]], width=THICK)
             way = [(x + 0.62 * step, level[chosen[-1].after.other] if chosen[-1].passes else level[chosen[-1].after])]
-            canvas.text((x + step / 2, front - 7.2), "…", size=8.5, bold=True)
+            canvas.text((x + step / 2, front - 10.4), "…", size=8.5, bold=True)
     end = way[-1]
     canvas.line([way], width=THICK)
     canvas.fill([[(end[0] - 0.2, end[1] - 1.5), (end[0] + 1.6, end[1] - 1.5), (end[0] + 1.6, end[1] + 1.5),

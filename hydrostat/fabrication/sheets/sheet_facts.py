@@ -33,6 +33,9 @@ _CABLES = {
 _TUBES = {"cable": "cable", "from": "from", "to": "to", "cut to": "cut to"}
 """The same of the list of tubes."""
 
+_PLACES = {"where the cable begins": "body"}
+"""What the list of tubes calls a place, and the sheet, which has less room."""
+
 Facts = dict[str, Any]
 """Plain data, as JSON has it."""
 
@@ -58,7 +61,7 @@ def sheet_facts(given: SheetInput) -> Facts:
         "shown": f"C{stitches.cable}" if (stitches := shown_stitches(given)) else "",
         "motor": shortened(given.motor, 80),
         "steps": [[_step(step) for step in page] for page in steps],
-        "calibration": list(plush_steps.CALIBRATION),
+        "calibration": list(plush_steps.calibration(outside=given.outside)),
         "safety": list(plush_steps.PLUSH_SAFETY if plush else foam_steps.FOAM_SAFETY),
         "checklist": list(plush_steps.PLUSH_CHECKLIST if plush else foam_steps.FOAM_CHECKLIST),
         "checks": [
@@ -137,7 +140,10 @@ def _table(given: SheetInput, name: str, titles: Mapping[str, str]) -> Facts | N
         "heads": [titles.get(known[place], table.columns[place].heading) for place in places],
         "right": [table.columns[place].align is Align.RIGHT for place in places],
         # What stands in brackets after the number of a point is seen on the map.
-        "rows": [[shortened(row[place].partition(" (")[0], 20) for place in places] for row in table.texts],
+        "rows": [
+            [shortened(_PLACES.get(row[place], row[place]).partition(" (")[0], 20) for place in places]
+            for row in table.texts
+        ],
     }
 
 
@@ -200,9 +206,14 @@ def piece_numbers(given: SheetInput) -> tuple[dict[str, int], dict[str, int]]:
 def _pieces(given: SheetInput) -> list[Facts]:
     """Every piece of the pictures with its number and how many are needed in all, then what else is printed."""
     units = (len(given.robot.winches), len(given.robot.cables))
+    of_mould = {part.name for part in given.mould.printed} if given.mould else set()
     kinds: dict[str, int] = {}
     for part in given.printed:
-        kinds[_kind(part.title)] = kinds.get(_kind(part.title), 0) + part.count
+        kind = _kind(part.title)
+        if part.name in of_mould and "positive" not in kind:
+            kind = f"Mould, {kind[:1].lower()}{kind[1:]}"
+        kind = kind[:1].upper() + kind[1:]
+        kinds[kind] = kinds.get(kind, 0) + part.count
     pieces: dict[int, Facts] = {}
     for assembly, numbers, unit in zip((given.winch, given.stopper), piece_numbers(given), units, strict=True):
         for placed in assembly.pieces if assembly else ():
@@ -222,8 +233,10 @@ def _pieces(given: SheetInput) -> list[Facts]:
 
 
 def _kind(title: str) -> str:
-    """What a printed part is, without the names of the winches for which it is."""
-    return title.partition(" of winch")[0].partition(" of every winch")[0]
+    """What a printed part is, without for which winches, or which of several pieces."""
+    for mark in (" of winch", " of every winch", ","):
+        title = title.partition(mark)[0]
+    return title
 
 
 def _step(step: Step) -> Facts:
@@ -248,12 +261,20 @@ def _mould(mould: Mould | None) -> Facts | None:
     ]
     return {
         "silicone": mould.kind is MouldKind.SILICONE,
-        "undercut": f"{100 * mould.share:.1f} %",
+        "undercut": _undercut(mould.share),
         "amounts": amounts,
         "ratio": sentence(body.ratio),
         "release": sentence(casting.release),
         "pieces": [f"{number} {placed.title}" for number, placed in enumerate(mould.assembly.pieces, start=1)],
     }
+
+
+def _undercut(share: float) -> str:
+    if share < 5e-4:
+        return "The arrow is the pull. All of the surface slides out."
+    return (
+        f"The arrow is the pull. Hatched: {100 * share:.1f} % of the surface cannot slide out. Squeeze the body there."
+    )
 
 
 def sentence(words: str) -> str:

@@ -11,7 +11,6 @@ from hydrostat.fabrication.sheets.sheet_facts import piece_numbers, shown_stitch
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.sight import best_views
 from hydrostat.fabrication.sheets.view import View
-from hydrostat.robot import Mount
 
 WIDE, HALF = 182.0, 88.0
 """Widths of a page and of half a page without its margins [mm]; both fit both papers."""
@@ -29,8 +28,7 @@ def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
         pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views)
     else:
         pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + minds) / 2)
-    outside = any(winch.mount is Mount.WORLD for winch in robot.winches)
-    pictures["calibration"] = stopper_scheme(outside=outside, width=HALF, height=30.0)
+    pictures["calibration"] = stopper_scheme(outside=given.outside, width=HALF, height=30.0)
     left = 201.0 - tight - minds - pictures["map"].height
     return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
 

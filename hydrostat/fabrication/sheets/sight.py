@@ -43,10 +43,6 @@ class Sight:
         turned = seen * np.array([1.0, 1.0, -1.0])
         return cls(view, DepthBuffer.of(seen, lights, pixels=_COARSE), DepthBuffer.of(turned, lights, pixels=_COARSE))
 
-    def see(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
-        """Points [mm] as they are seen."""
-        return self.view.see(points)
-
     def in_front(self, seen: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, " points"]:
         """Whether points, as seen, lie in the near half of the body or before it; so do those beside it."""
         before = -self.front.behind(seen, 0)
