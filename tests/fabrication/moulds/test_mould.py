@@ -1,6 +1,7 @@
 """Whole moulds: oracles are closed forms, boolean intersection, trimesh, and a search for air slice by slice."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from hydrostat.fabrication.moulds.mould import TOP_RIM, Mould, make_mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.mould_words import mould_problems
 from hydrostat.fabrication.moulds.openings import make_sprue
-from hydrostat.fabrication.moulds.pull import find_pull
+from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.robot import MATERIALS, Pin, Robot, gallery_folder, load_robot
 
@@ -206,9 +207,14 @@ def test_silicone_frames_hold_what_the_pours_say() -> None:
     assert mould.casting.silicone_cost > 0
 
 
+@cache
+def cube_pull() -> Pull:
+    return find_pull(Manifold.cube((50, 50, 50), True), count=1)
+
+
 def problems_of(share: float, material: str, kind: MouldKind) -> tuple[str, ...]:
     cube = Manifold.cube((50, 50, 50), True)
-    pull = replace(find_pull(cube, count=1), share=share)
+    pull = replace(cube_pull(), share=share)
     halves = Halves(upper=cube, lower=cube, cavity=cube, volumes={})
     sprue = make_sprue(cube, top=45, room=(-40, 40), deep=33)
     return mould_problems(pull, MATERIALS[material], sprue, (), (), MouldOptions(kind=kind), halves)
@@ -225,7 +231,7 @@ def test_half_in_two_and_no_sprue_are_problems() -> None:
     cube = Manifold.cube((50, 50, 50), True)
     two = cube + cube.translate((100, 0, 0))
     halves = Halves(upper=two, lower=cube, cavity=cube, volumes={})
-    found = mould_problems(find_pull(cube, count=1), MATERIALS["flexfoam-it x"], None, (), (), MouldOptions(), halves)
+    found = mould_problems(cube_pull(), MATERIALS["flexfoam-it x"], None, (), (), MouldOptions(), halves)
     assert [sentence[:20] for sentence in found] == ["the parting plane do", "the upper half of th"]
 
 
