@@ -9,7 +9,6 @@ CURES = (
     ("alginate", "less than 5 min"),
     ("plaster", "several hours"),
     ("Mold Max 30 silicone", "24 h, or 6 h at 60 °C"),
-    ("FlexFoam-iT! X", "2 h at room temperature"),
 )
 """How long each material of the nine steps cures."""
 
@@ -27,10 +26,38 @@ SILICONE_STEPS = (
 """The nine steps by which a mould of silicone is cast round a positive."""
 
 
+_STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: it rises at once."
+_STIR_SILICONE = "Stir slowly, scrape sides and bottom, and let the bubbles rise, in a vacuum if you have one."
+_POUR_FOAM = (
+    "At once, in a thin stream down the sprue. Close a vent with tape when foam looks out of it; the sprue last."
+)
+_POUR_SILICONE = (
+    "In a thin stream down the sprue, until it stands in all vents. Tap the mould; fill up what sinks as bubbles rise."
+)
+_OPEN = (
+    "Lift the halves apart along the arrow, slowly. Where the body holds (hatched), squeeze it and roll it out. Trim "
+    "flash, sprue and vents with scissors."
+)
+_OPEN_FOAM = " Squeeze the body all over to open its cells."
+
+
+def rises(mould: Mould | None) -> bool:
+    """Whether what is poured is a foam; what else is cast is silicone."""
+    return mould is None or mould.casting.expansion > 1
+
+
+def cures(mould: Mould | None) -> tuple[tuple[str, str], ...]:
+    """How long each material cures, that of the body last."""
+    if mould is None:
+        return CURES
+    what, time = mould.casting.times[-1]
+    return (*CURES, (what.removesuffix(" cures"), time.partition(" (")[0]))
+
+
 def mould_steps(given: SheetInput, mould: Mould) -> tuple[Step, ...]:
     """From the files of the mould to a body of foam."""
     printed = mould.kind is MouldKind.PRINTED
-    mix = mould.casting.body
+    mix, foams = mould.casting.body, rises(mould)
     return (
         *(_printed_first(given, mould) if printed else _silicone_first(mould)),
         Step(
@@ -43,25 +70,11 @@ def mould_steps(given: SheetInput, mould: Mould) -> tuple[Step, ...]:
         Step(
             "Weigh and stir",
             5,
-            f"{mix.part_a:.0f} g of part A and {mix.part_b:.0f} g of part B of {mix.material}, each in its own cup, "
-            "if your "
-            "tins ask for this ratio. Stir with an egg mixer as long as the label says, not longer: it rises at "
-            "once.",
+            f"{mix.part_a:.0f} g of part A and {mix.part_b:.0f} g of part B of {mix.material}, each in its own cup, if "
+            "your tins ask for this ratio. " + (_STIR_FOAM if foams else _STIR_SILICONE),
         ),
-        Step(
-            "Pour",
-            5,
-            "At once, in a thin stream down the sprue. Close a vent with tape when foam looks out of it; the sprue "
-            "last.",
-            wait="its cure",
-        ),
-        Step(
-            "Open",
-            20,
-            "Lift the halves apart along the arrow, slowly. Where the body holds (hatched), squeeze it and roll it "
-            "out. Trim "
-            "flash, sprue and vents with scissors. Squeeze the body all over to open its cells.",
-        ),
+        Step("Pour", 5, _POUR_FOAM if foams else _POUR_SILICONE, wait="its cure"),
+        Step("Open", 20, _OPEN + (_OPEN_FOAM if foams else "")),
     )
 
 
@@ -175,19 +188,26 @@ def skin_steps(given: SheetInput) -> tuple[Step, ...]:
     )
 
 
+def foam_safety(mould: Mould | None) -> tuple[str, ...]:
+    """What to mind, of a body of foam or silicone."""
+    return (*(_FOAM if rises(mould) else ()), *FOAM_SAFETY)
+
+
+_FOAM = (
+    "Foam is made of isocyanate: nitrile gloves, goggles, long sleeves, an open window or a hood. Who has asthma does "
+    "not pour. Cured foam is harmless.",
+    "Foam rises with force and warmth: never close the last opening, never use a glass vessel.",
+)
+
 FOAM_SAFETY = (
-    "Foam is made of isocyanate: nitrile gloves, goggles, long sleeves, an open window or a hood. Who has asthma "
-    "does not "
-    "pour. Cured foam is harmless.",
     "Silicone and release spray: gloves and fresh air, no flame, no food vessels.",
     "Plaster grows hot as it sets: never round a hand or any skin. Alginate only is for skin.",
-    "Foam rises with force and warmth: never close the last opening, never use a glass vessel.",
     "Spray adhesive outdoors, away from flames and motors.",
     "Keep fingers, hair and strings away from spools and taut lines while the power is on.",
     "Have a switch that cuts the power. Stop at once if a motor stalls, hums or grows hot.",
     "Small parts, screws and lines are no toys: keep them away from children under three.",
 )
-"""What to mind."""
+"""What to mind in any case."""
 
 FOAM_CHECKLIST = (
     "Parts A and B weighed, not measured by eye",

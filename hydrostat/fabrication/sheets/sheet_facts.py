@@ -12,6 +12,7 @@ from hydrostat.fabrication.sheets import foam_steps, plush_steps
 from hydrostat.fabrication.sheets.cable_map import winch_letter
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.step import Step, count_text, minutes_text
+from hydrostat.fabrication.solids.assembly import Placed
 
 _NAME, _SHORT, _SENTENCE = 60, 26, 260
 """Longest name of the robot, of a winch, of a sentence, in letters."""
@@ -62,7 +63,7 @@ def sheet_facts(given: SheetInput) -> Facts:
         "motor": shortened(given.motor, 80),
         "steps": [[_step(step) for step in page] for page in steps],
         "calibration": list(plush_steps.calibration(outside=given.outside)),
-        "safety": list(plush_steps.PLUSH_SAFETY if plush else foam_steps.FOAM_SAFETY),
+        "safety": list(plush_steps.PLUSH_SAFETY if plush else foam_steps.foam_safety(given.mould)),
         "checklist": list(plush_steps.PLUSH_CHECKLIST if plush else foam_steps.FOAM_CHECKLIST),
         "checks": [
             {"what": check.what, "measured": check.measured, "allowed": check.allowed, "passed": check.passed}
@@ -70,7 +71,7 @@ def sheet_facts(given: SheetInput) -> Facts:
         ],
         "mould": _mould(given.mould),
         "silicone_steps": list(foam_steps.SILICONE_STEPS),
-        "cures": [list(cure) for cure in foam_steps.CURES],
+        "cures": [list(cure) for cure in foam_steps.cures(given.mould)],
     }
 
 
@@ -220,23 +221,28 @@ def _pieces(given: SheetInput) -> list[Facts]:
             number = numbers[placed.name]
             entry = pieces.get(number)
             if entry is None:
-                entry = {"number": str(number), "title": placed.title, "printed": placed.printed, "count": 0}
+                entry = {"number": str(number), "title": _called(placed), "printed": placed.printed, "count": 0}
                 pieces[number] = entry
             entry["count"] += 0 if placed.printed and placed.title in kinds else unit
     for entry in pieces.values():
         entry["count"] += kinds.pop(entry["title"], 0) if entry["printed"] else 0
     rest = [{"number": "", "title": title, "count": count, "printed": True} for title, count in kinds.items()]
     return [
-        {**entry, "title": shortened(entry["title"].partition(",")[0], 44), "count": str(entry["count"])}
+        {**entry, "title": shortened(entry["title"], 44), "count": str(entry["count"])}
         for entry in (*pieces.values(), *rest)
     ]
 
 
+def _called(placed: Placed) -> str:
+    """A bought piece without its details, which are in the bill."""
+    return placed.title if placed.printed else placed.title.partition(",")[0]
+
+
 def _kind(title: str) -> str:
     """What a printed part is, without for which winches, or which of several pieces."""
-    for mark in (" of winch", " of every winch", ","):
+    for mark in (" of winch", " of every winch", ", piece", ", part"):
         title = title.partition(mark)[0]
-    return title
+    return title.removeprefix("mould, ").removeprefix("Mould, ")
 
 
 def _step(step: Step) -> Facts:

@@ -1,6 +1,7 @@
 """The assembly sheet, read back by pypdf."""
 
 import io
+from dataclasses import replace
 from importlib.resources import files
 
 import pytest
@@ -9,8 +10,10 @@ from sheet_inputs import checks, foam, plush, tables
 
 from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.lists.table import Table
+from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_facts import shortened
+from hydrostat.robot import MATERIALS, Mount
 
 NASTY = '#let x = 1 $*_ <b>&"\\'
 
@@ -90,6 +93,30 @@ def test_a_mould_of_silicone_follows_the_nine_steps():
     text = words(assembly_sheet(foam(silicone=True)))
     assert "Follow the nine steps" in text
     assert "mold max 30, second pour" in text
+
+
+def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
+    given = foam()
+    assert given.mould is not None
+    casting, _ = make_casting(MATERIALS["ecoflex 00-30"], 480e3, pours=())
+    text = words(assembly_sheet(foam(mould=replace(given.mould, casting=casting))))
+    assert "isocyanate" not in text
+    assert "let the bubbles rise" in text
+    assert "4 h at 25 C" in text
+    assert "egg mixer as long" in words(foam_sheet)
+
+
+def test_motors_in_the_body_need_no_base(foam_sheet):
+    given = foam()
+    inside = tuple(
+        replace(winch, at=cable.points[1], mount=Mount.BODY)
+        for winch, cable in zip(given.robot.winches, given.robot.cables, strict=True)
+    )
+    cables = tuple(replace(cable, points=cable.points[1:], sheathed=()) for cable in given.robot.cables)
+    text = words(assembly_sheet(replace(given, robot=given.robot.with_network(inside, cables))))
+    assert "its pocket in the foam" in text
+    assert "the base" not in text
+    assert "leaves the base" in words(foam_sheet)
 
 
 @pytest.mark.parametrize("make", [plush, foam])
