@@ -6,13 +6,8 @@ from dataclasses import dataclass
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.lists.table import Align, Column, Table
-from hydrostat.fabrication.parts.motor import Motor
+from hydrostat.fabrication.parts.motor import MARGIN, Motor
 from hydrostat.robot import Robot, Winch
-
-MARGIN = 2.0
-"""Torque of a motor over the largest that was simulated. Simulated cables mostly run without friction: one that turns
-by 360 degrees in all at mu = 0.1 needs exp(0.1 * 2 pi) = 1.9 times the tension at its winch (capstan). Bodies also
-differ from their assumed stiffness, and motors age."""
 
 SLOW = 10.0
 """A winch that takes longer than this for its full travel [s] is called slow."""

@@ -12,11 +12,7 @@ from hydrostat.fabrication.parts.stopper import Stopper, stopper
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
 from hydrostat.fabrication.solids.assembly import Assembly
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Robot
-
-MARGIN = 1.25
-"""Advised torque of a motor over the largest that was simulated, for bodies stiffer than assumed. No more is needed:
-what is advised is a quarter or a fifth of stall, which leaves room for the friction at pinholes."""
+from hydrostat.robot import Mount, Robot
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -30,7 +26,6 @@ class RigidParts:
         stopper: one for each cable; None without cables.
         grommet: one for each pinhole, counted; None without pinholes.
         cables: how many there are.
-        chosen: what to mind of the motor.
         between: what to mind of winches side by side.
     """
 
@@ -40,7 +35,6 @@ class RigidParts:
     stopper: Stopper | None
     grommet: Printed | None
     cables: int
-    chosen: tuple[str, ...] = ()
     between: tuple[str, ...] = ()
 
     @property
@@ -90,7 +84,7 @@ class RigidParts:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to mind."""
-        return (*self.chosen, *(text for unit in self.units for text in unit.warnings), *self.between)
+        return (*(text for unit in self.units for text in unit.warnings), *self.between)
 
 
 def rigid_parts(
@@ -102,7 +96,6 @@ def rigid_parts(
     bed: tuple[float, float, float],
     holes: int = 0,
     hole: float = 2.0,
-    margin: float = MARGIN,
 ) -> RigidParts:
     """The rigid parts of a robot.
 
@@ -114,13 +107,13 @@ def rigid_parts(
         bed: largest piece that the printer takes, along x, y and z [mm].
         holes: pinholes that get a grommet.
         hole: diameter of a pinhole [mm].
-        margin: torque that a motor should carry over the largest that was simulated.
 
     Raises:
         InputError: there is no such motor, or a pinhole is too small for a grommet.
     """
-    chosen, notes = choose_motor(motor, demand.torques, margin)
-    units = winch_units(robot, demand, options, chosen)
+    inside = any(winch.mount is Mount.BODY for winch in robot.winches)
+    chosen = choose_motor(motor, demand.torques, inside=inside)
+    units = winch_units(robot, options, chosen)
     return RigidParts(
         motor=chosen,
         units=units,
@@ -128,7 +121,6 @@ def rigid_parts(
         stopper=stopper(options) if robot.cables else None,
         grommet=replace(grommet(options, hole), count=holes) if holes else None,
         cables=len(robot.cables),
-        chosen=notes,
         between=crowded(robot, units),
     )
 

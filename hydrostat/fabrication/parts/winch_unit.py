@@ -7,7 +7,6 @@ from itertools import combinations
 
 import numpy as np
 
-from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.parts.housing import Housing
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.part_options import PartOptions
@@ -17,9 +16,6 @@ from hydrostat.fabrication.parts.winch_parts import WinchParts
 from hydrostat.fabrication.solids.assembly import Assembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot, Winch
-
-_SLOW = 10.0
-"""A winch that takes longer for its full travel is called slow [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,14 +93,14 @@ class WinchUnit:
         return x - a, y - b, z - c
 
 
-def winch_units(robot: Robot, demand: Demand, options: PartOptions, motor: Motor) -> tuple[WinchUnit, ...]:
+def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[WinchUnit, ...]:
     """A unit for each winch that has cables, in winch order; equal parts have the same name."""
     parts = WinchParts()
     units = []
-    for winch, torque in zip(robot.winches, demand.torques, strict=True):
+    for winch in robot.winches:
         cables = tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name)
         if cables:
-            units.append(_unit(robot, winch, cables, 1e3 * float(torque), options, motor, parts))
+            units.append(_unit(robot, winch, cables, options, motor, parts))
     return tuple(units)
 
 
@@ -127,7 +123,6 @@ def _unit(
     robot: Robot,
     winch: Winch,
     cables: tuple[int, ...],
-    torque: float,
     options: PartOptions,
     motor: Motor,
     parts: WinchParts,
@@ -152,7 +147,7 @@ def _unit(
         bought=_bought(housing),
         across=across,
         problems=problems,
-        warnings=(*warnings, *_motor_warnings(winch, torque, motor)),
+        warnings=warnings,
     )
     return unit if thickness is None or outside else _checked_thickness(unit, thickness)
 
@@ -211,22 +206,4 @@ def _bought(housing: Housing) -> tuple[tuple[str, int], ...]:
     found.append((housing.screw.title, 4))
     if housing.outside:
         found.append(("M2 nut", 4))
-    return tuple(found)
-
-
-def _motor_warnings(winch: Winch, torque: float, motor: Motor) -> tuple[str, ...]:
-    asks = f'winch "{winch.name}" asks for {torque:.0f} N mm'
-    if torque >= motor.stall_torque:
-        return (f"{asks}, {motor.title} stalls at {motor.stall_torque:.0f} N mm: it cannot reach the poses",)
-    found = []
-    if torque > motor.rated_torque:
-        found.append(
-            f"{asks}, {motor.title} should carry {motor.rated_torque:.0f} N mm at most: hold such poses briefly"
-        )
-    speed = motor.speed / 60 * 2 * math.pi * winch.spool_radius * (1 - torque / motor.stall_torque)
-    if winch.travel / speed > _SLOW:
-        found.append(
-            f'winch "{winch.name}" takes {winch.travel / speed:.0f} s for its travel of {1e3 * winch.travel:.0f} mm '
-            f"with {motor.title} under its largest load"
-        )
     return tuple(found)

@@ -6,7 +6,7 @@ import pytest
 from manifold3d import Manifold
 from overhang import overhang
 from shapely.geometry import Polygon
-from winch_robots import gallery_robot, given_demand
+from winch_robots import gallery_robot
 
 from hydrostat.fabrication.parts.base_plan import FREE
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
@@ -27,7 +27,7 @@ def base_of(
     name: str, motor: Motor = MOTORS[0], bed: tuple[float, float, float] = BED
 ) -> tuple[BasePlate, tuple[WinchUnit, ...]]:
     robot = gallery_robot(name)
-    units = winch_units(robot, given_demand(robot), PartOptions(), motor)
+    units = winch_units(robot, PartOptions(), motor)
     base = base_plate(robot, units, PartOptions(), bed)
     assert base is not None
     return base, units
@@ -64,7 +64,7 @@ def test_a_motor_beside_its_hole_is_found():
 
 def test_a_base_only_for_winches_outside():
     robot = gallery_robot("starfish")
-    units = winch_units(robot, given_demand(robot), PartOptions(), MOTORS[0])
+    units = winch_units(robot, PartOptions(), MOTORS[0])
     assert base_plate(robot, units, PartOptions(), BED) is None
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from manifold3d import Manifold
-from winch_robots import gallery_robot, given_demand, with_winches
+from winch_robots import gallery_robot, with_winches
 
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.part_options import PartOptions
@@ -19,8 +19,8 @@ from hydrostat.robot import Mount, Robot, gallery_names
 N20, XL330, POLOLU_25D = MOTORS
 
 
-def units_of(robot: Robot, motor: Motor = N20, *, torque: float = 0.03, **options: float) -> tuple[WinchUnit, ...]:
-    return winch_units(robot, given_demand(robot, torque), PartOptions(**options), motor)
+def units_of(robot: Robot, motor: Motor = N20, **options: float) -> tuple[WinchUnit, ...]:
+    return winch_units(robot, PartOptions(**options), motor)
 
 
 def distinct(units: tuple[WinchUnit, ...]) -> list[WinchUnit]:
@@ -119,7 +119,7 @@ def test_a_thick_cable_lies_in_one_layer_on_a_longer_spool():
     options = PartOptions(cable=1.0, tube=4.0, bore=2.0, clearance=0.4, fit=0.25)
     robot = gallery_robot("letter_s")
     for motor in MOTORS:
-        (unit,) = winch_units(robot, given_demand(robot), options, motor)
+        (unit,) = winch_units(robot, options, motor)
         assert unit.problems == ()
         assert {groove.layers for groove in unit.spool.grooves} == {1}
         assert interferences(unit.assembly) == ()
@@ -135,16 +135,6 @@ def test_a_shaft_too_short_for_thick_walls_is_refused():
     (unit,) = units_of(with_winches(robot, spool_radius=0.012), wall=5.0)
     assert any("of the shaft" in text and "3.6 mm are needed" in text for text in unit.problems)
     assert units_of(with_winches(robot, spool_radius=0.012), POLOLU_25D, wall=2.0)[0].problems == ()
-
-
-def test_a_weak_or_slow_motor_is_said():
-    robot = gallery_robot("letter_s")
-    assert units_of(robot)[0].warnings == ()
-    assert "stalls at 196 N mm" in units_of(robot, torque=0.2)[0].warnings[0]
-    texts = units_of(robot, torque=0.16)[0].warnings
-    assert "should carry 49 N mm at most" in texts[0]
-    seconds = 60 / (45 / 60 * 2 * math.pi * 6 * (1 - 160 / 196))
-    assert f"takes {seconds:.0f} s" in texts[1]
 
 
 def test_a_unit_thicker_than_a_flat_body_is_said():
