@@ -23,10 +23,9 @@ def plush_steps(given: SheetInput) -> tuple[Step, ...]:
         Step(
             "Cut the cloth",
             20,
-            "Laser pattern.svg or pattern.dxf: marks first, then pinholes, edges last. Or print pattern.pdf at 100 "
-            "%, "
-            "check that its bar measures 100 mm, cut by hand and punch the pinholes. Keep the grain arrows along "
-            "the cloth.",
+            "Laser pattern.svg or pattern.dxf: marks first, then pinholes, edges last. Or print the pages of the "
+            "pattern at 100 %, check that the bar measures 100 mm, cut by hand and punch the pinholes. Keep the grain "
+            "arrows along the cloth.",
         ),
         Step(
             "Cut cables and sheaths",

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.lists.table import Align, Table
+from hydrostat.fabrication.lists.table import Align, Cell, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.patterns.stitches import CableStitches
@@ -36,6 +36,14 @@ _TUBES = {"cable": "cable", "from": "from", "to": "to", "cut to": "cut to"}
 
 _PLACES = {"where the cable begins": "body"}
 """What the list of tubes calls a place, and the sheet, which has less room."""
+
+_TOTAL = "total"
+"""What the bill calls the rows that sum others."""
+
+_BY_DETAIL = ("screw or nut", "geared motor")
+"""Things of the bill that are called by their specification."""
+
+_UNITS = {"piece": "", "m^2": "m²"}
 
 Facts = dict[str, Any]
 """Plain data, as JSON has it."""
@@ -112,12 +120,24 @@ def _about(given: SheetInput, steps: Iterable[Iterable[Step]]) -> list[str]:
 
 
 def _cost(given: SheetInput) -> float | None:
-    """Of all that is bought [USD]; None if the bill does not say."""
+    """Of all that is used up [USD]; None if the bill does not say."""
     bill = given.tables.get("bill_of_materials")
-    if bill is None or not any(column.title == "cost" for column in bill.columns):
+    title = _cost_title(bill) if bill is not None else ""
+    if bill is None or not title:
         return None
-    costs = [cell for cell in bill.column("cost") if isinstance(cell, float | int)]
+    named = bill.column("what") if any(column.title == "what" for column in bill.columns) else ("",) * len(bill.rows)
+    costs = [
+        cell
+        for cell, what in zip(bill.column(title), named, strict=True)
+        if isinstance(cell, float | int) and what != _TOTAL
+    ]
     return float(sum(costs)) if costs else None
+
+
+def _cost_title(bill: Table) -> str:
+    """Under which title the bill says what a thing costs; empty if it does not."""
+    known = [column.title for column in bill.columns]
+    return next((title for title in ("used up", "cost") if title in known), "")
 
 
 def _minds(given: SheetInput) -> list[str]:
@@ -153,24 +173,36 @@ def _bill(given: SheetInput) -> Facts | None:
     bill = given.tables.get("bill_of_materials")
     if bill is None:
         return None
-    known = [column.title for column in bill.columns]
+    known, title = [column.title for column in bill.columns], _cost_title(bill)
     rows = []
     for row, texts in zip(bill.rows, bill.texts, strict=True):
         cells = dict(zip(known, row, strict=True))
-        words = dict(zip(known, texts, strict=True))
-        quantity, cost = cells.get("quantity"), cells.get("cost")
-        amount = f"{quantity:.3g}" if isinstance(quantity, float | int) else words.get("quantity", "")
-        price = f"{cost:.0f}" if isinstance(cost, float | int) else words.get("cost", "")
-        if words.get("what", texts[0]):
-            rows.append(
-                [shortened(words.get("what", texts[0]), 40), f"{amount} {words.get('unit', '')}".strip(), price]
-            )
+        what = str(cells.get("what", texts[0]))
+        if what == _TOTAL:
+            continue
+        detail = str(cells.get("specification", "")).partition(",")[0]
+        name = detail if what in _BY_DETAIL and detail else what
+        cost = cells.get(title)
+        rows.append([shortened(name, 40), _amount(cells), f"{cost:.0f}" if isinstance(cost, float | int) else ""])
+    total = _cost(given)
+    if total is not None:
+        rows.append(["together", "", f"{total:.0f}"])
     return {
         "file": "bill_of_materials.csv",
         "heads": ["what", "amount", "USD"],
         "right": [False, True, True],
         "rows": rows,
     }
+
+
+def _amount(cells: Mapping[str, Cell]) -> str:
+    """How much of a thing, small masses in grams."""
+    quantity, unit = cells.get("quantity"), str(cells.get("unit", "") or "")
+    if not isinstance(quantity, float | int):
+        return str(quantity or "")
+    if unit == "kg" and quantity < 1:
+        return f"{1e3 * quantity:.0f} g"
+    return f"{quantity:.3g} {_UNITS.get(unit, unit)}".strip()
 
 
 def _winches(given: SheetInput) -> list[Facts]:

@@ -29,7 +29,7 @@ def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
     else:
         pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + minds) / 2)
     pictures["calibration"] = stopper_scheme(outside=given.outside, width=HALF, height=30.0)
-    left = 201.0 - tight - minds - pictures["map"].height
+    left = 195.0 - tight - minds - pictures["map"].height
     return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
 
 

@@ -9,7 +9,7 @@ from pypdf import PdfReader
 from sheet_inputs import checks, foam, plush, tables
 
 from hydrostat.fabrication.kit_options import Paper
-from hydrostat.fabrication.lists.table import Table
+from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_facts import shortened
@@ -175,6 +175,22 @@ def test_nothing_but_the_robot_is_enough():
     assert len(read(assembly_sheet(given)).pages) == 2
     given = foam(winch=None, stopper=None, printed=(), tables={}, checks=(), mould=None)
     assert len(read(assembly_sheet(given)).pages) == 4
+
+
+def test_the_bill_is_told_in_short_with_one_sum():
+    words_of = [Column(title=title, align=Align.LEFT) for title in ("what", "specification")]
+    columns = (*words_of, Column(title="quantity"), Column(title="unit", align=Align.LEFT), Column(title="used up"))
+    rows = (
+        ("felt", "no PVC", 0.2, "m^2", 4.0),
+        ("screw or nut", "M2 x 6 mm screw, self-tapping", 12.0, "piece", 1.0),
+        ("filling", "fibre", 0.05, "kg", 2.0),
+        ("total", "", None, "", 7.0),
+    )
+    bill = Table(name="bill_of_materials", title="Bill", columns=columns, rows=rows)
+    text = words(assembly_sheet(plush(tables={"bill_of_materials": bill})))
+    for part in ("felt 0.2 m² 4", "M2 x 6 mm screw 12 1", "filling 50 g 2", "together 7", "of work, 7 USD"):
+        assert part in text
+    assert "total" not in text
 
 
 def test_a_list_with_other_columns_is_told_whole():
