@@ -7,6 +7,9 @@ from hydrostat.robot import Robot
 LEFT_OVER = 1e-6
 """Share of the block whose whereabouts may be unknown: what booleans round."""
 
+_ROUNDING = 1e-9
+"""Less than this share is the rounding of sums."""
+
 MESH = 0.05
 """Share of its volume by which the body that is cast may differ from the mesh that was simulated."""
 
@@ -23,7 +26,7 @@ def mould_checks(robot: Robot, mould: Mould) -> tuple[Check, ...]:
     return (
         Check(
             what="halves, cavity, sprue, vents, keys and holes of the mould add up to its block",
-            measured=f"{lost:.1e} of it left over",
+            measured=f"{lost:.0e} of it left over" if lost > _ROUNDING else "nothing left over",
             allowed=f"{LEFT_OVER:.0e}",
             passed=lost <= LEFT_OVER,
         ),
