@@ -1,14 +1,14 @@
 """`sheet_facts`: the words and numbers of a sheet, as plain data for its template."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.lists.table import Align, Cell, Table
+from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets import foam_steps, plush_steps
+from hydrostat.fabrication.sheets.bill_facts import Facts, bill_facts, cost_of, shortened
 from hydrostat.fabrication.sheets.cable_map import winch_letter
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.step import Step, count_text, minutes_text
@@ -37,17 +37,6 @@ _TUBES = {"cable": "cable", "from": "from", "to": "to", "cut to": "cut to"}
 _PLACES = {"where the cable begins": "body"}
 """What the list of tubes calls a place, and the sheet, which has less room."""
 
-_TOTAL = "total"
-"""What the bill calls the rows that sum others."""
-
-_BY_DETAIL = ("screw or nut", "geared motor")
-"""Things of the bill that are called by their specification."""
-
-_UNITS = {"piece": "", "m^2": "m²"}
-
-Facts = dict[str, Any]
-"""Plain data, as JSON has it."""
-
 
 def sheet_facts(given: SheetInput) -> Facts:
     """All words and numbers, long ones shortened."""
@@ -61,7 +50,7 @@ def sheet_facts(given: SheetInput) -> Facts:
         "facts": _about(given, steps),
         "mind": _minds(given),
         "forced": bool(given.problems),
-        "bill": _bill(given),
+        "bill": bill_facts(given),
         "cables": _table(given, "cable_cuts", _CABLES),
         "log": [f"C{number}" for number in range(1, len(given.robot.cables) + 1)],
         "tubes": _table(given, "sheath_cuts", _TUBES),
@@ -81,12 +70,6 @@ def sheet_facts(given: SheetInput) -> Facts:
         "silicone_steps": list(foam_steps.SILICONE_STEPS),
         "cures": [list(cure) for cure in foam_steps.cures(given.mould)],
     }
-
-
-def shortened(text: str, most: int) -> str:
-    """On one line, and of at most so many letters: the end of longer ones is an ellipsis."""
-    line = " ".join(text.split())
-    return line if len(line) <= most else line[: most - 1].rstrip() + "…"
 
 
 def shown_stitches(given: SheetInput) -> CableStitches | None:
@@ -111,33 +94,12 @@ def _about(given: SheetInput, steps: Iterable[Iterable[Step]]) -> list[str]:
     if robot.body.thickness is not None:
         sides.append(1e3 * robot.body.thickness)
     busy = sum(step.minutes for page in steps for step in page)
-    cost = _cost(given)
+    cost = cost_of(given)
     return [
         " × ".join(f"{side:.0f}" for side in sides) + " mm",
         f"{count_text(len(robot.winches), 'winch', 'winches')}, {count_text(len(robot.cables), 'cable')}",
         f"about {minutes_text(busy)} of work" + (f", {cost:.0f} USD" if cost is not None else ""),
     ]
-
-
-def _cost(given: SheetInput) -> float | None:
-    """Of all that is used up [USD]; None if the bill does not say."""
-    bill = given.tables.get("bill_of_materials")
-    title = _cost_title(bill) if bill is not None else ""
-    if bill is None or not title:
-        return None
-    named = bill.column("what") if any(column.title == "what" for column in bill.columns) else ("",) * len(bill.rows)
-    costs = [
-        cell
-        for cell, what in zip(bill.column(title), named, strict=True)
-        if isinstance(cell, float | int) and what != _TOTAL
-    ]
-    return float(sum(costs)) if costs else None
-
-
-def _cost_title(bill: Table) -> str:
-    """Under which title the bill says what a thing costs; empty if it does not."""
-    known = [column.title for column in bill.columns]
-    return next((title for title in ("used up", "cost") if title in known), "")
 
 
 def _minds(given: SheetInput) -> list[str]:
@@ -166,43 +128,6 @@ def _table(given: SheetInput, name: str, titles: Mapping[str, str]) -> Facts | N
             for row in table.texts
         ],
     }
-
-
-def _bill(given: SheetInput) -> Facts | None:
-    """What is bought, how much of it, and what it costs, with the total."""
-    bill = given.tables.get("bill_of_materials")
-    if bill is None:
-        return None
-    known, title = [column.title for column in bill.columns], _cost_title(bill)
-    rows = []
-    for row, texts in zip(bill.rows, bill.texts, strict=True):
-        cells = dict(zip(known, row, strict=True))
-        what = str(cells.get("what", texts[0]))
-        if what == _TOTAL:
-            continue
-        detail = str(cells.get("specification", "")).partition(",")[0]
-        name = detail if what in _BY_DETAIL and detail else what
-        cost = cells.get(title)
-        rows.append([shortened(name, 40), _amount(cells), f"{cost:.0f}" if isinstance(cost, float | int) else ""])
-    total = _cost(given)
-    if total is not None:
-        rows.append(["together", "", f"{total:.0f}"])
-    return {
-        "file": "bill_of_materials.csv",
-        "heads": ["what", "amount", "USD"],
-        "right": [False, True, True],
-        "rows": rows,
-    }
-
-
-def _amount(cells: Mapping[str, Cell]) -> str:
-    """How much of a thing, small masses in grams."""
-    quantity, unit = cells.get("quantity"), str(cells.get("unit", "") or "")
-    if not isinstance(quantity, float | int):
-        return str(quantity or "")
-    if unit == "kg" and quantity < 1:
-        return f"{1e3 * quantity:.0f} g"
-    return f"{quantity:.3g} {_UNITS.get(unit, unit)}".strip()
 
 
 def _winches(given: SheetInput) -> list[Facts]:

@@ -12,7 +12,7 @@ from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
-from hydrostat.fabrication.sheets.sheet_facts import shortened
+from hydrostat.fabrication.sheets.bill_facts import shortened
 from hydrostat.robot import MATERIALS, Mount
 
 NASTY = '#let x = 1 $*_ <b>&"\\'
