@@ -31,6 +31,14 @@ _DRIVER_MOTORS = 2
 
 _BODY, _CABLES, _WINCHES, _CONTROL, _MOULD = "body", "cables", "winches", "control", "mould"
 
+_NEEDLES = Item(
+    group=_BODY,
+    what="needles",
+    specification="sewing, and a long doll needle",
+    quantity=1.0,
+    price=PRICES["needle"],
+)
+
 
 def all_needs(given: ListInput, line: Line, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:
     """What a robot takes, group by group."""
@@ -82,13 +90,7 @@ def _plush(given: ListInput, cloth: Cloth) -> list[Item]:
             quantity=1.0 if cloth.zipper > 0 else 0.0,
             price=PRICES["zipper"],
         ),
-        Item(
-            group=_BODY,
-            what="needles",
-            specification="sewing, and a long doll needle",
-            quantity=1.0,
-            price=PRICES["needle"],
-        ),
+        _NEEDLES,
     ]
 
 
@@ -115,13 +117,7 @@ def _foam(given: ListInput, foam: FoamNeeds) -> list[Item]:
             quantity=1.0,
             price=PRICES["glue"],
         ),
-        Item(
-            group=_BODY,
-            what="needles",
-            specification="sewing, and a long doll needle",
-            quantity=1.0,
-            price=PRICES["needle"],
-        ),
+        _NEEDLES,
     ]
 
 

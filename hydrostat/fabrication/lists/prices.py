@@ -2,6 +2,7 @@
 
 from types import MappingProxyType
 
+from hydrostat.fabrication.moulds.casting import SILICONE_PRICE
 from hydrostat.fabrication.price import Price
 
 _SHEET = 0.2286 * 0.3048
@@ -53,7 +54,7 @@ PRICES = MappingProxyType(
             amount=19.99, unit="kg", month="2023-05", source="parts list of SCUTTLE mini (D. Malawey): filament, 1 kg"
         ),
         "foam": Price(amount=40.0, unit="kg", pack=0.5),
-        "silicone": Price(amount=40.0, unit="kg"),
+        "silicone": Price(amount=SILICONE_PRICE, unit="kg"),
         "release": Price(amount=15.0, unit="can"),
         "glue": Price(amount=15.0, unit="can"),
         "skin": Price(amount=8.0),
