@@ -259,10 +259,11 @@ def _base_files(name: str, rigid: RigidParts) -> dict[str, bytes]:
 def _summary(rigid: RigidParts, printed: tuple[Printed, ...], lists: Lists) -> tuple[str, ...]:
     """What is in a kit besides the body, a line each."""
     count, mass = sum(part.count for part in printed), sum(part.count * part.mass for part in printed)
+    used, packs = lists.cost
     return (
         f"Winches: {len(rigid.units)} x {rigid.motor.title}",
         f"To print: {counted(count, 'piece')}, about {mass:.0f} g",
-        f"To buy: about {lists.cost:.0f} USD, in whole packs",
+        f"To buy: about {used:.0f} USD of what is used up, {packs:.0f} USD in whole packs",
     )
 
 

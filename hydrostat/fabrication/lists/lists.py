@@ -35,10 +35,11 @@ class Lists:
     checks: tuple[Check, ...]
 
     @property
-    def cost(self) -> float:
-        """Of all that is bought, in whole packs [USD]."""
-        total = self.table("bill_of_materials").column("in whole packs")[-1]
-        return float(total or 0.0)
+    def cost(self) -> tuple[float, float]:
+        """Of all that is used up, and of all that is bought in whole packs [USD]."""
+        bill = self.table("bill_of_materials")
+        used, packs = (bill.column(title)[-1] for title in ("used up", "in whole packs"))
+        return float(used or 0.0), float(packs or 0.0)
 
     def table(self, name: str) -> Table:
         """The table of this name.
