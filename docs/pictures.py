@@ -3,7 +3,9 @@
 Everything shown is computed here: the network is designed, its poses are solved.
 """
 
+import subprocess
 import sys
+import tempfile
 from io import BytesIO
 from pathlib import Path
 
@@ -50,6 +52,7 @@ def main() -> None:
     draw_bodies()
     draw_hand()
     draw_dirt()
+    draw_kits()
 
 
 def draw_dance() -> None:
@@ -57,6 +60,29 @@ def draw_dance() -> None:
     robot = hs.load_robot(gallery_folder("starfish"))
     trajectory = hs.solve_ik_trajectory(hs.Simulation(robot), list(robot.poses.values()), loop=True)
     save_png(draw_trajectory(robot, trajectory, title=""), HERE / "trajectory.png", dpi=140)
+
+
+def draw_kits() -> None:
+    """Pages of assembly sheets beside each other, by pdftoppm (Debian's poppler-utils)."""
+    pages = [_page("starfish", 1), _page("cupping_hand", 2), _page("cupping_hand", 3)]
+    gap = np.ones((pages[0].shape[0], 24, 3))
+    row = np.concatenate([pages[0], gap, pages[1], gap, pages[2]], axis=1)
+    matplotlib.image.imsave(HERE / "kit.png", row)
+
+
+def _page(name: str, page: int) -> np.ndarray:
+    """A page of the assembly sheet of a gallery robot, with a thin grey frame."""
+    kit = hs.build_kit(hs.load_robot(gallery_folder(name)))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "sheet.pdf"
+        path.write_bytes(kit.files["assembly_sheet.pdf"])
+        which = ["-f", str(page), "-l", str(page), "-singlefile"]
+        subprocess.run(["pdftoppm", "-png", "-r", "75", *which, path, path.with_suffix("")], check=True)
+        picture = matplotlib.image.imread(path.with_suffix(".png"))[:, :, :3]
+    picture = picture.copy()
+    for edge in (picture[:2], picture[-2:], picture[:, :2], picture[:, -2:]):
+        edge[:] = 0.75
+    return picture
 
 
 def draw_hand() -> None:
