@@ -35,15 +35,25 @@ class Demand:
     missed: tuple[str, ...] = ()
 
 
-def find_demand(robot: Robot) -> Demand:
-    """What the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at its full travel."""
+def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = None) -> Demand:
+    """What the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at its full travel.
+
+    With friction of cables, for which there is no inverse kinematics, winches are pulled too.
+
+    Args:
+        robot: with its poses.
+        progress: told how many poses are solved, of how many.
+    """
     count = len(robot.winches)
     if not robot.cables:
         return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
     simulation = Simulation(robot)
     solved: dict[str, SolvedPose] = {}
     missed = []
-    for name, solve in _tasks(simulation):
+    tasks = tuple(_tasks(simulation))
+    for done, (name, solve) in enumerate(tasks):
+        if progress is not None:
+            progress(done, len(tasks))
         try:
             solved[name] = solve()
         except (InputError, NotConvergedError) as error:

@@ -111,7 +111,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
     options, tell = options or KitOptions(), _Stages(progress)
     method = options.method_for(robot.body.mesh.dim)
     tell("Loads in its poses")
-    demand = find_demand(robot)
+    demand = find_demand(robot, progress=tell.part)
     rigid, work = _parts_and_body(robot, options, method, demand, tell)
     tell("Lists")
     lists = make_lists(_list_input(robot, options, method, demand, rigid, work))
@@ -173,17 +173,22 @@ class _Stages:
     def __init__(self, progress: Progress | None) -> None:
         self._progress = progress
         self._stage = ""
+        self._total = 1
 
     def __call__(self, stage: str) -> None:
         self.end()
-        self._stage = stage
-        if self._progress is not None:
-            self._progress(stage, 0, 1)
+        self._stage, self._total = stage, 1
+        self.part(0, 1)
+
+    def part(self, done: int, total: int) -> None:
+        """So much of the stage is done."""
+        self._total = total
+        if self._progress is not None and self._stage:
+            self._progress(self._stage, done, total)
 
     def end(self) -> None:
         """The stage is over."""
-        if self._progress is not None and self._stage:
-            self._progress(self._stage, 1, 1)
+        self.part(self._total, self._total)
 
 
 def _parts_and_body(

@@ -57,7 +57,7 @@ def cable_marks(
             run = LineString([place(point) for point in cable.points[index : index + 2]])
             drawn = run.intersection(seam).difference(holes)
             if sewn.stitches[index].after is Side.INSIDE:
-                drawn = _dashed(drawn)
+                drawn = dashed(drawn)
             marks.extend(trace(drawn, Layer.MARK, Part.CABLE))
         marks.append(Circle(layer=Layer.MARK, part=Part.STOPPER, centre=place(cable.points[-1]), radius=_STOPPER))
     return tuple(marks)
@@ -90,7 +90,7 @@ def _runs(cable: Cable) -> Iterator[tuple[bool, LineString]]:
         yield not bare, LineString(points[segments[0] : segments[-1] + 2])
 
 
-def _dashed(geometry: BaseGeometry) -> BaseGeometry:
+def dashed(geometry: BaseGeometry) -> BaseGeometry:
     """Each line of a geometry as dashes, with one at both of its ends."""
     dashes = []
     for line in shapely.get_parts(geometry).tolist():

@@ -1,5 +1,6 @@
 """`Opening`: the slit in the back with its zipper, through which winches are reached (R10)."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import Pinhole
-from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Shape, trace
+from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape, trace
 from hydrostat.robot import Robot
 
 ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
@@ -73,9 +74,15 @@ def find_opening(robot: Robot, seam: Polygon, pinholes: tuple[Pinhole, ...], opt
     Returns:
         None without a winch in the body, without reach, or without room.
     """
+    return opening_at([(1e3 * winch.at[0], 1e3 * winch.at[1]) for winch in robot.winches], seam, pinholes, options)
+
+
+def opening_at(
+    places: Iterable[Place], seam: Polygon, pinholes: tuple[Pinhole, ...], options: PatternOptions
+) -> Opening | None:
+    """The opening over winches at these places on a panel [mm]; None as for `find_opening`."""
     reach = options.opening_reach
-    at = [(1e3 * winch.at[0], 1e3 * winch.at[1]) for winch in robot.winches]
-    winches = np.array([place for place in at if seam.contains(shapely.Point(place))])
+    winches = np.array([place for place in places if seam.contains(shapely.Point(place))])
     room: BaseGeometry = seam.buffer(-reach / 3)
     if not len(winches) or not reach or room.is_empty:
         return None

@@ -43,7 +43,11 @@ def flat_skin(body: Body, options: PatternOptions) -> Skin:
     Raises:
         InputError: the body is not flat, or is in several pieces.
     """
-    seam = orient(shapely.transform(_silhouette(body), lambda points: 1e3 * points))
+    return skin_of(orient(shapely.transform(_silhouette(body), lambda points: 1e3 * points)), options)
+
+
+def skin_of(seam: Polygon, options: PatternOptions) -> Skin:
+    """The cloth round a seam line [mm], which runs counter-clockwise, its holes clockwise."""
     outside = _offset(Polygon(seam.exterior), options.seam_allowance, options)
     slits, problems = _slits(seam, outside, options)
     holes = []
