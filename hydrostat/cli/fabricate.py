@@ -2,7 +2,8 @@
 
 import re
 import time
-from typing import TYPE_CHECKING, Annotated
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
@@ -13,7 +14,7 @@ from hydrostat.cli.quantities import positive
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.fabrication import Kit, KitOptions
+    from hydrostat.fabrication import Kit
 
 
 def fabricate(
@@ -33,6 +34,11 @@ def fabricate(
         str, typer.Option(metavar="LENGTHS", help="The most that your 3D printer takes, along x, y and z.")
     ] = "220 x 220 x 250 mm",
     paper: Annotated[str, typer.Option(metavar="a4|letter", help="What the pages are printed on.")] = "a4",
+    seam: Annotated[str, typer.Option(metavar="LENGTH", help="Of plush: cloth between seam and cut.")] = "8 mm",
+    line: Annotated[str, typer.Option(metavar="LENGTH", help="Diameter of the cables, a braided line.")] = "0.4 mm",
+    clearance: Annotated[
+        str, typer.Option(metavar="LENGTH", help="Between printed parts that move in each other, on each side.")
+    ] = "0.3 mm",
     step: Annotated[
         bool, typer.Option("--step", help='Also write printed parts as STEP; needs pip install "hydrostat[cad]".')
     ] = False,
@@ -47,11 +53,30 @@ def fabricate(
 
     Example: hydrostat fabricate examples/starfish --out build/kit
     """
-    from hydrostat.fabrication import UnbuildableError, build_kit
+    from hydrostat.fabrication import (
+        KitOptions,
+        Method,
+        MouldKind,
+        MouldOptions,
+        Paper,
+        PartOptions,
+        PatternOptions,
+        UnbuildableError,
+        build_kit,
+    )
     from hydrostat.units import counted
 
     require_folder(out)
-    options = wanted_kit(method=method, motor=motor, mould=mould, bed=bed, paper=paper, step=step, force=force)
+    options = KitOptions(
+        method=None if method is None else _one_of("--method", method, Method),
+        motor=motor,
+        mould=MouldOptions(kind=_one_of("--mould", mould, MouldKind), bed=_lengths("--bed", bed)),
+        paper=_one_of("--paper", paper, Paper),
+        pattern=PatternOptions(seam_allowance=_millimetres("--seam", seam)),
+        parts=PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
+        step=step,
+        force=force,
+    )
     began = time.perf_counter()
     loaded = read_robot(robot)
     try:
@@ -71,28 +96,6 @@ def fabricate(
     )
 
 
-def wanted_kit(
-    *, method: str | None, motor: str, mould: str, bed: str, paper: str, step: bool, force: bool
-) -> "KitOptions":
-    """Options of a kit as they are given on the command line.
-
-    Raises:
-        InputError: a word or a length that is not allowed.
-    """
-    from hydrostat.fabrication import KitOptions, Method, MouldKind, MouldOptions, Paper
-
-    return KitOptions(
-        method=None if method is None else Method(_one_of("--method", method, [item.value for item in Method])),
-        motor=motor,
-        mould=MouldOptions(
-            kind=MouldKind(_one_of("--mould", mould, [item.value for item in MouldKind])), bed=_lengths("--bed", bed)
-        ),
-        paper=Paper(_one_of("--paper", paper, [item.value for item in Paper])),
-        step=step,
-        force=force,
-    )
-
-
 def print_kit(kit: "Kit") -> None:
     """What is in a kit, what to mind, and whether it is true to the robot."""
     for problem in kit.problems:
@@ -108,19 +111,29 @@ def print_kit(kit: "Kit") -> None:
             print(f"  does not hold: {check.what}: {check.measured} (allowed: {check.allowed})")
 
 
-def _one_of(option: str, text: str, allowed: list[str]) -> str:
+_Word = TypeVar("_Word", bound=StrEnum)
+
+
+def _one_of(option: str, text: str, kind: type[_Word]) -> _Word:
+    """A word of those that are allowed."""
+    allowed = [item.value for item in kind]
     if text not in allowed:
         raise InputError(f"{option} {text}: must be {' or '.join(allowed)}")
-    return text
+    return kind(text)
+
+
+def _millimetres(option: str, text: str) -> float:
+    """A length such as "8 mm" [mm]."""
+    from hydrostat.units import LENGTH
+
+    return 1e3 * positive(option, text, LENGTH)
 
 
 def _lengths(option: str, text: str) -> tuple[float, float, float]:
     """Three lengths such as "220 x 220 x 250 mm" [mm]."""
-    from hydrostat.units import LENGTH
-
     match = re.fullmatch(r"\s*([\d.]+)\s*x\s*([\d.]+)\s*x\s*([\d.]+)\s*([^\W\d].*)", text)
     if match is None:
         raise InputError(f'{option} {text}: must be three lengths and their unit, such as "220 x 220 x 250 mm"')
     *sides, unit = match.groups()
-    x, y, z = (1e3 * positive(option, f"{side} {unit}", LENGTH) for side in sides)
+    x, y, z = (_millimetres(option, f"{side} {unit}") for side in sides)
     return x, y, z

@@ -28,6 +28,9 @@ BAD = {
     ("--paper", "a5"): "--paper a5: must be a4 or letter",
     ("--bed", "220 mm"): '--bed 220 mm: must be three lengths and their unit, such as "220 x 220 x 250 mm"',
     ("--bed", "0x220x250mm"): "--bed 0 mm: must be above 0, such as 12 mm",
+    ("--seam", "0 mm"): "--seam 0 mm: must be above 0, such as 12 mm",
+    ("--clearance", "0.3"): '--clearance 0.3: "0.3" has no unit; write for example "12 mm"',
+    ("--line", "3 mm"): "cable 3 mm, bore 1 mm and tube 2 mm must rise: the cable runs in the bore of the tube",
 }
 
 
