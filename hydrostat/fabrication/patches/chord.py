@@ -1,0 +1,193 @@
+"""`best_chord`, `cut_chord`: a patch that distorts too much is cut along a line that is straight on the cloth."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from jaxtyping import Bool, Float, Int
+from scipy.sparse import coo_array, csc_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import split
+
+from hydrostat.fabrication.patches.distortion import distortion
+from hydrostat.fabrication.patches.level_cut import cut_at_zero
+from hydrostat.fabrication.patches.patch import Disc, Patch
+from hydrostat.fabrication.patches.skin_mesh import SkinMesh
+
+_DIRECTIONS = 12
+_SHIFTS = (0.0, -0.06, 0.06)
+"""Offsets beside the worst place that are tried, as shares of the root of the patch's area."""
+
+_FINER = (-0.03, -0.015, 0.0, 0.015, 0.03)
+"""Offsets beside the best of those that are tried then."""
+
+_LENGTH = 0.25
+"""How much a chord as long as the root of the patch's area counts against it: a shorter seam is less work."""
+
+_LEAST = 0.03
+"""A piece of less than this share of the patch is not worth cutting off."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chord:
+    """A straight cut through a flat patch.
+
+    Attributes:
+        through: a place on it [mm].
+        along: its unit direction.
+        low: where it enters the patch, from that place along the direction [mm].
+        high: where it leaves it.
+    """
+
+    through: tuple[float, float]
+    along: tuple[float, float]
+    low: float
+    high: float
+
+    def heights(self, places: Float[np.ndarray, "places 2"]) -> Float[np.ndarray, " places"]:
+        """Signed distance of places from its line [mm]."""
+        return (places - self.through) @ np.array([-self.along[1], self.along[0]])
+
+    def crosses(self, ends: Float[np.ndarray, "edges 2 2"]) -> Bool[np.ndarray, " edges"]:
+        """Which edges it crosses."""
+        one, other = self.heights(ends[:, 0]), self.heights(ends[:, 1])
+        over = one * other <= 0
+        share = np.abs(one) / np.maximum(np.abs(one) + np.abs(other), 1e-300)
+        at = (ends[:, 0] + share[:, None] * (ends[:, 1] - ends[:, 0]) - self.through) @ np.array(self.along)
+        return over & (at > self.low - 1e-6) & (at < self.high + 1e-6)
+
+
+def best_chord(patch: Patch, limit: float) -> Chord | None:
+    """Of chords near the worst place, the one after which the patch should lie flattest; None if there is none.
+
+    Judged by the scale with which the pieces would flatten if angles were kept: the solution of a Poisson equation with
+    the curvature of the skin, zero along rim and chord (Ben-Chen, Gotsman, Bunin 2008), without flattening them all.
+    """
+    middle, size = _worst_place(patch, limit), float(np.sqrt(patch.disc.areas.sum()))
+    outline, judge = patch.outline.buffer(0), _Judge(patch.disc)
+
+    def best(angles: Iterable[float], shifts: Iterable[float]) -> tuple[float, float, float, Chord] | None:
+        found = []
+        for angle in angles:
+            along = np.array([np.cos(angle), np.sin(angle)])
+            for shift in shifts:
+                chord = _chord(outline, middle + shift * size * np.array([-along[1], along[0]]), along)
+                if chord is not None:
+                    score = judge.score(patch, chord) * (1 + _LENGTH * (chord.high - chord.low) / size)
+                    found.append((round(score, 9), angle, shift, chord))
+        return min(found, key=lambda one: one[:3], default=None)
+
+    rough = best((np.pi / _DIRECTIONS * np.arange(_DIRECTIONS)).tolist(), _SHIFTS)
+    if rough is None:
+        return None
+    _, angle, shift, _ = rough
+    step = np.pi / _DIRECTIONS / 3
+    fine = best((angle - step, angle, angle + step), [shift + part for part in _FINER])
+    return fine[3] if fine else rough[3]
+
+
+def cut_chord(mesh: SkinMesh, patch: Patch, number: int, chord: Chord) -> SkinMesh:
+    """The mesh with its patch of this number cut; the lesser piece gets the next free number."""
+    field = np.zeros(len(mesh.vertices))
+    field[patch.disc.of] = chord.heights(patch.flat)
+    target = _in_space(patch, chord)
+    cut, _, side = cut_at_zero(mesh, field, mesh.patch == number)
+    pieces = cut.pieces(4 * cut.patch + side)
+    sides = cut.neighbours
+    inner = (cut.patch[sides] == number).all(axis=1)
+    border = inner & (pieces[sides[:, 0]] != pieces[sides[:, 1]])
+    middles = cut.vertices[cut.edges[0]].mean(axis=1)
+    nearest = int(np.where(border, np.linalg.norm(middles - target, axis=1), np.inf).argmin())
+    one, other = sorted(pieces[sides[nearest]].tolist())
+    links = np.sort(pieces[sides[border]], axis=1)
+    links = links[(links != [one, other]).any(axis=1)]
+    count = int(pieces.max()) + 1
+    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
+    group = connected_components(graph, directed=False)[1]
+    halves = [(cut.patch == number) & (group[pieces] == group[piece]) for piece in (one, other)]
+    lesser = min(halves, key=lambda half: cut.areas[half].sum())
+    return cut.labelled(np.where(lesser, int(cut.patch.max()) + 1, cut.patch))
+
+
+def _worst_place(patch: Patch, limit: float) -> Float[np.ndarray, " 2"]:
+    """The middle of the largest part of a patch that gives too much, on the patch [mm]."""
+    bent, triangles = distortion(patch), patch.disc.triangles
+    excess = np.maximum(bent.gives - limit, 0) * bent.areas
+    label = (excess > 0).astype(np.int64)
+    groups = _groups(triangles, label)
+    worst = int(np.bincount(groups, excess).argmax())
+    weights = np.where(groups == worst, excess, 0.0)
+    centres = patch.flat[triangles].mean(axis=1)
+    mean = np.average(centres, axis=0, weights=weights)
+    there = np.where(weights > 0, np.linalg.norm(centres - mean, axis=1), np.inf)
+    return centres[int(there.argmin())]
+
+
+def _groups(triangles: Int[np.ndarray, "triangles 3"], label: Int[np.ndarray, " triangles"]) -> Int[np.ndarray, " _"]:
+    """Number connected groups of triangles of one label."""
+    ends = np.sort(triangles[:, ((0, 1), (1, 2), (2, 0))].reshape(-1, 2), axis=1)
+    order = np.lexsort((ends[:, 1], ends[:, 0]))
+    pairs = (
+        order[:-1][(ends[order[:-1]] == ends[order[1:]]).all(axis=1)],
+        order[1:][(ends[order[:-1]] == ends[order[1:]]).all(axis=1)],
+    )
+    one, other = pairs[0] // 3, pairs[1] // 3
+    same = label[one] == label[other]
+    count = len(triangles)
+    graph = coo_array((np.ones(int(same.sum())), (one[same], other[same])), shape=(count, count))
+    return connected_components(graph, directed=False)[1].astype(np.int64)
+
+
+def _chord(outline: BaseGeometry, through: np.ndarray, along: np.ndarray) -> Chord | None:
+    """The chord of an outline through a place."""
+    far = 4 * np.hypot(*np.ptp(np.array(outline.bounds).reshape(2, 2), axis=0))
+    line = shapely.LineString([through - far * along, through + far * along])
+    parts = [part for part in shapely.get_parts(outline.intersection(line)).tolist() if part.length > 0]
+    part = next((part for part in parts if part.distance(shapely.Point(through)) < 1e-6), None)
+    if part is None:
+        return None
+    low, high = sorted(((np.array(part.coords)[[0, -1]] - through) @ along).tolist())
+    place, direction = through.tolist(), along.tolist()
+    pieces = shapely.get_parts(split(outline, _longer(part)))
+    if len(pieces) < 2 or min(piece.area for piece in pieces) < _LEAST * outline.area:
+        return None
+    return Chord(through=(place[0], place[1]), along=(direction[0], direction[1]), low=low, high=high)
+
+
+def _longer(line: shapely.LineString) -> shapely.LineString:
+    """A line a little longer at both ends, so that it does cut."""
+    (a, b), (c, d) = line.coords[0], line.coords[-1]
+    dx, dy = 1e-6 * (c - a), 1e-6 * (d - b)
+    return shapely.LineString([(a - dx, b - dy), (c + dx, d + dy)])
+
+
+def _in_space(patch: Patch, chord: Chord) -> Float[np.ndarray, " 3"]:
+    """Where the middle of a chord is on the body: at the triangle whose middle is nearest."""
+    at = np.array(chord.through) + np.array(chord.along) * (chord.low + chord.high) / 2
+    nearest = int(np.linalg.norm(patch.flat[patch.disc.triangles].mean(axis=1) - at, axis=1).argmin())
+    return patch.disc.vertices[patch.disc.triangles[nearest]].mean(axis=0)
+
+
+class _Judge:
+    """Solves for the scale of a disc with more or less of it cut."""
+
+    def __init__(self, disc: Disc) -> None:
+        import igl
+
+        self._stiffness = csc_array(-igl.intrinsic_delaunay_cotmatrix(disc.vertices, disc.triangles)[0])
+        self._curvature = np.array(igl.gaussian_curvature(disc.vertices, disc.triangles))
+        self._areas = np.bincount(disc.triangles.ravel(), np.repeat(disc.areas / 3, 3), len(disc.vertices))
+        self._rim = np.zeros(len(disc.vertices), dtype=bool)
+        self._rim[disc.rim] = True
+        self._edges = np.unique(np.sort(disc.triangles[:, ((0, 1), (1, 2), (2, 0))].reshape(-1, 2), axis=1), axis=0)
+
+    def score(self, patch: Patch, chord: Chord) -> float:
+        """Mean square of the logarithm of the scale."""
+        fixed = self._rim.copy()
+        fixed[self._edges[chord.crosses(patch.flat[self._edges])]] = True
+        free = np.flatnonzero(~fixed)
+        scale = splu(csc_array(self._stiffness[free][:, free])).solve(self._curvature[free])
+        return float(scale**2 @ self._areas[free] / self._areas.sum())

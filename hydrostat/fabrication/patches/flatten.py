@@ -1,0 +1,102 @@
+"""`flatten`: lay a disc flat with as little stretch as can be, no triangle on its back."""
+
+import numpy as np
+from jaxtyping import Float
+from scipy.sparse import csc_array, csr_array
+from scipy.sparse.linalg import splu
+
+from hydrostat.fabrication.patches.distortion import distortion
+from hydrostat.fabrication.patches.patch import Disc, Patch
+
+_STEPS = 5
+"""Solves at a time."""
+
+_MOST = 40
+"""How many times at most."""
+
+SETTLED = 5e-4
+"""Relative change of the energy in one such time below which it has settled: it moves seams by less than cloth does."""
+
+
+_TOOTH = 0.15
+"""Height of a tooth, as a share of the root of the patch's area: how much the length of the rim counts."""
+
+
+def flatten(disc: Disc, *, settled: float = SETTLED) -> Patch:
+    """The flat image with the least symmetric Dirichlet energy, by scalable locally injective maps.
+
+    The energy counts stretch and squeeze alike and grows without bound before a triangle would turn over (Rabinovich,
+    Poranne, Panozzo, Sorkine-Hornung 2017). It begins with Tutte's map onto a circle, which turns none over. A tooth on
+    each edge of the rim, a triangle whose tip is free, holds the length of that edge only: seams keep their lengths.
+
+    Args:
+        disc: in space.
+        settled: relative change of the energy at which it ends.
+    """
+    import igl
+
+    toothed = _toothed(disc)
+    energy, none = igl.MappingEnergyType.SYMMETRIC_DIRICHLET, np.zeros(0, dtype=np.int32)
+    triangles = np.asfortranarray(toothed.triangles.astype(np.int32))
+    solid, start = np.asfortranarray(toothed.vertices), np.asfortranarray(_tutte(toothed))
+    data = igl.slim_precompute(solid, triangles, start, energy, none, np.zeros((0, 2), order="F"), 0.0)
+    flat, before = start, np.inf
+    for _ in range(_MOST):
+        flat = np.array(igl.slim_solve(data, _STEPS))[:, :2]
+        now = _energy(Patch(disc=toothed, flat=flat))
+        if before - now < settled * now:
+            break
+        before = now
+    return Patch(disc=disc, flat=flat[: len(disc.vertices)])
+
+
+def _toothed(disc: Disc) -> Disc:
+    """The disc with a triangle on each edge of its rim, in the plane of the one inside."""
+    starts, ends = disc.rim, np.roll(disc.rim, -1)
+    apex = {(a, b): c for a, b, c in _corners(disc)}
+    inner = disc.vertices[[apex[edge] for edge in zip(starts.tolist(), ends.tolist(), strict=True)]]
+    one, along = disc.vertices[starts], disc.vertices[ends] - disc.vertices[starts]
+    along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    out = one - inner
+    out -= (out * along).sum(axis=1, keepdims=True) * along
+    out /= np.linalg.norm(out, axis=1, keepdims=True)
+    tips = (one + disc.vertices[ends]) / 2 + _TOOTH * np.sqrt(disc.areas.sum()) * out
+    number = len(disc.vertices) + np.arange(len(starts))
+    return Disc(
+        vertices=np.concatenate([disc.vertices, tips]),
+        triangles=np.concatenate([disc.triangles, np.column_stack([starts, number, ends])]),
+        rim=np.column_stack([starts, number]).ravel(),
+        of=np.concatenate([disc.of, np.full(len(starts), -1)]),
+    )
+
+
+def _corners(disc: Disc) -> list[list[int]]:
+    """All triangles three times, from each corner."""
+    return np.concatenate([np.roll(disc.triangles, -step, axis=1) for step in range(3)]).tolist()
+
+
+def _energy(patch: Patch) -> float:
+    """Mean of the squares of all stretches and of their inverses: 4 where nothing is distorted."""
+    bent = distortion(patch)
+    squares = bent.longest**2 + bent.shortest**2
+    return float(np.average(squares + squares / bent.area_ratios**2, weights=bent.areas))
+
+
+def _tutte(disc: Disc) -> Float[np.ndarray, "vertices 2"]:
+    """Onto a circle of the patch's area, every inner vertex in the middle of its neighbours."""
+    around = disc.vertices[disc.rim]
+    lengths = np.linalg.norm(np.roll(around, -1, axis=0) - around, axis=1)
+    angles = 2 * np.pi * np.concatenate([[0.0], np.cumsum(lengths)[:-1]]) / lengths.sum()
+    radius = np.sqrt(disc.areas.sum() / np.pi)
+    flat = np.zeros((len(disc.vertices), 2))
+    flat[disc.rim] = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    ends = np.sort(disc.triangles[:, ((0, 1), (1, 2), (2, 0))].reshape(-1, 2), axis=1)
+    one, other = np.unique(ends, axis=0).T
+    count, weights = len(flat), np.ones(2 * len(one))
+    beside = csr_array((weights, (np.concatenate([one, other]), np.concatenate([other, one]))), shape=(count, count))
+    inner = np.setdiff1d(np.arange(count), disc.rim)
+    if len(inner):
+        rows = beside[inner]
+        degrees = csr_array((rows.sum(axis=1), (np.arange(len(inner)), np.arange(len(inner)))))
+        flat[inner] = splu(csc_array(degrees - rows[:, inner])).solve(rows @ flat)
+    return flat

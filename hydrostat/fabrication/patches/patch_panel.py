@@ -1,0 +1,134 @@
+"""`PatchPanel`: a patch as a piece of cloth: cut, seam, notches, holes and what is written on it."""
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+import shapely
+from shapely import LineString, Polygon
+from shapely.geometry.polygon import orient
+
+from hydrostat.fabrication.patches.patch import Patch
+from hydrostat.fabrication.patches.patch_notches import PatchNotch
+from hydrostat.fabrication.patches.skin_holes import SkinHole
+from hydrostat.fabrication.patterns.labels import PanelLabels
+from hydrostat.fabrication.patterns.lettering import Lettering
+from hydrostat.fabrication.patterns.marks import dashed
+from hydrostat.fabrication.patterns.opening import Opening
+from hydrostat.fabrication.patterns.panel import Panel
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.skin import Skin, skin_of
+from hydrostat.fabrication.patterns.stitches import Side
+
+_STOPPER = 3.0
+_CLEAR = 0.8
+_CROSS = 2.0
+_TITLE = 4.0
+_FIGURE = 2.5
+_FIGURE_GAP = 2.2
+
+
+class PatchLabels(PanelLabels):
+    """Labels of a patch."""
+
+    def cable_name(self, cable: int, at: Place) -> None:
+        """C1, C2, ... beside a place."""
+        self._beside(f"C{cable}", at, gap=4.5)
+
+    def has_room(self, text: str) -> bool:
+        """Whether a title fits somewhere on the patch."""
+        letters = Lettering(text, _TITLE)
+        return self._space.anywhere(letters.width, letters.height) is not None
+
+    def figure(self, text: str, at: Place) -> None:
+        """A small number beside a hole; none where there is no room."""
+        letters = Lettering(text, _FIGURE)
+        middle = self._space.clear_beside(at, letters.width, _FIGURE, gap=_FIGURE_GAP)
+        if middle is not None:
+            self._shapes.extend(letters.lines(middle))
+            self._space.take(middle, letters.width, _FIGURE)
+
+
+def patch_skin(patch: Patch, options: PatternOptions) -> Skin:
+    """Seam line and cut of a patch."""
+    return skin_of(orient(patch.outline), options)
+
+
+def patch_panel(
+    name: str,
+    title: str,
+    skin: Skin,
+    notches: Iterable[PatchNotch],
+    cables: Iterable[tuple[int, tuple[tuple[SkinHole, Place], ...]]],
+    opening: Opening | None,
+    options: PatternOptions,
+) -> Panel:
+    """The panel of a patch.
+
+    Args:
+        name: of the panel.
+        title: written on it.
+        skin: seam line and cut [mm].
+        notches: on its seams.
+        cables: number of each cable with its holes on this patch, in stitch order, and where they are [mm].
+        opening: the slit in it, if any.
+        options: how it is drawn.
+    """
+    strokes = [(notch.name, _stroke(notch.place, skin)) for notch in notches]
+    cables = tuple(cables)
+    shapes: list[Shape] = [
+        *trace(skin.cut, Layer.CUT, Part.EDGE),
+        *trace(skin.slits, Layer.CUT, Part.SLIT),
+        *trace(skin.seam, Layer.MARK, Part.SEAM),
+        *(line for _, stroke in strokes for line in trace(stroke, Layer.MARK, Part.NOTCH)),
+        *((opening.mark, *opening.placket) if opening else ()),
+    ]
+    holes = [pair for _, own in cables for pair in own]
+    for hole, place in holes:
+        shapes += _hole(hole, place, options)
+    for _, own in cables:
+        shapes += _runs(own, skin.seam, options)
+    labels = PatchLabels(skin.seam, tuple(shapes), mirrored=False)
+    labels.notch_names(strokes, skin.cut)
+    if opening:
+        labels.opening(opening)
+    for cable, own in cables:
+        if own:
+            labels.cable_name(cable, own[-1][1])
+    for hole, place in holes:
+        labels.figure(f"{hole.point}", place)
+    labels.title(title if labels.has_room(title) else name.replace("-", " "))
+    labels.grain()
+    return Panel(name=name, origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
+
+
+def _stroke(place: Place, skin: Skin) -> LineString:
+    """From the seam across the allowance."""
+    return shapely.shortest_line(shapely.Point(place), skin.cut.exterior)
+
+
+def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape, ...]:
+    """A pinhole, or a cross on the seam line where the cable passes between two stitches."""
+    x, y = place
+    if not hole.in_seam:
+        return (Circle(layer=Layer.PINHOLE, part=Part.PINHOLE, centre=place, radius=options.pinhole / 2),)
+    return tuple(
+        Line(layer=Layer.MARK, part=Part.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
+        for dx, dy in ((_CROSS, _CROSS), (_CROSS, -_CROSS))
+    )
+
+
+def _runs(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: PatternOptions) -> tuple[Shape, ...]:
+    """The cable between neighbouring holes on this patch: solid outside, dashed inside."""
+    shapes: list[Shape] = []
+    clear = options.pinhole / 2 + _CLEAR
+    for (hole, place), (following, there) in pairwise(own):
+        if following.point != hole.point + 1 or (hole.in_seam and following.in_seam):
+            continue  # from seam to seam it runs along the seam
+        ends = shapely.union_all([shapely.Point(end).buffer(clear) for end in (place, there)])
+        drawn = LineString([place, there]).intersection(seam).difference(ends)
+        drawn = shapely.MultiLineString([part for part in shapely.get_parts(drawn).tolist() if part.length])
+        if hole.after is Side.INSIDE:
+            drawn = dashed(drawn)
+        shapes += trace(drawn, Layer.MARK, Part.CABLE)
+    return tuple(shapes)

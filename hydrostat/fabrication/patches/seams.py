@@ -1,0 +1,109 @@
+"""`Seam`: where two patches are sewn together, as it runs on the body and on both of them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.fabrication.patches.patch import Patch
+from hydrostat.fabrication.patches.skin_mesh import SkinMesh
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Seam:
+    """A stretch of seam between two patches.
+
+    Attributes:
+        patches: their numbers; the first has it on its left, seen from outside.
+        closed: whether it ends where it begins.
+        solid: its vertices on the body [mm], the first again at the end of a closed one.
+        sides: the same on the first and on the second patch [mm].
+    """
+
+    patches: tuple[int, int]
+    closed: bool
+    solid: Float[np.ndarray, "vertices 3"]
+    sides: tuple[Float[np.ndarray, "vertices 2"], Float[np.ndarray, "vertices 2"]]
+
+    @cached_property
+    def along(self) -> Float[np.ndarray, " vertices"]:
+        """How far along the seam each vertex is on the body [mm]."""
+        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.solid, axis=0), axis=1))])
+
+    @property
+    def length(self) -> float:
+        """On the body [mm]."""
+        return float(self.along[-1])
+
+    @property
+    def lengths(self) -> tuple[float, float]:
+        """On the two patches [mm]."""
+        one, other = (float(np.linalg.norm(np.diff(side, axis=0), axis=1).sum()) for side in self.sides)
+        return one, other
+
+    @property
+    def mismatch(self) -> float:
+        """How much longer the longer side is: 0.01 for 1 %."""
+        return max(self.lengths) / min(self.lengths) - 1
+
+    def place(self, along: float, side: int) -> tuple[float, float]:
+        """Where a place of the seam lies on its first (0) or second (1) patch [mm]."""
+        x, y = (float(np.interp(along, self.along, self.sides[side][:, axis])) for axis in (0, 1))
+        return x, y
+
+    def on_body(self, along: float) -> tuple[float, float, float]:
+        """The same place on the body [mm]."""
+        x, y, z = (float(np.interp(along, self.along, self.solid[:, axis])) for axis in range(3))
+        return x, y, z
+
+    def nearest(self, point: Float[np.ndarray, " 3"]) -> tuple[float, float]:
+        """Distance of a point of the body from the seam, and how far along it is nearest [mm]."""
+        starts, ways = self.solid[:-1], np.diff(self.solid, axis=0)
+        lengths = np.linalg.norm(ways, axis=1)
+        share = np.clip(((point - starts) * ways).sum(axis=1) / lengths**2, 0, 1)
+        gaps = np.linalg.norm(starts + share[:, None] * ways - point, axis=1)
+        best = int(gaps.argmin())
+        return float(gaps[best]), float(self.along[best] + share[best] * lengths[best])
+
+
+def find_seams(mesh: SkinMesh, patches: tuple[Patch, ...], up: Float[np.ndarray, " 3"]) -> tuple[Seam, ...]:
+    """All seams; a closed one begins where it is highest."""
+    rims = [_rim(patch) for patch in patches]
+    owner = {edge: number for number, rim in enumerate(rims) for edge in rim}
+    seams = []
+    for number, (patch, rim) in enumerate(zip(patches, rims, strict=True)):
+        around = list(rim)
+        beyond = np.array([owner[end, start] for start, end in around])
+        changes = np.flatnonzero(beyond != np.roll(beyond, 1))
+        closed = not len(changes)
+        if closed:
+            heights = mesh.vertices[[start for start, _ in around]] @ up
+            changes = np.array([int(heights.argmax())])
+        for first, last in zip(changes.tolist(), [*changes[1:].tolist(), int(changes[0]) + len(around)], strict=True):
+            edges = [around[index % len(around)] for index in range(first, last)]
+            other = int(beyond[first])
+            if other > number:
+                local = np.array([*(rim[edge][0] for edge in edges), rim[edges[-1]][1]])
+                back = [rims[other][end, start] for start, end in edges]
+                theirs = np.array([*(end for _, end in back), back[-1][0]])
+                seams.append(_seam((number, other), closed, (patch, patches[other]), (local, theirs)))
+    return tuple(seams)
+
+
+def _rim(patch: Patch) -> dict[tuple[int, int], tuple[int, int]]:
+    """Edges of the boundary in order: vertices of the skin, and the patch's own."""
+    starts = patch.disc.rim
+    ends = np.roll(starts, -1)
+    ways = zip(patch.disc.of[starts].tolist(), patch.disc.of[ends].tolist(), strict=True)
+    return dict(zip(ways, zip(starts.tolist(), ends.tolist(), strict=True), strict=True))
+
+
+def _seam(
+    numbers: tuple[int, int],
+    closed: bool,
+    patches: tuple[Patch, Patch],
+    local: tuple[Int[np.ndarray, " vertices"], Int[np.ndarray, " vertices"]],
+) -> Seam:
+    one, other = (patch.flat[vertices] for patch, vertices in zip(patches, local, strict=True))
+    return Seam(patches=numbers, closed=closed, solid=patches[0].disc.vertices[local[0]], sides=(one, other))

@@ -1,0 +1,154 @@
+"""`SkinMesh`: the skin of a body in triangles, and which patch each belongs to."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.surface import Surface
+from hydrostat.robot import Body
+
+_SIDES = ((0, 1), (1, 2), (2, 0))
+
+_SHARE = 0.03
+"""Longest edge, as a share of the diagonal of the body: fine enough for smooth seams."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SkinMesh:
+    """A closed surface cut into patches.
+
+    Attributes:
+        vertices: [mm].
+        triangles: seen counter-clockwise from outside.
+        patch: number of the patch of each triangle.
+    """
+
+    vertices: Float[np.ndarray, "vertices 3"]
+    triangles: Int[np.ndarray, "triangles 3"]
+    patch: Int[np.ndarray, " triangles"]
+
+    @cached_property
+    def crosses(self) -> Float[np.ndarray, "triangles 3"]:
+        """Normal of each triangle, twice its area long [mm^2]."""
+        corners = self.vertices[self.triangles]
+        return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+    @property
+    def areas(self) -> Float[np.ndarray, " triangles"]:
+        """Of the triangles [mm^2]."""
+        return np.linalg.norm(self.crosses, axis=1) / 2
+
+    @cached_property
+    def edges(self) -> tuple[Int[np.ndarray, "edges 2"], Int[np.ndarray, "triangles 3"]]:
+        """Every edge once, and the edges of each triangle: from its first corner to its second, and so on."""
+        ends = np.sort(self.triangles[:, _SIDES], axis=2).reshape(-1, 2)
+        edges, index = np.unique(ends, axis=0, return_inverse=True)
+        return edges, index.reshape(-1, 3)
+
+    @cached_property
+    def neighbours(self) -> Int[np.ndarray, "edges 2"]:
+        """The two triangles at each edge."""
+        edges, of = self.edges
+        order = np.argsort(of.ravel(), kind="stable")
+        return (order // 3).reshape(len(edges), 2)
+
+    def pieces(self, label: Int[np.ndarray, " triangles"]) -> Int[np.ndarray, " triangles"]:
+        """Number the connected groups of triangles with one label, in the order of their first triangles."""
+        sides = self.neighbours
+        same = sides[label[sides[:, 0]] == label[sides[:, 1]]]
+        count = len(self.triangles)
+        graph = coo_array((np.ones(len(same)), (same[:, 0], same[:, 1])), shape=(count, count))
+        return connected_components(graph, directed=False)[1].astype(np.int64)
+
+    def labelled(self, patch: Int[np.ndarray, " triangles"]) -> "SkinMesh":
+        """The same triangles in other patches."""
+        return SkinMesh(vertices=self.vertices, triangles=self.triangles, patch=patch)
+
+    def divided(
+        self, marked: Bool[np.ndarray, " edges"], share: Float[np.ndarray, " edges"]
+    ) -> tuple["SkinMesh", Int[np.ndarray, " parts"]]:
+        """Put a vertex on each marked edge, at a share of it, and divide triangles there.
+
+        Returns:
+            The new mesh, its new vertices after the old ones in the order of the edges; and of each of its triangles
+            the old one.
+        """
+        edges, of = self.edges
+        ends = self.vertices[edges[marked]]
+        along = share[marked, None]
+        vertices = np.concatenate([self.vertices, (1 - along) * ends[:, 0] + along * ends[:, 1]])
+        new = np.full(len(edges), -1)
+        new[marked] = len(self.vertices) + np.arange(int(marked.sum()))
+        parts, parents = [], []
+        for index in range(len(self.triangles)):
+            pieces = _divided(self.triangles[index].tolist(), new[of[index]].tolist(), vertices)
+            parts += pieces
+            parents += [index] * len(pieces)
+        parent = np.array(parents, dtype=np.int64)
+        mesh = SkinMesh(vertices=vertices, triangles=np.array(parts, dtype=np.int64), patch=self.patch[parent])
+        return mesh, parent
+
+
+def _divided(corners: list[int], middles: list[int], vertices: Float[np.ndarray, "vertices 3"]) -> list[list[int]]:
+    """A triangle with new vertices on its sides (-1: none), in triangles."""
+    count = sum(middle >= 0 for middle in middles)
+    if count == 0:
+        return [corners]
+    if count == 3:
+        (a, b, c), (d, e, f) = corners, middles
+        return [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+    first = next(
+        side for side in range(3) if middles[side] >= 0 and (count == 1 or middles[(side + 1) % 3] >= 0)
+    )  # of two new vertices in a row the first
+    a, b, c = (corners[(first + step) % 3] for step in range(3))
+    d, e = middles[first], middles[(first + 1) % 3]
+    if count == 1:
+        return [[a, d, c], [d, b, c]]
+    across = np.linalg.norm(vertices[a] - vertices[e]) <= np.linalg.norm(vertices[d] - vertices[c])
+    rest = [[a, d, e], [a, e, c]] if across else [[a, d, c], [d, e, c]]
+    return [[d, b, e], *rest]
+
+
+def skin_mesh(body: Body) -> SkinMesh:
+    """The skin of a body in space as one patch, its triangles no longer than seams need to be smooth.
+
+    Raises:
+        InputError: the body is flat, in several pieces or hollow, or a hole goes through it.
+    """
+    if body.mesh.dim != 3:
+        raise InputError("a flat body has a flat pattern of its own")
+    surface = body.healing.surface if body.healing else _boundary(body)
+    mesh = SkinMesh(
+        vertices=1e3 * surface.vertices,
+        triangles=surface.triangles.astype(np.int64),
+        patch=np.zeros(len(surface.triangles), dtype=np.int64),
+    )
+    edges = mesh.edges[0]
+    if mesh.pieces(mesh.patch).max() > 0:
+        raise InputError("the body is hollow or in several pieces: a sewn skin needs one closed surface")
+    if len(mesh.vertices) - len(edges) + len(mesh.triangles) != 2:
+        raise InputError(
+            "a hole goes through the body: it cannot be cut into patches that lie flat; cast it in a mould"
+        )
+    return _fine(mesh, _SHARE * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
+
+
+def _boundary(body: Body) -> Surface:
+    """The outer triangles of a mesh of tetrahedra."""
+    used, triangles = np.unique(body.mesh.boundary, return_inverse=True)
+    return Surface(body.mesh.nodes[used], triangles.reshape(-1, 3))
+
+
+def _fine(mesh: SkinMesh, longest: float) -> SkinMesh:
+    """The same surface with no edge longer than that [mm]: such edges are halved."""
+    while True:
+        ends = mesh.vertices[mesh.edges[0]]
+        long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > longest
+        if not long.any():
+            return mesh
+        mesh, _ = mesh.divided(long, np.full(len(long), 0.5))

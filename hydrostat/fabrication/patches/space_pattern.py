@@ -1,0 +1,121 @@
+"""`space_pattern`: the pattern of a plush body in space (R10)."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication.patches.back_opening import back_opening
+from hydrostat.fabrication.patches.cutting import cut_skin
+from hydrostat.fabrication.patches.distortion import distortion
+from hydrostat.fabrication.patches.front_and_back import thin_direction
+from hydrostat.fabrication.patches.patch import Patch
+from hydrostat.fabrication.patches.patch_notches import patch_notches, stuffing_gap
+from hydrostat.fabrication.patches.patch_panel import patch_panel, patch_skin
+from hydrostat.fabrication.patches.pattern_words import patch_problems, patch_warnings
+from hydrostat.fabrication.patches.seams import Seam, find_seams
+from hydrostat.fabrication.patches.skin_holes import SkinHole, find_holes, hole_problems, hole_warnings
+from hydrostat.fabrication.patches.skin_mesh import skin_mesh
+from hydrostat.fabrication.patches.skin_stitches import skin_stitches
+from hydrostat.fabrication.patches.view import front_view, upright
+from hydrostat.fabrication.patterns.pattern import Pattern
+from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.shape import Place
+from hydrostat.fabrication.patterns.sheet_layout import lay_out
+from hydrostat.robot import Robot
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SpacePattern(Pattern):
+    """The pattern of a body in space; `stitches` are as seen from the front.
+
+    Attributes:
+        patches: flat, in places of the sheet [mm]; a panel each, in the same order.
+        seams: between them, in places of the sheet [mm].
+        holes: where cables are sewn to the skin, in places of the sheet [mm].
+        skin: area of the skin that was cut [mm^2].
+        distortions: what the cloth has to give, a line for each patch.
+    """
+
+    patches: tuple[Patch, ...]
+    seams: tuple[Seam, ...]
+    holes: tuple[SkinHole, ...]
+    skin: float
+    distortions: tuple[str, ...]
+
+
+def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
+    """The skin of a body in space in patches, to be sewn, turned and stuffed; all show the right side of the cloth.
+
+    Raises:
+        InputError: the body is flat, hollow, in several pieces or has a hole through it, or it cannot be sewn as it is
+            (unless `force`).
+    """
+    mesh = skin_mesh(robot.body)
+    view = front_view(thin_direction(mesh))
+    cutting = cut_skin(mesh)
+    patches = tuple(upright(patch, view.up) for patch in cutting.patches)
+    seams = find_seams(cutting.mesh, patches, view.up)
+    holes = find_holes(robot, patches, seams, options)
+    skins = tuple(patch_skin(patch, options) for patch in patches)
+    names = cutting.names
+    problems = (*patch_problems(names, patches, skins, seams), *hole_problems(holes, options))
+    if problems and not options.force:
+        first, *others = problems
+        raise InputError(f"{first} (and {len(others)} more such)" if others else first)
+    notches = patch_notches(seams)
+    opening = back_opening(robot, cutting.back, patches, holes, view, options)
+    panels = []
+    for number, (name, skin) in enumerate(zip(names, skins, strict=True)):
+        title = f"{robot.name} - {name.replace('-', ' ')}"
+        cables = _on_patch(robot, holes, number)
+        slit = opening[1] if opening and opening[0] == number else None
+        panels.append(patch_panel(name, title, skin, notches[number], cables, slit, options))
+    sheet = lay_out(tuple(panels[:2]), tuple(panels[2:]), options.gap)
+    origins = [panel.origin for panel in sheet.panels]
+    moved = tuple(
+        replace(patch, flat=patch.flat + np.array(origin)) for patch, origin in zip(patches, origins, strict=True)
+    )
+    return SpacePattern(
+        name=robot.name,
+        panels=sheet.panels,
+        shapes=sheet.ruler,
+        width=sheet.width,
+        height=sheet.height,
+        stitches=skin_stitches(robot, holes, view),
+        opening=None if opening is None else opening[1],
+        problems=problems,
+        warnings=(
+            *patch_warnings(names, patches, skins, seams),
+            *(opening[1].warnings if opening else stuffing_gap(seams, names)),
+            *hole_warnings(robot, holes),
+        ),
+        patches=moved,
+        seams=find_seams(cutting.mesh, moved, view.up),
+        holes=tuple(_moved(hole, origins) for hole in holes),
+        skin=float(mesh.areas.sum()),
+        distortions=tuple(f"{name}: {distortion(patch).text()}" for name, patch in zip(names, patches, strict=True)),
+    )
+
+
+def _on_patch(
+    robot: Robot, holes: tuple[SkinHole, ...], patch: int
+) -> list[tuple[int, tuple[tuple[SkinHole, Place], ...]]]:
+    """Each cable with its points on a patch."""
+    return [
+        (
+            number,
+            tuple(
+                (hole, place)
+                for hole in holes
+                if hole.cable == number and hole.passes and (place := hole.on(patch)) is not None
+            ),
+        )
+        for number in range(1, len(robot.cables) + 1)
+    ]
+
+
+def _moved(hole: SkinHole, origins: list[Place]) -> SkinHole:
+    """The hole in places of the sheet."""
+    places = tuple((number, (x + origins[number][0], y + origins[number][1])) for number, (x, y) in hole.places)
+    return replace(hole, places=places)
