@@ -1,7 +1,7 @@
 """`Demand`: what the poses of a robot ask of its motors and cables."""
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -9,11 +9,15 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, solve_ik
-from hydrostat.robot import Robot
+from hydrostat.robot import Pose, Robot, Winch
 from hydrostat.simulation import Simulation, SolvedPose
 
 _ONCE = InverseOptions(restarts=0)
 """Whether another beginning would reach a pose better by some micrometres does not matter to a motor."""
+
+
+FAR = 0.1
+"""A pose that is missed by more than this share of the body's size is told: its loads are those of another pose."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -25,7 +29,8 @@ class Demand:
         tensions: largest of each cable [N], in cable order.
         torques: largest on the shaft of each winch [N m], in winch order: sum of tension times radius of the spool.
         taken: least and most cable that each winch takes in [m], (winches, 2).
-        missed: poses without an equilibrium, in words.
+        missed: what could not be solved, in words.
+        far: sentences on poses that are out of reach.
     """
 
     poses: tuple[str, ...]
@@ -33,53 +38,81 @@ class Demand:
     torques: Vector
     taken: Float[np.ndarray, "winches 2"]
     missed: tuple[str, ...] = ()
+    far: tuple[str, ...] = ()
 
 
 def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = None) -> Demand:
     """What the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at its full travel.
 
-    With friction of cables, for which there is no inverse kinematics, winches are pulled too.
+    Winches are pulled alone too if no pose could be solved. Where cables have friction, contractions are found without
+    it, and loads with it.
 
     Args:
         robot: with its poses.
         progress: told how many poses are solved, of how many.
     """
-    count = len(robot.winches)
     if not robot.cables:
+        count = len(robot.winches)
         return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
-    simulation = Simulation(robot)
-    solved: dict[str, SolvedPose] = {}
-    missed = []
-    tasks = tuple(_tasks(simulation))
-    for done, (name, solve) in enumerate(tasks):
+    work = _Work(robot)
+    for done, pose in enumerate(robot.poses.values()):
         if progress is not None:
-            progress(done, len(tasks))
+            progress(done, len(robot.poses))
+        work.reach(pose)
+    if not work.solved:
+        for winch in robot.winches:
+            work.pull(winch)
+    return work.demand()
+
+
+class _Work:
+    """Solves poses of a robot, and keeps what was found."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._simulation = Simulation(robot)
+        self._rough = any(cable.friction for cable in robot.cables)
+        cables = tuple(replace(cable, friction=0.0) for cable in robot.cables)
+        self._smooth = Simulation(robot.with_network(robot.winches, cables)) if self._rough else self._simulation
+        self.solved: dict[str, SolvedPose] = {}
+        self._missed: list[str] = []
+        self._far: list[str] = []
+
+    def reach(self, pose: Pose) -> None:
+        """A pose, as near as winches come."""
+        name = f'pose "{pose.name}"'
         try:
-            solved[name] = solve()
+            reached = solve_ik(self._smooth, pose, options=_ONCE)
+            taken = reached.pose.contractions
+            self.solved[name] = self._simulation.solve(taken) if self._rough else reached.pose
         except (InputError, NotConvergedError) as error:
-            missed.append(f"{name}: {error}")
-    poses = [simulation.rest, *solved.values()]
-    tensions = np.array([pose.tensions for pose in poses])
-    taken = np.array([pose.contractions for pose in poses])
-    return Demand(
-        poses=tuple(solved),
-        tensions=tensions.max(axis=0),
-        torques=np.max([_torques(robot, pose.tensions) for pose in poses], axis=0),
-        taken=np.stack([taken.min(axis=0), taken.max(axis=0)], axis=1),
-        missed=tuple(missed),
-    )
+            self._missed.append(f"{name}: {error}")
+            return
+        if reached.rms_error > FAR * self._robot.body.mesh.size:
+            self._far.append(
+                f"{name} is missed by {1e3 * reached.rms_error:.0f} mm (rms): its loads are those of the nearest pose "
+                "that the winches can make"
+            )
 
+    def pull(self, winch: Winch) -> None:
+        """One winch to its full travel."""
+        name = f'winch "{winch.name}" at its full travel'
+        try:
+            self.solved[name] = self._simulation.solve({winch.name: winch.travel})
+        except NotConvergedError as error:
+            self._missed.append(f"{name}: {error}")
 
-def _tasks(simulation: Simulation) -> Iterable[tuple[str, Callable[[], SolvedPose]]]:
-    robot = simulation.robot
-    if robot.poses and not any(cable.friction for cable in robot.cables):
-        for name, pose in robot.poses.items():
-            yield f'pose "{name}"', lambda pose=pose: solve_ik(simulation, pose, options=_ONCE).pose
-        return
-    for winch in robot.winches:
-        yield (
-            f'winch "{winch.name}" at its full travel',
-            lambda winch=winch: simulation.solve({winch.name: winch.travel}),
+    def demand(self) -> Demand:
+        """The largest of all, those at rest among them."""
+        poses = [self._simulation.rest, *self.solved.values()]
+        taken = np.array([pose.contractions for pose in poses])
+        return Demand(
+            poses=tuple(self.solved),
+            tensions=np.max([pose.tensions for pose in poses], axis=0),
+            torques=np.max([_torques(self._robot, pose.tensions) for pose in poses], axis=0),
+            taken=np.stack([taken.min(axis=0), taken.max(axis=0)], axis=1),
+            missed=tuple(self._missed),
+            far=tuple(self._far),
         )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.body_work import BodyWork
-from hydrostat.fabrication.checks.solid_checks import solid_checks
+from hydrostat.fabrication.checks.solid_checks import solid_checks, too_large
 from hydrostat.fabrication.checks.spool_checks import spool_checks
 from hydrostat.fabrication.demand import Demand, find_demand
 from hydrostat.fabrication.foam import foam_work
@@ -115,14 +115,15 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
     rigid, work = _parts_and_body(robot, options, method, demand, tell)
     tell("Lists")
     lists = make_lists(_list_input(robot, options, method, demand, rigid, work))
-    problems = (*rigid.problems, *work.problems, *lists.problems)
-    if problems and not options.force:
-        raise UnbuildableError(problems)
     tell("Checks")
     printed = (*rigid.printed, *work.printed)
     sound = solid_checks((*printed, *work.spare), (*rigid.assemblies, *work.assemblies))
     checks = (*work.checks, *lists.checks, *spool_checks(robot, rigid.units), *sound)
-    warnings = (*work.warnings, *rigid.warnings, *lists.warnings, *_missed(demand))
+    large = too_large((*printed, *work.spare), options.mould.bed)
+    problems = (*rigid.problems, *work.problems, *lists.problems, *large, *_failed(checks))
+    if problems and not options.force:
+        raise UnbuildableError(problems)
+    warnings = (*work.warnings, *rigid.warnings, *lists.warnings, *demand.far)
     tell("Files")
     told = SheetInput(
         robot=robot,
@@ -272,5 +273,9 @@ def _summary(rigid: RigidParts, printed: tuple[Printed, ...], lists: Lists) -> t
     )
 
 
-def _missed(demand: Demand) -> tuple[str, ...]:
-    return tuple(f"not counted in the loads: {missed}" for missed in demand.missed)
+def _failed(checks: tuple[Check, ...]) -> tuple[str, ...]:
+    return tuple(
+        f"the self-check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
+        for check in checks
+        if not check.passed
+    )

@@ -14,7 +14,7 @@ from hydrostat.robot import Robot, robot_hash
 NAME = "manifest.json"
 """Its file in a kit; written last, so that a kit without it is not whole."""
 
-_MAKERS = ("hydrostat", "ezdxf", "manifold3d", "numpy", "shapely", "typst")
+_MAKERS = ("hydrostat", "ezdxf", "libigl", "manifold3d", "numba", "numpy", "scipy", "shapely", "typst")
 """Packages on which the bytes of a kit depend."""
 
 

@@ -7,6 +7,7 @@ import pytest
 from plush_robots import crossed
 
 import hydrostat as hs
+from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import find_demand
 
 
@@ -43,10 +44,35 @@ def test_without_poses_each_winch_pulls_alone_as_far_as_it_goes():
     np.testing.assert_allclose(demand.tensions, full.tensions, rtol=1e-6)
 
 
-def test_with_friction_winches_are_pulled_too():
+def test_with_friction_the_contractions_are_those_without_it_and_the_loads_those_with_it():
+    """Oracle: the rough robot's own equilibrium at what the smooth one takes in."""
     robot = _posed(crossed(), 0.004)
-    rough = replace(robot, cables=tuple(replace(cable, friction=0.1) for cable in robot.cables))
-    assert find_demand(rough).poses == ('winch "pull" at its full travel',)
+    rough = replace(robot, cables=tuple(replace(cable, friction=0.3) for cable in robot.cables))
+    demand = find_demand(rough)
+    there = hs.Simulation(rough).solve({"pull": float(demand.taken[0, 1])})
+    assert demand.poses == ('pose "made"',)
+    np.testing.assert_allclose(demand.tensions, there.tensions, rtol=1e-6)
+    assert (demand.tensions > 1.01 * find_demand(robot).tensions).any()
+
+
+def test_a_pose_far_out_of_reach_is_told():
+    """Oracle: a target 3 m away from a body of 100 mm."""
+    robot = replace(crossed(), poses={"away": hs.Pose(name="away", targets={"tip": (3.0, 3.0)})})
+    (sentence,) = find_demand(robot).far
+    assert sentence.startswith('pose "away" is missed by 4')
+    assert find_demand(_posed(crossed(), 0.006)).far == ()
+
+
+def test_if_no_pose_can_be_solved_winches_are_pulled_alone(monkeypatch: pytest.MonkeyPatch):
+    """Oracle: inverse kinematics that always gives up."""
+
+    def gives_up(*args: object, **options: object) -> None:
+        raise InputError("no way")
+
+    monkeypatch.setattr("hydrostat.fabrication.demand.solve_ik", gives_up)
+    demand = find_demand(_posed(crossed(), 0.006))
+    assert demand.missed == ('pose "made": no way',)
+    assert demand.poses == ('winch "pull" at its full travel',)
 
 
 def test_a_robot_without_cables_asks_for_nothing():

@@ -66,9 +66,11 @@ def _holes(robot: Robot, pattern: Pattern, circles: Float[np.ndarray, "holes 3"]
 
 
 def _same_holes(svg: Float[np.ndarray, "holes 3"], dxf: Float[np.ndarray, "others 3"]) -> Check:
+    """Each hole of one has one of the other in its place, of its size."""
     gap = np.inf
     if len(svg) == len(dxf):
-        gap = float(np.abs(np.sort(svg, axis=0) - np.sort(dxf, axis=0)).max(initial=0.0))
+        gaps = np.linalg.norm(svg[:, None] - dxf[None], axis=2)
+        gap = max(float(gaps.min(axis=side).max(initial=0.0)) for side in (0, 1)) if len(svg) else 0.0
     return Check(
         what=f"SVG and DXF show the same {len(svg)} holes",
         measured=f"at most {gap:.3f} mm apart" if np.isfinite(gap) else f"{len(svg)} and {len(dxf)} holes",

@@ -32,3 +32,18 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[Assembly]) -> 
             passed=not clashes,
         ),
     )
+
+
+def too_large(printed: Iterable[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
+    """Why parts do not fit on the bed of the printer [mm], a line each; they may be turned on it, not tilted."""
+    return tuple(
+        f"{part.name} of {' x '.join(f'{side:.0f}' for side in part.size)} mm is more than the printer takes "
+        f"({' x '.join(f'{side:.0f}' for side in bed)} mm): use a larger printer"
+        for part in printed
+        if any(side > most + 1e-6 for side, most in zip(_turned(part.size), _turned(bed), strict=True))
+    )
+
+
+def _turned(size: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Longer side first in the plane."""
+    return max(size[:2]), min(size[:2]), size[2]
