@@ -27,7 +27,7 @@ from hydrostat.fabrication.solids.assembly import Assembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import step_bytes
 from hydrostat.fabrication.solids.stl import stl_bytes
-from hydrostat.fabrication.solids.three_mf import three_mf_bytes
+from hydrostat.fabrication.solids.three_mf import three_mf_plates
 from hydrostat.robot import Robot
 from hydrostat.units import counted
 
@@ -244,11 +244,13 @@ def _pictured(rigid: RigidParts) -> Assembly | None:
 
 
 def _solid_files(folder: str, name: str, parts: tuple[Printed, ...], options: KitOptions) -> dict[str, bytes]:
-    """Each part as STL, all as one 3MF, and as STEP what is made of true shapes, if that is wanted."""
+    """Each part as STL, all as 3MF by beds, and as STEP what is made of true shapes, if that is wanted."""
     if not parts:
         return {}
     files = {f"{folder}/{part.name}.stl": stl_bytes(part) for part in parts}
-    files[f"{folder}/{folder}.3mf"] = three_mf_bytes(parts, f"{name}: {folder}", bed=options.mould.bed[0])
+    wide, deep, _ = options.mould.bed
+    plates = three_mf_plates(parts, f"{name}: {folder}", bed=(wide, deep))
+    files |= {f"{folder}/plate_{number}.3mf": plate for number, plate in enumerate(plates, start=1)}
     if options.step:
         files |= {f"{folder}/{part.name}.step": step_bytes(part) for part in parts if part.model is not None}
     return files

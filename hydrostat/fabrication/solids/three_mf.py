@@ -1,13 +1,14 @@
-"""`three_mf_bytes`: printed parts as one 3MF, laid out on the bed with their titles and counts."""
+"""`three_mf_plates`: printed parts as 3MF, laid out on beds with their titles and counts."""
 
 import io
 import zipfile
 from xml.sax.saxutils import escape, quoteattr
 
+from hydrostat.fabrication.solids.plates import Laid, lay_plates
 from hydrostat.fabrication.solids.printed import Printed
 
-_GAP = 5.0
-"""Between parts on the bed [mm]."""
+_STRAIGHT, _TURNED = "1 0 0 0 1 0 0 0 1", "0 1 0 -1 0 0 0 0 1"
+"""What happens to a part's axes: each row is where one of them goes."""
 
 _TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -26,23 +27,34 @@ _RELATIONS = (
 )
 
 
-def three_mf_bytes(parts: tuple[Printed, ...], title: str, *, bed: float = 220.0) -> bytes:
-    """Parts as one 3MF in millimetres, each as often as it is needed, side by side in rows across the bed.
+def three_mf_plates(parts: tuple[Printed, ...], title: str, *, bed: tuple[float, float]) -> tuple[bytes, ...]:
+    """Parts as 3MF in millimetres, a file for each bed, each part as often as it is needed.
 
     Args:
-        parts: one or several; a part larger than the bed has a row of its own.
-        title: of the file.
-        bed: width of the bed [mm]. What does not fit on its depth is beyond it, for the slicer to lay on a second one.
+        parts: one or several; one larger than the bed has a file of its own.
+        title: of the files.
+        bed: its width and depth [mm].
 
     Raises:
         ValueError: no parts.
     """
     if not parts:
         raise ValueError("a 3MF needs a part")
-    objects = "".join(_object(number, part) for number, part in enumerate(parts, start=1))
+    plates = lay_plates(parts, bed)
+    return tuple(
+        _file(parts, plate, f"{title}, plate {number} of {len(plates)}" if len(plates) > 1 else title)
+        for number, plate in enumerate(plates, start=1)
+    )
+
+
+def _file(parts: tuple[Printed, ...], plate: tuple[Laid, ...], title: str) -> bytes:
+    used = sorted({laid.part for laid in plate})
+    numbers = {part: number for number, part in enumerate(used, start=1)}
+    objects = "".join(_object(numbers[part], parts[part]) for part in used)
     items = "".join(
-        f'  <item objectid="{number + 1}" transform="1 0 0 0 1 0 0 0 1 {_number(x)} {_number(y)} 0"/>\n'
-        for number, x, y in laid_out(parts, bed=bed)
+        f'  <item objectid="{numbers[laid.part]}" transform="{_TURNED if laid.turned else _STRAIGHT} '
+        f'{_number(laid.x)} {_number(laid.y)} 0"/>\n'
+        for laid in plate
     )
     model = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -53,22 +65,6 @@ def three_mf_bytes(parts: tuple[Printed, ...], title: str, *, bed: float = 220.0
         f" <resources>\n{objects} </resources>\n <build>\n{items} </build>\n</model>\n"
     )
     return _zipped({"[Content_Types].xml": _TYPES, "_rels/.rels": _RELATIONS, "3D/3dmodel.model": model})
-
-
-def laid_out(parts: tuple[Printed, ...], *, bed: float) -> list[tuple[int, float, float]]:
-    """For each copy: number of its part, and how far it is moved along x and y [mm], the deepest first, in rows."""
-    boxes = [part.solid.bounding_box() for part in parts]
-    copies = [number for number, part in enumerate(parts) for _ in range(part.count)]
-    copies.sort(key=lambda number: (boxes[number][1] - boxes[number][4], number))
-    places, x, y, deepest = [], 0.0, 0.0, 0.0
-    for number in copies:
-        low_x, low_y, _, high_x, high_y, _ = boxes[number]
-        if x > 0 and x + high_x - low_x > bed:
-            x, y, deepest = 0.0, y + deepest + _GAP, 0.0
-        places.append((number, x - low_x, y - low_y))
-        x += high_x - low_x + _GAP
-        deepest = max(deepest, high_y - low_y)
-    return places
 
 
 def _object(number: int, part: Printed) -> str:

@@ -13,7 +13,13 @@ from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 from hydrostat.fabrication.solids.file_mesh import file_mesh, loose_edges
 from hydrostat.fabrication.solids.printed import Printed, triangles_of
 from hydrostat.fabrication.solids.stl import stl_bytes
-from hydrostat.fabrication.solids.three_mf import three_mf_bytes
+from hydrostat.fabrication.solids.three_mf import three_mf_plates
+
+
+def three_mf_bytes(parts: tuple[Printed, ...], title: str) -> bytes:
+    """All on one large bed."""
+    (content,) = three_mf_plates(parts, title, bed=(2000.0, 2000.0))
+    return content
 
 
 def plate(**others) -> Printed:
@@ -157,15 +163,31 @@ def apart(boxes: np.ndarray) -> bool:
     )
 
 
-def test_parts_lie_apart_on_the_bed():
-    """Oracle: lib3mf's transforms of its vertices."""
+def test_parts_lie_apart_on_beds_that_hold_them():
+    """Oracle: lib3mf's transforms of its vertices; nine plates of 40 x 30 mm and 40 pins of 14 mm on 150 x 100 mm."""
     pin = Printed(name="pin", title="Pin", solid=solid_of(Cylinder(8, 7)), count=40)
-    boxes = boxes_on_bed(three_mf_bytes((pin, plate(count=9)), "kit", bed=150))
-    assert len(boxes) == 49
-    assert apart(boxes)
-    assert boxes[:, 1, 0].max() <= 150 + 1e-3
-    np.testing.assert_allclose(boxes[:, 0].min(axis=0), 0, atol=1e-4)
-    assert not apart(np.concatenate([boxes, boxes[3:4] + 1.0]))
+    beds = [boxes_on_bed(content) for content in three_mf_plates((pin, plate(count=9)), "kit", bed=(150.0, 100.0))]
+    assert sum(map(len, beds)) == 49
+    assert len(beds) == 2
+    for boxes in beds:
+        assert apart(boxes)
+        assert (boxes[:, 1, :2].max(axis=0) <= np.array([150, 100]) + 1e-3).all()
+        np.testing.assert_allclose(boxes[:, 0].min(axis=0), 0, atol=1e-4)
+    assert not apart(np.concatenate([beds[0], beds[0][3:4] + 1.0]))
+
+
+def test_a_part_is_turned_where_only_so_it_fits():
+    """Oracle: lib3mf, and trimesh, which sees the corner that was cut off a quarter turn further counter-clockwise."""
+    corner = plate(solid=solid_of(Box((40, 30, 3)) - Box((10, 5, 9)).moved(-1, -1, -1)))
+    (content,) = three_mf_plates((corner,), "kit", bed=(35.0, 50.0))
+    np.testing.assert_allclose(boxes_on_bed(content)[0, :, :2], [[0, 0], [30, 40]], atol=1e-4)
+    seen = trimesh.load_scene(io.BytesIO(content), file_type="3mf").to_mesh()
+    corners = {(round(x), round(y)) for x, y, _ in seen.vertices}
+    assert corners == {(0, 0), (26, 0), (26, 9), (30, 9), (30, 40), (0, 40)}
+
+
+def test_a_part_larger_than_the_bed_has_a_file_of_its_own():
+    assert len(three_mf_plates((plate(count=2),), "kit", bed=(20.0, 20.0))) == 2
 
 
 def test_a_3mf_without_parts_is_refused():
