@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import StringIO
+from threading import Lock
 
 from ezdxf import colors, new, options  # pyright: ignore[reportPrivateImportUsage]
 from ezdxf.document import Drawing
@@ -15,10 +16,13 @@ from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 _COLOURS = {Layer.MARK: colors.WHITE, Layer.PINHOLE: colors.BLUE, Layer.CUT: colors.RED}
 """Index 7 is black on paper and white on a dark screen."""
 
+_WRITING = Lock()
+"""Dates are switched off for all drawings of a process: one at a time."""
+
 
 def pattern_dxf(pattern: Pattern) -> bytes:
     """The bytes of the drawing (R2010, millimetres): layers MARK, PINHOLE and CUT, closed polylines and circles."""
-    with _without_dates():
+    with _WRITING, _without_dates():
         text = StringIO()
         document = pattern_document(pattern)
         document.write(text)
@@ -35,7 +39,15 @@ def pattern_document(pattern: Pattern) -> Drawing:
     space = document.modelspace()
     for shape in (*(shape for panel in pattern.panels for shape in panel.shapes), *pattern.shapes):
         _draw(space, shape)
+    _sort_classes(document)
     return document
+
+
+def _sort_classes(document: Drawing) -> None:
+    """Classes by name: ezdxf takes them from a set, whose order is another one on every run."""
+    section = document.classes
+    section.add_required_classes(document.dxfversion)
+    section.classes = dict(sorted(section.classes.items()))
 
 
 def _draw(space: Modelspace, shape: Shape) -> None:
