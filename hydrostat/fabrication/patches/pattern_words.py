@@ -2,7 +2,7 @@
 
 import shapely
 
-from hydrostat.fabrication.patches.cutting import MOST_GIVE
+from hydrostat.fabrication.patches.cutting import MOST_EASE, MOST_GIVE
 from hydrostat.fabrication.patches.distortion import distortion
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import Seam
@@ -10,9 +10,6 @@ from hydrostat.fabrication.patterns.skin import Skin
 
 GIVES_LITTLE = 0.06
 """What any cloth gives: above that a pattern asks for one that stretches. Assumed, measured on none."""
-
-MOST_EASE = 0.05
-"""How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed."""
 
 NARROWEST = 8.0
 """A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed."""
@@ -27,7 +24,7 @@ def patch_problems(
         give = distortion(patch).give(0.95)
         if give > MOST_GIVE:
             problems.append(
-                f"patch {name} would have to stretch or shrink by {give:.0%} to lie on the body, more than "
+                f"patch {name} would have to stretch or shrink by {give:.1%} to lie on the body, more than "
                 f"{MOST_GIVE:.0%}, which felt gives: cast this body in a mould, or simplify its shape"
             )
         if not patch.outline.is_valid:

@@ -21,6 +21,9 @@ from hydrostat.units import counted
 DEEPEST = 15.0
 """A point of a cable at most so far under the skin [mm] is sewn to it; deeper ones stay in the stuffing. Assumed."""
 
+SHARED = 0.1
+"""Cables that pass the skin no farther apart than that [mm] share a hole."""
+
 _SEAM_FIRST = 3.0
 """A point at most so much farther from a seam than from the skin [mm] is sewn into the seam: that takes no hole, and
 cables in the middle between front and back stay there. Assumed."""
@@ -167,7 +170,7 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
     for one, other in combinations(cut, 2):
         (patch, place), (theirs, there) = one.places[0], other.places[0]
         apart = float(np.hypot(*np.subtract(place, there)))
-        if patch == theirs and apart < options.pinhole and apart < close.get(one.cable, (np.inf,))[0]:
+        if patch == theirs and SHARED < apart < options.pinhole and apart < close.get(one.cable, (np.inf,))[0]:
             close[one.cable] = (apart, one, other)
     return tuple(
         f"the holes of cable {one.cable} at point {one.point} and of cable {other.cable} at point {other.point} are "

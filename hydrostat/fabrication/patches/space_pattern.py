@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from shapely.affinity import translate
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.patches.back_opening import back_opening
@@ -18,6 +19,7 @@ from hydrostat.fabrication.patches.skin_holes import SkinHole, find_holes, hole_
 from hydrostat.fabrication.patches.skin_mesh import skin_mesh
 from hydrostat.fabrication.patches.skin_stitches import skin_stitches
 from hydrostat.fabrication.patches.view import front_view, upright
+from hydrostat.fabrication.patterns.opening import Opening
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Place
@@ -27,7 +29,7 @@ from hydrostat.robot import Robot
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SpacePattern(Pattern):
-    """The pattern of a body in space; `stitches` are as seen from the front.
+    """The pattern of a body in space; `stitches` are as seen from the front, `opening` is on the sheet.
 
     Attributes:
         patches: flat, in places of the sheet [mm]; a panel each, in the same order.
@@ -83,7 +85,7 @@ def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
         width=sheet.width,
         height=sheet.height,
         stitches=skin_stitches(robot, holes, view),
-        opening=None if opening is None else opening[1],
+        opening=None if opening is None else _on_sheet(opening[1], origins[opening[0]]),
         problems=problems,
         warnings=(
             *patch_warnings(names, patches, skins, seams),
@@ -113,6 +115,11 @@ def _on_patch(
         )
         for number in range(1, len(robot.cables) + 1)
     ]
+
+
+def _on_sheet(opening: Opening, origin: Place) -> Opening:
+    """The opening in places of the sheet."""
+    return replace(opening, slit=translate(opening.slit, *origin))
 
 
 def _moved(hole: SkinHole, origins: list[Place]) -> SkinHole:

@@ -55,7 +55,7 @@ def cap(angle: float, radius: float = 50.0, rings: int = 16, columns: int = 48) 
     return disc(vertices, np.concatenate([fan, np.column_stack([a, b, c]), np.column_stack([a, c, d])]))
 
 
-def ellipsoid_body(size: tuple[float, float, float] = (0.12, 0.05, 0.1), cells: int = 8) -> Body:
+def ellipsoid_body(size: tuple[float, float, float] = (0.12, 0.05, 0.1), cells: int = 6) -> Body:
     """An ellipsoid of tetrahedra about the origin, as long along each axis as told [m]."""
     mesh = box_mesh((cells, cells, cells), size=(2.0, 2.0, 2.0))
     cube = mesh.nodes - 1.0
