@@ -1,9 +1,10 @@
-"""Array shapes and types of all of hydrostat are checked while the tests run; one thread of BLAS."""
+"""Array shapes and types of all of hydrostat are checked while the tests run; one thread of BLAS; two kits."""
 
 import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
@@ -13,6 +14,9 @@ sys.path[:0] = [str(_HERE), str(_HERE.parent / "benchmarks")]
 
 import pytest  # noqa: E402
 from jaxtyping import config, install_import_hook  # noqa: E402
+
+if TYPE_CHECKING:
+    from hydrostat.fabrication import Kit
 
 install_import_hook("hydrostat", "typechecker.checked")
 
@@ -28,3 +32,29 @@ def unchecked() -> Iterator[None]:
 def pytest_addoption(parser: pytest.Parser) -> None:
     """A flag for tests that compare with reference files."""
     parser.addoption("--refresh-references", action="store_true", help="write the reference files anew")
+
+
+def _kit(name: str) -> "Kit":
+    import hydrostat as hs
+    from hydrostat.fabrication import build_kit
+    from hydrostat.robot.gallery import gallery_folder
+
+    return build_kit(hs.load_robot(gallery_folder(name)))
+
+
+@pytest.fixture(scope="session")
+def plush_kit() -> "Kit":
+    """The kit of the starfish."""
+    return _kit("starfish")
+
+
+@pytest.fixture(scope="session")
+def foam_kit() -> "Kit":
+    """The kit of the fish tail."""
+    return _kit("fish_tail")
+
+
+@pytest.fixture
+def refresh_references(request: pytest.FixtureRequest) -> bool:
+    """Whether references are written anew."""
+    return bool(request.config.getoption("--refresh-references"))

@@ -16,8 +16,9 @@ def require_folder(out: Path) -> None:
     Raises:
         InputError: something that is no folder is in the way.
     """
-    if out.exists() and not out.is_dir():
-        raise InputError(f"--out {out}: is a file; name a folder")
+    for folder in (out, *out.parents):
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file; name a folder")
 
 
 OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results; made if need be.")]

@@ -28,8 +28,9 @@ def fabricate(
         str, typer.Option(metavar="NAME", help="n20, xl330, 25d; auto takes the first that is strong enough.")
     ] = "auto",
     mould: Annotated[
-        str, typer.Option(metavar="printed|silicone", help="Of foam: what the mould is made of.")
-    ] = "printed",
+        str | None,
+        typer.Option(metavar="printed|silicone", help="Of foam: what the mould is of; printed if left out."),
+    ] = None,
     bed: Annotated[
         str, typer.Option(metavar="LENGTHS", help="The most that your 3D printer takes, along x, y and z.")
     ] = "220 x 220 x 250 mm",
@@ -70,7 +71,7 @@ def fabricate(
     options = KitOptions(
         method=None if method is None else _one_of("--method", method, Method),
         motor=motor,
-        mould=MouldOptions(kind=_one_of("--mould", mould, MouldKind), bed=_lengths("--bed", bed)),
+        mould=MouldOptions(kind=_one_of("--mould", mould or "printed", MouldKind), bed=_lengths("--bed", bed)),
         paper=_one_of("--paper", paper, Paper),
         pattern=PatternOptions(seam_allowance=_millimetres("--seam", seam)),
         parts=PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
@@ -79,6 +80,8 @@ def fabricate(
     )
     began = time.perf_counter()
     loaded = read_robot(robot)
+    if mould is not None and options.method_for(loaded.body.mesh.dim) is not Method.FOAM:
+        raise InputError("--mould: is for bodies of foam; leave it out, or add --method foam")
     try:
         with progress_bar() as progress:
             kit = build_kit(loaded, options=options, progress=progress)

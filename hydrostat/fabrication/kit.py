@@ -15,6 +15,7 @@ from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.list_input import ListInput
 from hydrostat.fabrication.lists.lists import Lists, make_lists
 from hydrostat.fabrication.manifest import NAME, manifest
+from hydrostat.fabrication.parts.motor import choose_motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.cut_sheet import cut_sheet
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
@@ -25,7 +26,7 @@ from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.assembly import Assembly
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.fabrication.solids.step import step_bytes
+from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.fabrication.solids.stl import stl_bytes
 from hydrostat.fabrication.solids.three_mf import three_mf_plates
 from hydrostat.robot import Robot
@@ -109,6 +110,9 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         InputError: a body that the method cannot make, or an unknown motor.
     """
     options, tell = options or KitOptions(), _Stages(progress)
+    choose_motor(options.motor, ())  # a name that is wrong is told before the work
+    if options.step:
+        require_cad()
     method = options.method_for(robot.body.mesh.dim)
     tell("Loads in its poses")
     demand = find_demand(robot, progress=tell.part)

@@ -19,7 +19,7 @@ def near_the_edge() -> hs.Robot:
         name="near_the_edge",
         body=body,
         pins=(hs.Pin(at=(0.0, 0.0), radius=1.0),),
-        winches=(hs.Winch(name="pull", at=(-0.02, -0.01)),),
+        winches=(hs.Winch(name="pull", at=(-0.02, -0.01), travel=0.004),),
         cables=tuple(hs.Cable(winch="pull", points=route) for route in routes),
         poses={},
     )

@@ -1,13 +1,15 @@
 """`hydrostat fabricate` as a user meets it."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import Run
 from plush import near_the_edge
 
 from hydrostat.robot import save_robot
+
+Run = Callable[..., tuple[int, str, str]]
 
 
 def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
@@ -43,10 +45,23 @@ def test_bad_options_are_refused_before_the_work(
     assert not (tmp_path / "kit").exists()
 
 
+def test_a_mould_for_plush_is_refused(run: Run, tmp_path: Path, starfish: Path) -> None:
+    code, _, err = run("fabricate", starfish, "--mould", "silicone", "--out", tmp_path / "kit")
+    assert code == 2
+    assert err == "hydrostat: --mould: is for bodies of foam; leave it out, or add --method foam\n"
+
+
+def test_a_file_in_the_way_is_said_before_the_work(run: Run, tmp_path: Path, starfish: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    code, out, err = run("fabricate", starfish, "--out", tmp_path / "file" / "kit")
+    assert (code, out) == (2, "")
+    assert err == f"hydrostat: --out {tmp_path / 'file' / 'kit'}: {tmp_path / 'file'} is a file; name a folder\n"
+
+
 def test_an_unknown_motor_is_refused(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, _, err = run("fabricate", starfish, "--motor", "v8", "--out", tmp_path / "kit")
     assert code == 2
-    assert err.splitlines()[-1].startswith('hydrostat: there is no motor "v8"')
+    assert err.startswith('hydrostat: there is no motor "v8"')
     assert not (tmp_path / "kit").exists()
 
 

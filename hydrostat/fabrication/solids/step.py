@@ -3,6 +3,7 @@
 import re
 import tempfile
 from functools import singledispatch
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -111,11 +112,20 @@ def _(shape: Turned) -> Any:
     return model
 
 
+def require_cad() -> None:
+    """Before long work begins: STEP can be written.
+
+    Raises:
+        InputError: build123d is not installed.
+    """
+    if find_spec("build123d") is None:
+        raise InputError('STEP needs build123d, which is not installed: pip install "hydrostat[cad]"')
+
+
 def _build123d() -> Any:
-    try:
-        import build123d  # type: ignore[import-not-found]
-    except ImportError:
-        raise InputError('STEP needs build123d, which is not installed: pip install "hydrostat[cad]"') from None
+    require_cad()
+    import build123d  # type: ignore[import-not-found]
+
     return build123d
 
 

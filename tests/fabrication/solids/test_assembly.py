@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from manifold3d import Manifold
 
@@ -43,3 +44,30 @@ def test_what_is_less_than_asked_for_is_not_told():
     lapped = put_together(box, box.translate((3.9, 0, 0)))
     assert interferences(lapped, least=2.0) == ()
     assert len(interferences(lapped, least=0.09)) == 1
+
+
+def bumpy(turn: float) -> tuple[Manifold, Manifold]:
+    """A ball with bumps, and the upper half of a block round it with a hole above."""
+
+    def bumped(places: np.ndarray) -> np.ndarray:
+        x, y, z = np.asarray(places).T
+        return places * (1 + 0.12 * np.sin(x / 4 + turn) * np.sin(y / 3 - turn) * np.cos(z / 5))[:, None]
+
+    ball = Manifold.sphere(30, 48).warp_batch(bumped)
+    for k in range(6):
+        dent = Manifold.cylinder(3, 2, 1, 16).rotate((60 * k, 30, 20 * k))
+        spot = np.array([[30 * np.cos(k), 24 * np.sin(k), 18]])
+        ball = ball - dent.translate(tuple(bumped(spot)[0].tolist()))
+    block = Manifold.cube((90, 90, 90), True) - ball - Manifold.cylinder(60, 6)
+    return ball, block.trim_by_plane((0, 0, 1), 0.0)
+
+
+@pytest.mark.parametrize("turn", [1 + 1 / 7, 1 + 22 / 7])
+def test_what_is_cut_out_of_a_block_shares_nothing_with_it(turn: float):
+    """Oracle: sets; and drawn together by 0.01 mm, the disc that they meet in, of pi 30^2, less the hole, twice."""
+    ball, half = bumpy(turn)
+    assert interferences(put_together(ball, half)) == ()
+    (found,) = interferences(put_together(ball, half.translate((0, 0, -0.01))))
+    disc = half.slice(0.005)
+    shadow = 90**2 - disc.area() - math.pi * 6**2
+    assert found.volume == pytest.approx(0.01 * shadow, rel=0.2)
