@@ -99,7 +99,8 @@ def patch_panel(
             labels.cable_name(cable, own[-1][1])
     for hole, place in holes:
         labels.figure(f"{hole.point}", place)
-    labels.title(title if labels.has_room(title) else name.replace("-", " "))
+    words = (title, name.replace("-", " "), f"{name[0]}{name.partition('-')[2]}")
+    labels.title(next((text for text in words if labels.has_room(text)), words[-1]))
     labels.grain()
     return Panel(name=name, origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations, groupby
+from itertools import combinations, groupby, pairwise
 
 import numpy as np
 import shapely
@@ -177,6 +177,24 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
         f"{apart:.2f} mm apart on the cloth: pinholes of {options.pinhole:g} mm overlap; move one point away"
         for apart, one, other in close.values()
     )
+
+
+def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
+    """Of each cable whether it would run outside where it was simulated deep in the body, a line each."""
+    nearest, problems = NearestOnSkin(patches).nearest, {}
+    for one, other in pairwise([hole for hole in holes if hole.passes]):
+        if one.cable != other.cable or one.after is Side.INSIDE:
+            continue
+        points = 1e3 * np.array(robot.cables[one.cable - 1].points[one.point - 1 : other.point])
+        way = np.concatenate([points, (points[1:] + points[:-1]) / 2])
+        depth = float(np.linalg.norm(way - nearest(way)[0], axis=1).max())
+        if depth > DEEPEST:
+            problems[one.cable] = (
+                f"cable {one.cable} would run outside from point {one.point} to point {other.point}, but was simulated "
+                f"{depth:.0f} mm under the skin there, through the body: cast this body in a mould, or lay the cable "
+                "along the skin"
+            )
+    return tuple(problems.values())
 
 
 def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:

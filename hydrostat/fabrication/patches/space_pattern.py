@@ -15,7 +15,7 @@ from hydrostat.fabrication.patches.patch_notches import patch_notches, stuffing_
 from hydrostat.fabrication.patches.patch_panel import patch_panel, patch_skin
 from hydrostat.fabrication.patches.pattern_words import patch_problems, patch_warnings
 from hydrostat.fabrication.patches.seams import Seam, find_seams
-from hydrostat.fabrication.patches.skin_holes import SkinHole, find_holes, hole_problems, hole_warnings
+from hydrostat.fabrication.patches.skin_holes import SkinHole, find_holes, hole_problems, hole_warnings, way_problems
 from hydrostat.fabrication.patches.skin_mesh import skin_mesh
 from hydrostat.fabrication.patches.skin_stitches import skin_stitches
 from hydrostat.fabrication.patches.view import front_view, upright
@@ -61,7 +61,11 @@ def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
     holes = find_holes(robot, patches, seams, options)
     skins = tuple(patch_skin(patch, options) for patch in patches)
     names = cutting.names
-    problems = (*patch_problems(names, patches, skins, seams), *hole_problems(holes, options))
+    problems = (
+        *patch_problems(names, patches, skins, seams),
+        *hole_problems(holes, options),
+        *way_problems(robot, patches, holes),
+    )
     if problems and not options.force:
         first, *others = problems
         raise InputError(f"{first} (and {len(others)} more such)" if others else first)

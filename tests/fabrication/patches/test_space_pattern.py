@@ -122,6 +122,14 @@ def test_deep_cables_get_no_hole_and_are_told():
     assert any("nowhere within 15 mm" in warning for warning in pattern.warnings)
 
 
+def test_a_cable_through_the_body_is_refused():
+    """Sewn in and out, it would go round the outside."""
+    across = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.055), (0.0, 0.0, -0.055), (0.02, 0.0, -0.055)]
+    robot = cushion(ellipsoid_body((0.2, 0.08, 0.14)), across)
+    with pytest.raises(InputError, match="cable 1 would run outside from point 2 to point 3"):
+        space_pattern(robot, PatternOptions())
+
+
 def test_a_body_without_winch_inside_is_turned_through_a_seam():
     robot = cushion(ellipsoid_body((0.2, 0.06, 0.16)))
     pattern = space_pattern(robot, PatternOptions())
