@@ -22,7 +22,7 @@ def fabricate(
     out: OutFolder,
     method: Annotated[
         str | None,
-        typer.Option(metavar="plush|foam", help="Plush for a flat body, foam for one in space, if left out."),
+        typer.Option(metavar="plush|foam", help="If left out: plush for what is flat or stuffed, else foam."),
     ] = None,
     motor: Annotated[
         str, typer.Option(metavar="NAME", help="n20, xl330, 25d; auto takes the first that is strong enough.")
@@ -80,7 +80,7 @@ def fabricate(
     )
     began = time.perf_counter()
     loaded = read_robot(robot)
-    if mould is not None and options.method_for(loaded.body.mesh.dim) is not Method.FOAM:
+    if mould is not None and options.method_for(loaded.body) is not Method.FOAM:
         raise InputError("--mould: is for bodies of foam; leave it out, or add --method foam")
     try:
         with progress_bar() as progress:

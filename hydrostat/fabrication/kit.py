@@ -113,7 +113,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
     choose_motor(options.motor, ())  # a name that is wrong is told before the work
     if options.step:
         require_cad()
-    method = options.method_for(robot.body.mesh.dim)
+    method = options.method_for(robot.body)
     tell("Loads in its poses")
     demand = find_demand(robot, progress=tell.part)
     rigid, work = _parts_and_body(robot, options, method, demand, tell)

@@ -6,6 +6,10 @@ from enum import StrEnum
 from hydrostat.fabrication.moulds.mould_options import MouldOptions
 from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.robot import Body
+
+STUFFINGS = ("polyester fibre",)
+"""Materials that are stuffed into cloth: a body of them is plush, in space too."""
 
 
 class Method(StrEnum):
@@ -27,7 +31,7 @@ class KitOptions:
     """What kind of robot is built, and how.
 
     Attributes:
-        method: None: plush for a flat body, foam for one in space.
+        method: None: plush for a flat body and for one that is stuffed, foam for others.
         motor: key of a motor in the table, or "auto": the first that is strong enough.
         paper: of the pages.
         step: also write each printed part as STEP; needs the extra `cad`.
@@ -46,6 +50,7 @@ class KitOptions:
     parts: PartOptions = field(default_factory=PartOptions)
     mould: MouldOptions = field(default_factory=MouldOptions)
 
-    def method_for(self, dim: int) -> Method:
-        """How a body of this dimension is made."""
-        return self.method or (Method.PLUSH if dim == 2 else Method.FOAM)
+    def method_for(self, body: Body) -> Method:
+        """How a body is made."""
+        stuffed = body.mesh.dim == 2 or body.material.name in STUFFINGS
+        return self.method or (Method.PLUSH if stuffed else Method.FOAM)

@@ -6,6 +6,8 @@ from hydrostat.fabrication.body_work import BodyWork
 from hydrostat.fabrication.checks.pattern_checks import pattern_checks
 from hydrostat.fabrication.kit_options import KitOptions
 from hydrostat.fabrication.lists.list_input import Cloth
+from hydrostat.fabrication.patches.patch_checks import patch_checks
+from hydrostat.fabrication.patches.space_pattern import space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
 from hydrostat.fabrication.patterns.shape import Circle, Part
@@ -16,29 +18,34 @@ from hydrostat.units import counted
 
 
 def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
-    """The pattern of a flat body, with what is wrong with it.
+    """The pattern of a body: of a flat one front and back, of one in space its skin in patches.
 
     Raises:
-        InputError: the body is not flat, or is in several pieces.
+        InputError: the body is in several pieces, or its skin cannot be cut into patches.
     """
     drawn = replace(options.pattern, force=True)
-    pattern = plush_pattern(robot, options=drawn)
-    svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
-    front = pattern.panel("front").shapes
+    if robot.body.mesh.dim == 2:
+        pattern = plush_pattern(robot, options=drawn)
+        svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
+        checks = pattern_checks(robot, pattern, svg, dxf, drawn)
+    else:
+        pattern = space_pattern(robot, drawn)
+        svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
+        checks = patch_checks(robot, pattern, svg)
     return BodyWork(
         files={
             "pattern/pattern.svg": svg,
             "pattern/pattern.dxf": dxf,
             f"pattern/pattern_{options.paper}.pdf": tiled_pdf(pattern, options.paper),
         },
-        holes=sum(shape.part is Part.PINHOLE for shape in front),
+        holes=sum(shape.part is Part.PINHOLE for panel in pattern.panels for shape in panel.shapes),
         stitches=pattern.stitches,
         gusset=bool(pattern.gusset),
         cloth=_cloth(pattern),
         summary=(f"Pattern: {counted(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
         problems=pattern.problems,
         warnings=pattern.warnings,
-        checks=pattern_checks(robot, pattern, svg, dxf, drawn),
+        checks=checks,
     )
 
 

@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from importlib.util import find_spec
 
+import ezdxf
 import pypdf
 import pytest
 import trimesh
@@ -123,9 +124,14 @@ def test_an_unknown_motor_is_refused():
         build_kit(crossed(), options=KitOptions(motor="v8"))
 
 
-def test_plush_is_for_flat_bodies():
-    with pytest.raises(InputError, match="in space"):
-        build_kit(hs.load_robot(gallery_folder("fish_tail")), options=KitOptions(method=Method.PLUSH))
+def test_a_stuffed_body_in_space_is_sewn_of_patches():
+    """Oracle: the checks on its pattern, and ezdxf's audit of the drawing."""
+    kit = build_kit(hs.load_robot(gallery_folder("bear")))
+    assert kit.method is Method.PLUSH
+    assert [check.what for check in kit.checks if not check.passed] == []
+    assert any("skin" in check.what for check in kit.checks)
+    assert not ezdxf.read(io.StringIO(kit.files["pattern/pattern.dxf"].decode())).audit().errors
+    assert len(pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages) == 2
 
 
 def test_a_flat_body_can_be_cast():
