@@ -11,7 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.body_solid import MILLIMETRES
 from hydrostat.fabrication.moulds.frame import Frame
 from hydrostat.fabrication.moulds.release import Skin, axes_along
-from hydrostat.fabrication.moulds.simple_solids import rod
+from hydrostat.fabrication.moulds.simple_solids import joined, rod
 from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.surface import Surface
 from hydrostat.robot import Mount, Robot
@@ -192,8 +192,7 @@ def cable_dents(robot: Robot, skin: Skin, frame: Frame, *, deepest: float) -> Ma
     for place in range(len(spots)):
         if all(np.linalg.norm(spots[place] - spots[other]) > 2 * _DENT_RADIUS for other in kept):
             kept.append(place)
-    cones = [_cone(spots[place], inward[place]) for place in kept]
-    return Manifold.compose(cones) if cones else Manifold()
+    return joined(_cone(spots[place], inward[place]) for place in kept)  # their roots meet where cables are near
 
 
 def _cone(spot: Float[np.ndarray, "3"], inward: Float[np.ndarray, "3"]) -> Manifold:
