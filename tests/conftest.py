@@ -10,7 +10,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
 
 _HERE = Path(__file__).parent
-sys.path[:0] = [str(_HERE), str(_HERE.parent / "benchmarks")]
+sys.path[:0] = [str(_HERE), str(_HERE / "fabrication"), str(_HERE.parent / "benchmarks")]
 
 import pytest  # noqa: E402
 from jaxtyping import config, install_import_hook  # noqa: E402

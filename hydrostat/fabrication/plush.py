@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from hydrostat.fabrication.body_work import BodyWork
+from hydrostat.fabrication.checks.patch_checks import patch_checks
 from hydrostat.fabrication.checks.pattern_checks import pattern_checks
 from hydrostat.fabrication.kit_options import KitOptions
 from hydrostat.fabrication.lists.list_input import Cloth
-from hydrostat.fabrication.patches.patch_checks import patch_checks
 from hydrostat.fabrication.patches.space_pattern import space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
@@ -31,7 +31,7 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
     else:
         pattern = space_pattern(robot, drawn)
         svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
-        checks = patch_checks(robot, pattern, svg)
+        checks = patch_checks(robot, pattern, svg, dxf)
     return BodyWork(
         files={
             "pattern/pattern.svg": svg,

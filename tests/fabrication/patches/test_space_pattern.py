@@ -6,7 +6,7 @@ from patch_bodies import cushion, ellipsoid_body
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.fabrication.patches.patch_checks import patch_checks
+from hydrostat.fabrication.checks.patch_checks import patch_checks
 from hydrostat.fabrication.patches.space_pattern import SpacePattern, space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
@@ -28,7 +28,7 @@ def pattern(bear) -> SpacePattern:
 
 
 def failed(robot: Robot, pattern: SpacePattern, svg: bytes) -> list[str]:
-    return [check.what for check in patch_checks(robot, pattern, svg) if not check.passed]
+    return [check.what for check in patch_checks(robot, pattern, svg, pattern_dxf(pattern)) if not check.passed]
 
 
 def test_the_bear_is_a_front_and_a_back(pattern):
