@@ -1,4 +1,4 @@
-"""`CableCut`: how long each cable is cut, and where it is marked."""
+"""`CableCut`: how long each cable is cut, and about where it meets its spool."""
 
 import math
 from collections.abc import Mapping
@@ -31,7 +31,7 @@ class CableCut:
     Attributes:
         number: of the cable, from 1.
         winch: its name.
-        body: rest length from the winch's exit to the stopper, sheaths included.
+        body: rest length from the place of the winch to the stopper, sheaths included.
         slack: taken in before it is taut.
         outside: tube from motors outside to where the cable begins.
         lead: from the winch's exit to the spool.
@@ -64,19 +64,13 @@ class CableCut:
         return STEP * math.ceil(self.length / STEP - 1e-9)
 
     @property
-    def stopper(self) -> float:
-        """Where the stopper goes, along the cable from the winch's exit (from the base if motors are outside)."""
-        return self.outside + self.body + self.slack
-
-    @property
-    def exit_mark(self) -> float:
-        """The mark that stands at the winch's exit at rest, from the end with the stopper."""
-        return self.tail + self.stopper
-
-    @property
     def spool_mark(self) -> float:
-        """The mark where the cable meets the spool at rest, from the end with the stopper."""
-        return self.exit_mark + self.lead
+        """About where the cable meets the spool at rest, from the end with the stopper.
+
+        In the body it is counted from the shaft, round which the spool is; outside from the housing of the winch.
+        """
+        before = self.outside + self.lead if self.outside > 0 else 0.0
+        return self.tail + self.slack + self.body + before
 
 
 def cable_cuts(
@@ -112,30 +106,31 @@ def cable_cuts(
 def cable_table(cuts: tuple[CableCut, ...]) -> Table:
     """The cut list."""
     lengths = ("body", "slack", "outside", "lead", "wraps", "release", "knot", "tail", "total", "cut to")
-    marks = ("stopper from exit", "stopper mark from end", "exit mark from end", "spool mark from end")
+    whole = ("cut to", "spool mark from end")
     return Table(
         name="cable_cuts",
         title="Cables to cut",
         columns=(
             Column(title="cable", align=Align.LEFT),
             Column(title="winch", align=Align.LEFT),
-            *(Column(title=title, unit="mm", decimals=0 if title == "cut to" else 1) for title in (*lengths, *marks)),
+            *(Column(title=title, unit="mm", decimals=int(title not in whole)) for title in (*lengths, whole[1])),
         ),
         rows=tuple(
             (
                 f"C{cut.number}",
                 cut.winch,
                 *(cut.body, cut.slack, cut.outside, cut.lead, cut.wraps, cut.release, cut.knot, cut.tail),
-                *(cut.length, cut.cut, cut.stopper, cut.tail, cut.exit_mark, cut.spool_mark),
+                *(cut.length, cut.cut, cut.spool_mark),
             )
             for cut in cuts
         ),
         notes=(
-            "Body is the rest length from the winch's exit to the stopper, sheaths included; what is cut more than the "
-            "total goes to the knot.",
-            "Mark the line before it goes in, pulled straight but not hard, from the end that gets the stopper: where "
-            "the stopper is clamped, what stands at the winch's exit at rest (at the base if motors are outside), and "
-            "what meets the spool.",
+            "Body is the rest length from the place of the winch to the stopper, sheaths included, as it was simulated; "
+            "what is cut more than the total goes to the knot.",
+            "Spool mark: about where the line meets the spool at rest, within a centimetre or so. Mark it with a pen "
+            "before the line goes in, from the end that gets the stopper.",
+            "The stopper is set on the robot: winch at zero, line pulled straight but not hard, stopper against the "
+            "cloth or skin at the last hole. Where the list has a slack, it goes so far beyond the last hole.",
         ),
     )
 

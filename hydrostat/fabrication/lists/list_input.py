@@ -62,6 +62,8 @@ class ListInput:
         options: of the printed parts: line, tube and spare wraps.
         printed: the parts for all winches, stoppers, and the base.
         mould: printed pieces of the mould, or the positive for a silicone one.
+        bolts: how many M4 bolts hold the mould, each with a nut.
+        dowels: how many of 3 mm join pieces of the mould.
         screws: how many of each kind, nuts too, by what they are called; motors among them are not counted twice.
         leads: from each winch's exit to its spool [mm].
         seats: depth of the seat of the tube at each winch [mm].
@@ -80,6 +82,8 @@ class ListInput:
     options: PartOptions = field(default_factory=PartOptions)
     printed: tuple[Printed, ...] = ()
     mould: tuple[Printed, ...] = ()
+    bolts: int = 0
+    dowels: int = 0
     screws: Mapping[str, int] = field(default_factory=dict)
     leads: Mapping[int, float] = field(default_factory=dict)
     seats: Mapping[int, float] = field(default_factory=dict)
@@ -97,3 +101,11 @@ class ListInput:
                     raise InputError(f"{name}[{index}]: the robot has {len(self.robot.cables)} cables, counted from 0")
                 if not length >= 0:
                     raise InputError(f"{name}[{index}] must not be negative, not {length:g} mm")
+        for name in ("bolts", "dowels"):
+            if getattr(self, name) < 0:
+                raise InputError(f"{name} must not be negative, not {getattr(self, name)}")
+
+    @property
+    def units(self) -> int:
+        """Winches that have cables: only these are built, and get a motor."""
+        return len({cable.winch for cable in self.robot.cables})

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
 from hydrostat.fabrication.lists.cable_cuts import cable_cuts, cable_table, check_lengths
 from hydrostat.fabrication.lists.line import check_line, line_for
@@ -10,7 +11,7 @@ from hydrostat.fabrication.lists.list_input import ListInput
 from hydrostat.fabrication.lists.motor_sizing import motor_table, motor_warnings, size_winches
 from hydrostat.fabrication.lists.needs import all_needs
 from hydrostat.fabrication.lists.sheath_cuts import check_sheaths, sheath_cuts, sheath_table
-from hydrostat.fabrication.lists.stitching import close_warnings, deep_warnings, depth_table, stitch_table
+from hydrostat.fabrication.lists.stitching import close_warnings, deep_warnings, depth_table, plane_table, stitch_table
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.self_check import Check
 from hydrostat.simulation import Simulation
@@ -105,4 +106,6 @@ def _sewing(given: ListInput) -> tuple[tuple[Table, ...], tuple[str, ...]]:
     if given.robot.body.mesh.dim == 3:
         table = depth_table(given.robot)
         return (table,), (*deep_warnings(table), *close_warnings(given.robot))
+    if given.method is Method.FOAM and given.robot.cables:
+        return (plane_table(given.robot),), close_warnings(given.robot)
     return (), ()

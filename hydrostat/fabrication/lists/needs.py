@@ -29,6 +29,9 @@ _BOARD_MOTORS = 6
 _DRIVER_MOTORS = 2
 """Motors for one driver."""
 
+DOWEL = 15.0
+"""Length of a dowel [mm]: a little less than the holes in both pieces are deep."""
+
 _BODY, _CABLES, _WINCHES, _CONTROL, _MOULD = "body", "cables", "winches", "control", "mould"
 
 _NEEDLES = Item(
@@ -152,7 +155,7 @@ def _motor_price(motor: Motor) -> Price:
 
 
 def _winches(given: ListInput) -> list[Item]:
-    count = len(given.robot.winches)
+    count = given.units
     printed = sum(part.count * part.mass for part in given.printed)
     pieces = sum(part.count for part in given.printed)
     return [
@@ -183,7 +186,7 @@ def _winches(given: ListInput) -> list[Item]:
 
 
 def _control(given: ListInput) -> list[Item]:
-    count = len(given.robot.winches)
+    count = given.units
     supply = Item(
         group=_CONTROL,
         what="power supply",
@@ -239,11 +242,54 @@ def _mould(given: ListInput) -> list[Item]:
             price=PRICES["pla"],
             mass=printed,
         ),
+        *_closing(given),
         Item(
             group=_MOULD,
             what="release agent",
             specification="for polyurethane foam",
             quantity=1.0 if foam else 0.0,
             price=PRICES["release"],
+        ),
+    ]
+
+
+def _closing(given: ListInput) -> list[Item]:
+    """What joins, holds and seals the pieces of a mould."""
+    silicone = given.foam is not None and given.foam.silicone_mass > 0
+    return [
+        Item(
+            group=_MOULD,
+            what="bolt M4 with nut",
+            specification="and two washers, longer than the closed mould is thick; or threaded rod",
+            quantity=float(given.bolts),
+            price=PRICES["bolts"],
+        ),
+        Item(
+            group=_MOULD,
+            what="rod of 3 mm",
+            specification=f"wood or steel, for {given.dowels} dowels of {DOWEL:g} mm",
+            quantity=1e-3 * DOWEL * given.dowels,
+            price=PRICES["rod"],
+        ),
+        Item(
+            group=_MOULD,
+            what="glue for plastic",
+            specification="for pieces with dowels between them",
+            quantity=1.0 if given.dowels else 0.0,
+            price=PRICES["plastic glue"],
+        ),
+        Item(
+            group=_MOULD,
+            what="modelling clay",
+            specification="without sulphur, seals the frames of the silicone",
+            quantity=1.0 if silicone else 0.0,
+            price=PRICES["clay"],
+        ),
+        Item(
+            group=_MOULD,
+            what="sealer",
+            specification="shellac or acrylic varnish, two coats on the printed mould",
+            quantity=1.0 if given.mould and not silicone else 0.0,
+            price=PRICES["sealer"],
         ),
     ]

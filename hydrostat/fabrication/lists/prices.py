@@ -57,6 +57,11 @@ PRICES = MappingProxyType(
         "silicone": Price(amount=SILICONE_PRICE, unit="kg"),
         "release": Price(amount=15.0, unit="can"),
         "glue": Price(amount=15.0, unit="can"),
+        "sealer": Price(amount=8.0, unit="can"),
+        "clay": Price(amount=8.0, unit="pack"),
+        "plastic glue": Price(amount=5.0, unit="tube"),
+        "bolts": Price(amount=0.25),
+        "rod": Price(amount=1.0, unit="m", pack=0.3),
         "skin": Price(amount=8.0),
     }
 )

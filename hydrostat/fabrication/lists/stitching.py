@@ -99,6 +99,32 @@ def depth_table(robot: Robot) -> Table:
     )
 
 
+def plane_table(robot: Robot) -> Table:
+    """From point to point in the middle plane, for flat bodies that are cast."""
+    rows = []
+    for number, cable in enumerate(robot.cables, start=1):
+        along = np.concatenate([[0.0], np.cumsum(cable.segments)])
+        for step, (x, y) in enumerate(cable.points):
+            gap = 1e3 * float(cable.segments[step - 1]) if step else None
+            name = point_name(step, len(cable.points) - 1)
+            rows.append((f"C{number}", cable.winch, name, 1e3 * x, 1e3 * y, gap, 1e3 * float(along[step])))
+    return Table(
+        name="stitching",
+        title="Where the cables pass",
+        columns=(
+            *(Column(title=title, align=Align.LEFT) for title in ("cable", "winch", "point")),
+            *(Column(title=title, unit="mm") for title in ("x", "y", "from the last point", "from the winch")),
+        ),
+        rows=tuple(rows),
+        notes=(
+            "All points lie in the middle of the thickness; x and y count from the middle of the drawing, seen from "
+            "the front.",
+            "If the mould is parted there, lay tubes with a rod in them along these points before the foam is poured; "
+            "else draw the line through the foam with a long needle, from point to point.",
+        ),
+    )
+
+
 def _under_skin(body: Body, points: Points) -> tuple[Vector, Points]:
     """Depth of points under the skin [m], below 0 outside, and the nearest places of it [m]."""
     solid = body.solid or Solid(Surface(body.mesh.nodes, body.mesh.boundary))

@@ -69,14 +69,14 @@ class Casting:
 
 
 def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -> tuple[Casting, tuple[str, ...]]:
-    """Amounts and times, and sentences for what a person should mind.
+    """Amounts and times, and why the body that is cast would not be the one that was simulated.
 
     Args:
         material: of the robot's body.
         fill: volume of cavity, sprue and vents [mm^3].
         pours: volumes of silicone [mm^3]; none for printed halves.
     """
-    cast, warnings = _castable(material)
+    cast, problems = _castable(material)
     foams = _is_foam(cast)
     body = _mix(cast.name, fill, cast.density, 0.5, _ratio_in_words(cast))
     silicone = tuple(
@@ -98,7 +98,7 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
         release=_release(foams),
         notes=_notes(foams, silicone=bool(pours)),
     )
-    return casting, warnings
+    return casting, problems
 
 
 def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
@@ -107,12 +107,12 @@ def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
         return material, ()
     foam = MATERIALS["flexfoam-it x"]
     name = f'"{material.name}"' if material.name else "the body's material, given by its numbers,"
-    warning = (
-        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts: amounts are for {foam.name} "
-        f"({foam.density:.0f} kg/m^3), which has another stiffness than was simulated; set the body's material to what "
-        "you pour and simulate again"
+    problem = (
+        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts: the mould would be filled with {foam.name} "
+        f"({foam.density:.0f} kg/m^3), another robot than was simulated; set the body's material to what you pour, such "
+        f'as "{foam.name}", and simulate again, or make it of cloth with --method plush if it is flat'
     )
-    return foam, (warning,)
+    return foam, (problem,)
 
 
 def _is_foam(material: Material) -> bool:

@@ -20,12 +20,14 @@ class Halves:
         upper: half that is drawn along the pull.
         lower: half that stays.
         cavity: the body less pockets and dents: what the foam becomes.
-        volumes: of each thing [mm^3], see `Mould.volumes`.
+        poured: all that is filled with foam: the cavity with sprue and vents, as far as they are in the block.
+        volumes: of each thing [mm^3], see `Mould.volumes`; each is measured on its own solid, none is what is left.
     """
 
     upper: Manifold
     lower: Manifold
     cavity: Manifold
+    poured: Manifold
     volumes: dict[str, float]
 
 
@@ -49,27 +51,36 @@ def make_halves(
 ) -> Halves:
     """Both halves; parted at z = 0, but cores of pockets stay whole with the half they are drawn off with."""
     cavity = make_cavity(body, dents, pockets)
-    account = {"box": volume(block.solid), "body": volume(body)}
-    account["dents"], account["pockets"] = _inside(body, dents, pockets)
-    account["cavity"] = volume(cavity)
-    solid = block.solid - cavity
-    taken = {
+    openings = {
         "sprue": Manifold() if sprue is None else sprue.solid,
         "vents": joined(vent.solid for vent in vents),
         "bolts": closing.holes,
         "slots": closing.slots,
     }
-    for name, void in taken.items():
-        less = solid - void
-        account[name] = volume(solid) - volume(less)
-        solid = less
+    solid = block.solid - cavity
+    for opening in openings.values():
+        solid = solid - opening
     above = _upper_side(pockets)
-    upper, lower = solid ^ above, solid - above
-    without = upper - closing.sockets
-    keyed = lower + closing.bumps
-    account["keys"] = volume(upper) - volume(without) - (volume(keyed) - volume(lower))
-    account |= {"upper": volume(without), "lower": volume(keyed)}
-    return Halves(upper=without, lower=keyed, cavity=cavity, volumes=account)
+    upper, lower = (solid ^ above) - closing.sockets, (solid - above) + closing.bumps
+    account = {"box": volume(block.solid), "body": volume(body)}
+    account["dents"], account["pockets"] = _inside(body, dents, pockets)
+    account["cavity"] = volume(cavity)
+    account |= _voids(block, cavity, openings, closing)
+    account |= {"upper": volume(upper), "lower": volume(lower)}
+    poured = cavity + ((openings["sprue"] + openings["vents"]) ^ block.solid)
+    return Halves(upper=upper, lower=lower, cavity=cavity, poured=poured, volumes=account)
+
+
+def _voids(block: Block, cavity: Manifold, openings: dict[str, Manifold], closing: Closing) -> dict[str, float]:
+    """What each opening takes of the plastic [mm^3], where two meet the first of them; and the gaps round the keys."""
+    account, taken = {}, cavity
+    for name, opening in openings.items():
+        inside = opening ^ block.solid
+        account[name] = volume(inside - taken)
+        taken = taken + inside
+    keys = closing.bumps.trim_by_plane((0.0, 0.0, 1.0), 0.0)
+    sockets = closing.sockets.trim_by_plane((0.0, 0.0, 1.0), 0.0)
+    return account | {"keys": volume((sockets ^ block.solid) - taken) - volume(keys)}
 
 
 def volume(solid: Manifold) -> float:

@@ -12,6 +12,7 @@ from hydrostat.fabrication.moulds.casting import Casting, make_casting
 from hydrostat.fabrication.moulds.closing import RIM, Block, make_closing
 from hydrostat.fabrication.moulds.frame import Frame, stand
 from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves
+from hydrostat.fabrication.moulds.linked import linked
 from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.mould_prints import mould_prints
 from hydrostat.fabrication.moulds.mould_words import mould_problems, mould_warnings, standing
@@ -59,9 +60,11 @@ class Mould:
         printed: as they lie on the bed.
         assembly: halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across,
             y upwards as it stands, z along the pull, parted at z = 0.
-        volumes: where the block goes [mm^3]: upper + lower + cavity + sprue + vents + bolts + slots + keys = box, and
-            cavity = body - dents - pockets; "cutting" is what upper and lower lose to holes for dowels when they are
-            cut to fit the bed.
+        volumes: where the block goes [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue +
+            vents + bolts + slots + keys = box; "cutting" is what upper and lower lose to holes for dowels when they are
+            cut to fit the bed. Silicone: cavity + sprue + silicone_lower + silicone_upper = box; "cutting" is what the
+            positive loses. Both: cavity = body - dents - pockets.
+        poured: all that is filled with foam, in coordinates of the mould.
         box: sides of the closed mould: across, upwards as it stands, along the pull [mm].
         bolts: how many M4 bolts hold it; 0 for silicone.
         dowels: how many of 3 mm join pieces.
@@ -83,6 +86,7 @@ class Mould:
     printed: tuple[Printed, ...]
     assembly: Assembly
     volumes: dict[str, float]
+    poured: Manifold
     box: tuple[float, float, float]
     bolts: int
     dowels: int
@@ -142,9 +146,10 @@ def make_mould(
     positive = make_positive(halves.cavity, inside.sprue)
     frames = make_frames(halves.cavity, inside.sprue) if silicone else None
     printed, dowels, lost = mould_prints(halves, positive, frames, inside.block, options.bed)
-    volumes = halves.volumes | {"cutting": lost}
-    fill = volumes["cavity"] + volumes["sprue"] + volumes["vents"]
-    casting, words = make_casting(robot.body.material, fill, pours=frames.pours if frames else ())
+    fill = sum(halves.volumes[part] for part in ("cavity", "sprue", "vents"))
+    casting, unlike = make_casting(robot.body.material, fill, pours=frames.pours if frames else ())
+    volumes = _silicone_volumes(halves, positive, frames) if frames else halves.volumes
+    links = linked(halves.lower, halves.cavity), linked(halves.upper, halves.cavity)
     shape = frames.inside if frames else inside.block
     return Mould(
         kind=options.kind,
@@ -157,16 +162,30 @@ def make_mould(
         surface=MouldSurface(vertices=pull.skin.vertices, triangles=pull.skin.triangles, undercut=pull.undercut),
         printed=printed,
         assembly=_assembly(robot.name, halves, frames, positive, inside.block),
-        volumes=volumes,
+        volumes=volumes | {"cutting": lost},
+        poured=halves.poured,
         box=shape.size,
         bolts=0 if silicone else len(closing.bolts),
         dowels=dowels,
         vents=len(inside.vents),
         stands=standing(frame, inside.sprue, inside.vents, options.kind),
         casting=casting,
-        problems=mould_problems(pull, robot.body.material, inside.sprue, inside.pockets, printed, options, halves),
-        warnings=(*mould_warnings(pull, robot.body.material, options.kind), *words),
+        problems=(
+            *unlike,
+            *mould_problems(
+                pull, robot.body.material, inside.sprue, inside.pockets, printed, options, halves, links=links
+            ),
+        ),
+        warnings=mould_warnings(pull, robot.body.material, options.kind, links=links),
     )
+
+
+def _silicone_volumes(halves: Halves, positive: Positive, frames: Frames) -> dict[str, float]:
+    """Where the room in the frames goes [mm^3]."""
+    kept = {part: halves.volumes[part] for part in ("body", "dents", "pockets", "cavity")}
+    lower, upper = frames.pours
+    sides = float(frames.inside.solid.volume())
+    return kept | {"box": sides, "sprue": positive.stub, "silicone_lower": lower, "silicone_upper": upper}
 
 
 def _held(robot: Robot) -> Float[np.ndarray, "held 3"]:

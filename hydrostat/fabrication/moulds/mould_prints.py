@@ -5,7 +5,7 @@ from manifold3d import Manifold
 from hydrostat.fabrication.moulds.closing import Block
 from hydrostat.fabrication.moulds.halves import Halves
 from hydrostat.fabrication.moulds.positive import Frames, Positive
-from hydrostat.fabrication.moulds.split import grid, split
+from hydrostat.fabrication.moulds.split import Pieces, grid, split
 from hydrostat.fabrication.solids.printed import Printed
 
 _HALF = "Back on the bed, no support. Walls of 3 lines and 10 to 15 % infill are enough; layers of 0.2 mm."
@@ -22,9 +22,12 @@ _OVER: _Lying = (180.0, 0.0, 0.0)
 def mould_prints(
     halves: Halves, positive: Positive, frames: Frames | None, block: Block, bed: tuple[float, float, float]
 ) -> tuple[tuple[Printed, ...], int, float]:
-    """All pieces, how many dowels join them, and what cutting takes from the halves of the mould [mm^3]."""
+    """All pieces, how many dowels join them, and what cutting takes [mm^3].
+
+    It is taken from the halves of the mould, or of the positive where the mould is of silicone.
+    """
     printed: list[Printed] = []
-    dowels, holes = positive.dowels, 0.0
+    dowels, holes = positive.dowels, positive.lost if frames else 0.0
     if frames is None:
         for name, title, solid, lying in (
             ("mould_lower", "lower half", halves.lower, _UP),
@@ -47,21 +50,21 @@ def mould_prints(
         ),
     ):
         pieces = _fitted(solid, bed)
-        note = _FRAME if name.startswith("frame") else _POSITIVE
-        printed += _printed(name, title, pieces[0], lying, note)
-        dowels += pieces[1]
+        framing = name.startswith("frame")
+        printed += _printed(name, title, pieces.solids, lying, _FRAME if framing else _POSITIVE)
+        dowels += pieces.dowels
+        holes += pieces.lost if frames and not framing else 0.0
     if frames:
         printed.append(Printed(name="key_dome", title="key dome", solid=frames.dome, count=4, note=_DOME))
     return tuple(printed), dowels, holes
 
 
-def _fitted(solid: Manifold, bed: tuple[float, float, float]) -> tuple[tuple[Manifold, ...], int]:
-    """Pieces of a solid that fit the bed, and their dowels; none for a half with nothing in it."""
+def _fitted(solid: Manifold, bed: tuple[float, float, float]) -> Pieces:
+    """Pieces of a solid that fit the bed; none for a half with nothing in it."""
     if solid.is_empty():
-        return (), 0
+        return Pieces(solids=(), dowels=0, lost=0.0)
     box = solid.bounding_box()
-    pieces = split(solid, *grid(box[:3], box[3:], bed))
-    return pieces.solids, pieces.dowels
+    return split(solid, *grid(box[:3], box[3:], bed))
 
 
 def _printed(name: str, title: str, solids: tuple[Manifold, ...], lying: _Lying, note: str) -> list[Printed]:

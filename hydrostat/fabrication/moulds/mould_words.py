@@ -8,6 +8,7 @@ from hydrostat.fabrication.moulds.pocket import Pocket, clashes
 from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material
+from hydrostat.units import counted
 
 UNNOTICED = 0.05
 """Share of undercut that nobody notices: foam is pressed past it."""
@@ -49,10 +50,18 @@ def mould_problems(
     printed: tuple[Printed, ...],
     options: MouldOptions,
     halves: Halves,
+    *,
+    links: tuple[int, int] = (0, 0),
 ) -> tuple[str, ...]:
-    """Why the mould cannot be built well."""
+    """Why the mould cannot be built well; `links` counts holes of the body that the lower and the upper half close."""
     found = [pocket.problem for pocket in pockets if pocket.problem] + clashes(pockets)
     rigid = options.kind is MouldKind.PRINTED
+    if rigid and any(links):
+        found.append(
+            f"{_reaches(links)} and closes behind it like a link of a chain: it cannot come off; close "
+            f"{'that hole' if sum(links) == 1 else 'these holes'} in the surface and cut the foam out afterwards, or "
+            "choose a mould of silicone, which is cut open there"
+        )
     if rigid and (pull.share > TOLERATED or (pull.share > UNNOTICED and material.young > STIFF)):
         found.append(
             f"{100 * pull.share:.0f} % of the surface is undercut along the best of {len(pull.shares)} pulls: the body "
@@ -78,11 +87,30 @@ def _sorted(size: tuple[float, float, float]) -> list[float]:
     return [*sorted(size[:2], reverse=True), size[2]]
 
 
-def mould_warnings(pull: Pull, material: Material, kind: MouldKind) -> tuple[str, ...]:
-    """What a person should mind."""
+def _reaches(links: tuple[int, int]) -> str:
+    """Which half reaches through how many holes."""
+    parts = [
+        f"the {half} half of the mould reaches through {counted(count, 'hole')} of the body"
+        for half, count in zip(("lower", "upper"), links, strict=True)
+        if count
+    ]
+    return " and ".join(parts)
+
+
+def mould_warnings(
+    pull: Pull, material: Material, kind: MouldKind, *, links: tuple[int, int] = (0, 0)
+) -> tuple[str, ...]:
+    """What a person should mind; `links` as in `mould_problems`."""
+    found = []
+    if kind is MouldKind.SILICONE and any(links):
+        found.append(
+            f"{_reaches(links)} and closes behind it: silicone gives way, but a closed loop cannot be drawn out; cut the "
+            "silicone open there with a knife, and tape the cut from outside before you pour"
+        )
     if pull.share <= (UNNOTICED if kind is MouldKind.PRINTED else TOLERATED):
-        return ()
+        return tuple(found)
     return (
+        *found,
         f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it; use "
         "plenty of release agent, open the mould slowly and draw the body out part by part",
     )

@@ -12,6 +12,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.closing import Block
 from hydrostat.fabrication.moulds.openings import Sprue
+from hydrostat.fabrication.moulds.simple_solids import joined
 from hydrostat.fabrication.moulds.split import dowels_across
 from hydrostat.fabrication.solids.construct import segments
 
@@ -33,11 +34,15 @@ class Positive:
         upper: above the parting plane.
         lower: below it.
         dowels: how many join the two.
+        lost: volume of the holes for dowels [mm^3].
+        stub: volume of the piece of sprue on it [mm^3].
     """
 
     upper: Manifold
     lower: Manifold
     dowels: int
+    lost: float
+    stub: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -63,18 +68,26 @@ def make_positive(cavity: Manifold, sprue: Sprue | None) -> Positive:
     """Both halves of what is cast, with the sprue on it, and holes for dowels in their flat sides."""
     whole = _with_sprue(cavity, sprue)
     dowels = dowels_across(whole)
-    for dowel in dowels:
-        whole = whole - dowel
-    upper, lower = whole.split_by_plane((0.0, 0.0, 1.0), 0.0)
-    return Positive(upper=upper, lower=lower, dowels=len(dowels))
+    holes = joined(dowels)
+    upper, lower = (whole - holes).split_by_plane((0.0, 0.0, 1.0), 0.0)
+    return Positive(
+        upper=upper,
+        lower=lower,
+        dowels=len(dowels),
+        lost=float((holes ^ whole).volume()),
+        stub=0.0 if sprue is None else float((_stub(cavity, sprue) - cavity).volume()),
+    )
 
 
 def _with_sprue(cavity: Manifold, sprue: Sprue | None) -> Manifold:
     """What is cast with as much of the sprue as the silicone is thick: there it meets the frame."""
     if sprue is None:
         return cavity
-    top = cavity.bounding_box()[4] + SILICONE_WALL
-    return cavity + sprue.solid.trim_by_plane((0.0, -1.0, 0.0), -top)
+    return cavity + _stub(cavity, sprue)
+
+
+def _stub(cavity: Manifold, sprue: Sprue) -> Manifold:
+    return sprue.solid.trim_by_plane((0.0, -1.0, 0.0), -cavity.bounding_box()[4] - SILICONE_WALL)
 
 
 def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:

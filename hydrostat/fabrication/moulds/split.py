@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from manifold3d import CrossSection, JoinType, Manifold
 
-from hydrostat.fabrication.moulds.simple_solids import rod
+from hydrostat.fabrication.moulds.simple_solids import joined, rod
 
 DOWEL = 1.6
 """Radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]."""
@@ -30,7 +30,7 @@ class Pieces:
     Attributes:
         solids: watertight, by row and column.
         dowels: how many join them.
-        lost: volume of the holes for dowels, and of crumbs that a cut leaves [mm^3].
+        lost: volume of the holes for dowels, and of crumbs that a cut leaves [mm^3], measured on these.
     """
 
     solids: tuple[Manifold, ...]
@@ -72,11 +72,12 @@ def split(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...])
         normal = (1.0, 0.0, 0.0) if axis == 0 else (0.0, 1.0, 0.0)
         for place in places:
             pieces = [part for piece in pieces for part in piece.split_by_plane(normal, place)]
-    parts = [part for piece in pieces for part in _bodies(piece) if _printable(part)]
+    parts = [part for piece in pieces for part in _bodies(piece)]
+    holes = float((joined(dowels) ^ solid).volume())
     return Pieces(
-        solids=tuple(sorted(parts, key=_corner)),
+        solids=tuple(sorted((part for part in parts if _printable(part)), key=_corner)),
         dowels=len(dowels),
-        lost=float(solid.volume() - sum(part.volume() for part in parts)),
+        lost=holes + sum(float(part.volume()) for part in parts if not _printable(part)),
     )
 
 

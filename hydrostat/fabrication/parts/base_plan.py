@@ -54,23 +54,18 @@ class Seat:
     Attributes:
         unit: index among the units outside.
         x: of its shaft [mm].
-        y: of its shaft [mm].
-        turned: whether it is turned by half a turn, so that its cables leave along -y.
     """
 
     unit: int
     x: float
-    y: float
-    turned: bool
 
     def put(self, point: Corner) -> Corner:
         """A point of the unit on the base [mm]."""
-        sign = -1.0 if self.turned else 1.0
-        return self.x + sign * point[0], self.y + sign * point[1]
+        return self.x + point[0], point[1]
 
     def placed(self, solid: Manifold) -> Manifold:
         """A solid of the unit on the base."""
-        return solid.rotate((0, 0, 180 if self.turned else 0)).translate((self.x, self.y, 0))
+        return solid.translate((self.x, 0, 0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,29 +79,17 @@ class Plan:
 
     @staticmethod
     def of(units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]) -> "Plan":
-        """Two rows back to back, one if two are too deep for the bed, in tiles of as many columns as the bed takes."""
+        """One row, so that all tubes leave to one side, in tiles of as many units as the bed takes."""
         pitch = max(unit.size[0] for unit in units) + _GAP
-        back = max(-unit.low[1] for unit in units) + _GAP / 2
-        front = max(unit.high[1] for unit in units) + FREE + tube_holder.DEEP + 2.0
-        rows = 2 if len(units) > 1 and 2 * (back + front) <= bed[1] else 1
-        low, high = (-2 * back - front if rows == 2 else -back), front
-        columns = math.ceil(len(units) / rows)
+        low = min(unit.low[1] for unit in units) - _GAP / 2
+        high = max(unit.high[1] for unit in units) + FREE + tube_holder.DEEP + 2.0
         most = max(1, math.floor((bed[0] - 2 * _STRIP) / pitch))
-        count = math.ceil(columns / most)
+        count = math.ceil(len(units) / most)
         seats: list[Seat] = []
         tiles: list[Tile] = []
         left = 0.0
-        for share in (columns // count + (place < columns % count) for place in range(count)):
-            last = min(len(units), len(seats) + share * rows)
-            mine = [
-                Seat(
-                    unit=unit,
-                    x=left + _STRIP + (place // rows + 0.5) * pitch,
-                    y=-2 * back if place % rows else 0.0,
-                    turned=place % rows == 1,
-                )
-                for place, unit in enumerate(range(len(seats), last))
-            ]
+        for share in (len(units) // count + (place < len(units) % count) for place in range(count)):
+            mine = [Seat(unit=len(seats) + place, x=left + _STRIP + (place + 0.5) * pitch) for place in range(share)]
             right = left + share * pitch + 2 * _STRIP
             tiles.append(Tile.of((left, low), (right, high), [(seat, units[seat.unit]) for seat in mine], options))
             seats += mine

@@ -1,9 +1,10 @@
 """`BasePlate`: a table on legs for winches outside the body (thesis, Fig 4.2): motors hang through it, tubes leave it.
 
-It lies in the plane with its upper side at z = 0. Units stand in two rows, back to back; row by row their cables leave
-along +y and along -y. It is printed, in tiles if it is larger than the bed, or cut from acrylic by the same outline.
+It lies in the plane with its upper side at z = 0. Units stand in a row along x and all cables leave along +y, where the
+body stands. It is printed, in tiles if it is larger than the bed, or cut from acrylic by the same outline.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -33,9 +34,10 @@ class BasePlate:
         sheet: outline of the whole plate, then its holes, to be cut from acrylic in place of the tiles [mm].
         thickness: of the plate [mm].
         seats: where the units stand.
-        tubes: from the outer face of its housing to the far side of its holder, by cable index [mm].
+        tubes: from the outer face of its housing to where its cable begins, by cable index [mm].
         bought: what is bought for it, and how many of each.
         problems: why it cannot be built well.
+        warnings: what to mind.
     """
 
     printed: tuple[Printed, ...]
@@ -46,6 +48,7 @@ class BasePlate:
     tubes: tuple[tuple[int, float], ...]
     bought: tuple[tuple[str, int], ...]
     problems: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
 def base_plate(
@@ -93,13 +96,48 @@ def base_plate(
         sheet=plan.sheet,
         thickness=SHEET,
         seats=plan.seats,
-        tubes=tuple((cable, FREE + tube_holder.DEEP) for unit in outside for cable in unit.cables),
+        tubes=_tubes(robot, outside, plan, options),
         bought=(
             ("M3 x 10 mm screw (legs and tube holders)", len(plan.bolts) + len(holders)),
             ("M2 x 8 mm screw (tube holders)", len(holders)),
         ),
         problems=_too_large([*tiles, legs], bed),
+        warnings=_to_hold(robot, outside),
     )
+
+
+def _tubes(robot: Robot, units: Sequence[WinchUnit], plan: Plan, options: PartOptions) -> tuple[tuple[int, float], ...]:
+    """How long each tube is up to where its cable begins [mm].
+
+    Beyond its holder it goes the run straight on, as far to the side as the other end of the row, and from the nearest
+    of the places where cables begin to the farthest. A tube that bends gently, never back, is no longer than the way
+    straight on and then to the side; so the body may stand at the run anywhere in front of the row. A tube keeps its
+    cable's length however it lies: longer ones do no harm but friction.
+    """
+    begins = [robot.cables[cable].points[0] for unit in units for cable in unit.cables]
+    spread = 1e3 * max(math.dist(one, other) for one in begins for other in begins)
+    places = {seat.unit: seat.put(holder_at(units[seat.unit]))[0] for seat in plan.seats}
+    low, high = min(places.values()), max(places.values())
+    return tuple(
+        (cable, FREE + tube_holder.DEEP + options.run + max(places[number] - low, high - places[number]) + spread)
+        for number, unit in enumerate(units)
+        for cable in unit.cables
+    )
+
+
+def _to_hold(robot: Robot, units: Sequence[WinchUnit]) -> tuple[str, ...]:
+    """A sentence for each cable whose tube ends where it begins, and has to be held there."""
+    found = []
+    for unit in units:
+        for index in unit.cables:
+            cable = robot.cables[index]
+            if cable.bare[0]:
+                place = ", ".join(f"{1e3 * value + 0.0:.1f}" for value in cable.points[0])
+                found.append(
+                    f'cable C{index + 1} of winch "{unit.winch}" is bare from its beginning: clamp the end of its '
+                    f"tube at ({place}) mm, in the robot's coordinates, to what the robot is fixed to"
+                )
+    return tuple(found)
 
 
 def _holders(units: Sequence[WinchUnit], options: PartOptions) -> list[Printed]:

@@ -207,6 +207,18 @@ class Housing:
         side = max(xs, default=self.half)
         return (-side, low), (side, self.half)
 
+    @property
+    def low(self) -> tuple[float, float, float]:
+        """Least corner of the box round it and its motor [mm]."""
+        xs, ys = zip(*self.motor.outline, *self.tongue, strict=True)
+        return min(-self.half, *xs), min(ys), -self.motor.depth
+
+    @property
+    def high(self) -> tuple[float, float, float]:
+        """Largest corner of that box [mm]."""
+        xs, ys = zip(*self.motor.outline, *self.tongue, strict=True)
+        return max(self.half, *xs), max(ys), self.top
+
     def plate(self) -> Construction:
         """As it lies on the motor."""
         half, drive, motor = self.half, self.drive, self.motor

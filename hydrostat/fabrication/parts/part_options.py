@@ -17,6 +17,7 @@ class PartOptions:
         cable: diameter of the cable, a braided line [mm].
         tube: outer diameter of the PTFE sheath [mm].
         bore: inner diameter of the sheath [mm].
+        run: how far in front of the base for winches outside a body can stand [mm].
         spare_wraps: turns of cable that stay on a spool when it is let out as far as it may be.
 
     Raises:
@@ -29,6 +30,7 @@ class PartOptions:
     cable: float = 0.4
     tube: float = 2.0
     bore: float = 1.0
+    run: float = 100.0
     spare_wraps: float = 2.0
 
     def __post_init__(self) -> None:

@@ -84,7 +84,8 @@ class RigidParts:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to mind."""
-        return (*(text for unit in self.units for text in unit.warnings), *self.between)
+        base = self.base.warnings if self.base else ()
+        return (*(text for unit in self.units for text in unit.warnings), *self.between, *base)
 
 
 def rigid_parts(

@@ -1,15 +1,15 @@
 """`WinchUnit`: motor, spool and housing of one winch, as parts to print, an assembly, and what to mind."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-import numpy as np
-
+from hydrostat.fabrication.parts.arrangement import Laid, arranged
 from hydrostat.fabrication.parts.housing import Housing
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.parts.places import Place, UnitBox, seam_of
 from hydrostat.fabrication.parts.spool import Spool
 from hydrostat.fabrication.parts.spool_for import spool_for
 from hydrostat.fabrication.parts.winch_parts import WinchParts
@@ -52,6 +52,7 @@ class WinchUnit:
         exits: of its cables.
         bought: what is bought for it besides the motor, and how many of each.
         across: whether its shaft stands across a flat body, with the roof to the front; else it lies in it.
+        place: how it is laid in a flat body; None in space and outside.
         problems: why it cannot be built well.
         warnings: what to mind.
     """
@@ -66,6 +67,7 @@ class WinchUnit:
     exits: tuple[Exit, ...]
     bought: tuple[tuple[str, int], ...]
     across: bool
+    place: Place | None = None
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
@@ -77,14 +79,12 @@ class WinchUnit:
     @property
     def low(self) -> tuple[float, float, float]:
         """Least corner of the box round the unit [mm]."""
-        xs, ys = zip(*self.motor.outline, *self.housing.tongue, strict=True)
-        return min(-self.housing.half, *xs), min(ys), -self.motor.depth
+        return self.housing.low
 
     @property
     def high(self) -> tuple[float, float, float]:
         """Largest corner of that box [mm]."""
-        xs, ys = zip(*self.motor.outline, *self.housing.tongue, strict=True)
-        return max(self.housing.half, *xs), max(ys), self.housing.top
+        return self.housing.high
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -95,18 +95,19 @@ class WinchUnit:
 
 def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[WinchUnit, ...]:
     """A unit for each winch that has cables, in winch order; equal parts have the same name."""
+    drafts = [
+        _Draft.of(robot, winch, cables, options, motor)
+        for winch in robot.winches
+        if (cables := tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name))
+    ]
+    laid = _laid(robot, [draft for draft in drafts if draft.winch.mount is Mount.BODY])
     parts = WinchParts()
-    units = []
-    for winch in robot.winches:
-        cables = tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name)
-        if cables:
-            units.append(_unit(robot, winch, cables, options, motor, parts))
-    return tuple(units)
+    return tuple(draft.unit(robot, parts, laid.get(draft.winch.name)) for draft in drafts)
 
 
 def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
-    """Sentences for units in the body that stand closer than they are wide."""
-    inside = [unit for unit in units if unit.mount is Mount.BODY]
+    """Sentences for units in a body of space that stand closer than they are wide; flat ones are laid one by one."""
+    inside = [unit for unit in units if unit.mount is Mount.BODY and unit.place is None]
     found = []
     for one, other in combinations(inside, 2):
         apart = 1e3 * math.dist(robot.winch(one.winch).at, robot.winch(other.winch).at)
@@ -119,70 +120,80 @@ def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _unit(
-    robot: Robot,
-    winch: Winch,
-    cables: tuple[int, ...],
-    options: PartOptions,
-    motor: Motor,
-    parts: WinchParts,
-) -> WinchUnit:
-    spool, problems, warnings = spool_for(robot, winch, cables, options, motor)
-    outside = winch.mount is Mount.WORLD
-    thickness = 1e3 * robot.body.thickness if robot.body.thickness is not None else None
-    housing = Housing(motor=motor, spool=spool, azimuths=(90,) * len(cables), outside=outside, options=options)
-    across = thickness is None or motor.depth + housing.top <= thickness
-    azimuths = _azimuths(robot, cables, across=across, outside=outside)
-    housing = Housing(motor=motor, spool=spool, azimuths=azimuths, outside=outside, options=options)
-    printed, assembly = parts.of(housing, winch.name)
-    unit = WinchUnit(
-        winch=winch.name,
-        cables=cables,
-        mount=winch.mount,
-        motor=motor,
-        housing=housing,
-        printed=printed,
-        assembly=assembly,
-        exits=tuple(_exit(housing, place, cable) for place, cable in enumerate(cables)),
-        bought=_bought(housing),
-        across=across,
-        problems=problems,
-        warnings=warnings,
-    )
-    return unit if thickness is None or outside else _checked_thickness(unit, thickness)
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Draft:
+    """A unit whose sizes are known, but not yet on which sides its cables leave."""
+
+    winch: Winch
+    cables: tuple[int, ...]
+    housing: Housing
+    problems: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+    @staticmethod
+    def of(robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor) -> "_Draft":
+        """Of a winch and its cables."""
+        spool, problems, warnings = spool_for(robot, winch, cables, options, motor)
+        outside = winch.mount is Mount.WORLD
+        housing = Housing(motor=motor, spool=spool, azimuths=(90,) * len(cables), outside=outside, options=options)
+        return _Draft(winch=winch, cables=cables, housing=housing, problems=problems, warnings=warnings)
+
+    def unit(self, robot: Robot, parts: WinchParts, laid: Laid | None) -> WinchUnit:
+        """It, as it is laid in a flat body, or else where there is no question of that."""
+        housing = replace(self.housing, azimuths=_azimuths(robot, self.cables, self.winch.mount, laid))
+        printed, assembly = parts.of(housing, self.winch.name)
+        return WinchUnit(
+            winch=self.winch.name,
+            cables=self.cables,
+            mount=self.winch.mount,
+            motor=housing.motor,
+            housing=housing,
+            printed=printed,
+            assembly=assembly,
+            exits=tuple(_exit(housing, place, cable) for place, cable in enumerate(self.cables)),
+            bought=_bought(housing),
+            across=laid is None or laid.place.across,
+            place=laid.place if laid else None,
+            problems=(*self.problems, *(laid.problems if laid else ())),
+            warnings=(*self.warnings, *(laid.warnings if laid else ())),
+        )
 
 
-def _checked_thickness(unit: WinchUnit, thickness: float) -> WinchUnit:
-    thinnest = min(unit.size)
-    if thinnest <= thickness:
-        return unit
-    sides = " x ".join(f"{side:.0f}" for side in unit.size)
-    text = (
-        f'the unit of winch "{unit.winch}" is {sides} mm, thicker than the body of {thickness:.0f} mm: it will bulge; '
-        "take a smaller motor or spool, or a thicker body"
-    )
-    return replace(unit, warnings=(*unit.warnings, text))
+def _laid(robot: Robot, drafts: Sequence[_Draft]) -> dict[str, Laid]:
+    """How units lie in a flat body, by the name of the winch; none in space."""
+    if robot.body.thickness is None:
+        return {}
+    boxes = [
+        UnitBox(
+            winch=draft.winch.name,
+            at=(1e3 * draft.winch.at[0], 1e3 * draft.winch.at[1]),
+            low=draft.housing.low,
+            high=draft.housing.high,
+            along=_way(robot, draft.cables[0]),
+        )
+        for draft in drafts
+    ]
+    laid = arranged(boxes, seam_of(robot.body), 1e3 * robot.body.thickness)
+    return {each.place.box.winch: each for each in laid}
 
 
-def _azimuths(robot: Robot, cables: tuple[int, ...], *, across: bool, outside: bool) -> tuple[int, ...]:
-    """In which way each cable leaves [degrees]; the first along +y.
+def _way(robot: Robot, cable: int) -> float:
+    """In which a cable of a flat robot goes on from its winch, counted from +x [degrees]."""
+    first, second = robot.cables[cable].points[:2]
+    return math.degrees(math.atan2(second[1] - first[1], second[0] - first[0]))
 
-    Outside all leave towards the tubes. Across a flat body they leave as they go on, to the nearest quarter turn; where
-    the unit lies, to one side or the other; in a body of space they are spread.
+
+def _azimuths(robot: Robot, cables: tuple[int, ...], mount: Mount, laid: Laid | None) -> tuple[int, ...]:
+    """In which way each cable leaves [degrees]; the first along +y, unless a unit is turned out of another's way.
+
+    Outside all leave towards the tubes. In a flat body each leaves on the side that is nearest to the way in which it
+    goes on; in a body of space they are spread.
     """
-    if outside:
+    if mount is Mount.WORLD:
         return (90,) * len(cables)
-    if robot.body.mesh.dim == 3:
+    if laid is None:
         return tuple((90 + 90 * round(4 * place / len(cables))) % 360 for place in range(len(cables)))
-    steps = [np.subtract(robot.cables[index].points[1], robot.cables[index].points[0]) for index in cables]
-    angles = [math.degrees(math.atan2(step[1], step[0])) for step in steps]
-    quarter = 90 if across else 180
-    return tuple((90 + quarter * round(_turned(angle - angles[0]) / quarter)) % 360 for angle in angles)
-
-
-def _turned(angle: float) -> float:
-    """The same between -180 and 180 degrees, a little towards 180, so that rounding noise changes nothing."""
-    return (angle + 180 - 1e-6) % 360 - 180 + 1e-6
+    return tuple(laid.place.azimuth(_way(robot, cable)) for cable in cables)
 
 
 def _exit(housing: Housing, place: int, cable: int) -> Exit:

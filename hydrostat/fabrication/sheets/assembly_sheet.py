@@ -4,6 +4,7 @@ import json
 from importlib.resources import files
 
 from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.sheets.legible import Legible
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.sheet_pictures import sheet_pictures
@@ -22,11 +23,8 @@ def assembly_sheet(given: SheetInput) -> bytes:
     pages = "plush_pages.typ" if given.method is Method.PLUSH else "foam_pages.typ"
     source = b"\n".join((room / name).read_bytes() for name in (*_TEMPLATES, pages))
     pictures = {name: {"svg": canvas.svg, "width": canvas.width} for name, canvas in sheet_pictures(given).items()}
-    facts = json.dumps({**sheet_facts(given), "pictures": pictures}, ensure_ascii=False)
+    legible = Legible(given.robot)
+    words = legible.facts(sheet_facts(given, letters=legible.warning))
+    facts = json.dumps({**words, "pictures": pictures}, ensure_ascii=False)
     # The time is the beginning of all time: a sheet is the same on every day.
     return typst.compile(source, sys_inputs={"sheet": facts}, ignore_system_fonts=True, timestamp=0)
-
-
-def pages_of(method: Method) -> int:
-    """How many pages a sheet has."""
-    return 2 if method is Method.PLUSH else 4

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hydrostat.fabrication.lists.table import Cell, Table
+from hydrostat.fabrication.sheets.minds import shortened
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 
 Facts = dict[str, Any]
@@ -33,12 +34,11 @@ def bill_facts(given: SheetInput) -> Facts | None:
         detail = str(cells.get("specification", "")).partition(",")[0]
         name = detail if what in _BY_DETAIL and detail else what
         cost = cells.get(title)
-        rows.append([shortened(name, 40), _amount(cells), f"{cost:.0f}" if isinstance(cost, float | int) else ""])
-    total = cost_of(given)
-    if total is not None:
-        rows.append(["together", "", f"{total:.0f}"])
+        rows.append([shortened(name, 40), _amount(cells), _dollars(cost)])
+    for words, total in zip(("used up", "in whole packs"), costs_of(given), strict=False):
+        rows.append([words, "", f"{total:.0f}"])
     return {
-        "file": "bill_of_materials.csv",
+        "file": "lists/bill_of_materials.csv",
         "heads": ["what", "amount", "USD"],
         "right": [False, True, True],
         "rows": rows,
@@ -55,28 +55,40 @@ def _amount(cells: Mapping[str, Cell]) -> str:
     return f"{quantity:.3g} {_UNITS.get(unit, unit)}".strip()
 
 
-def cost_of(given: SheetInput) -> float | None:
-    """Of all that is used up [USD]; None if the bill does not say."""
+def _dollars(cost: Cell) -> str:
+    """In full dollars."""
+    if not isinstance(cost, float | int):
+        return ""
+    return "<1" if 0 < cost < 0.5 else f"{cost:.0f}"
+
+
+def costs_of(given: SheetInput) -> tuple[float, ...]:
+    """Of all that is used up, and of all in whole packs [USD]; none if the bill does not say, one if it says one."""
     bill = given.tables.get("bill_of_materials")
     title = _cost_title(bill) if bill is not None else ""
     if bill is None or not title:
-        return None
-    named = bill.column("what") if any(column.title == "what" for column in bill.columns) else ("",) * len(bill.rows)
-    costs = [
-        cell
-        for cell, what in zip(bill.column(title), named, strict=True)
-        if isinstance(cell, float | int) and what != _TOTAL
-    ]
-    return float(sum(costs)) if costs else None
+        return ()
+    known = [column.title for column in bill.columns]
+    named = bill.column("what") if "what" in known else ("",) * len(bill.rows)
+    sums = []
+    for column in (title, "in whole packs"):
+        costs = [
+            cell
+            for cell, what in zip(bill.column(column) if column in known else (), named, strict=False)
+            if isinstance(cell, float | int) and what != _TOTAL
+        ]
+        sums += [float(sum(costs))] if costs else []
+    return tuple(sums)
+
+
+def cost_text(given: SheetInput) -> tuple[str, ...]:
+    """What it costs; nothing if nothing is known."""
+    names = ("used up", "in whole packs")
+    told = [f"{cost:.0f} USD {name}" for cost, name in zip(costs_of(given), names, strict=False)]
+    return (f"about {', '.join(told)}",) if told else ()
 
 
 def _cost_title(bill: Table) -> str:
     """Under which title the bill says what a thing costs; empty if it does not."""
     known = [column.title for column in bill.columns]
     return next((title for title in ("used up", "cost") if title in known), "")
-
-
-def shortened(text: str, most: int) -> str:
-    """On one line, and of at most so many letters: the end of longer ones is an ellipsis."""
-    line = " ".join(text.split())
-    return line if len(line) <= most else line[: most - 1].rstrip() + "…"

@@ -33,6 +33,9 @@ _MARGIN = 7.0
 _HOLE = 0.65
 """Radius of a drawn hole [mm]."""
 
+_NEAR = 3.2
+"""A number further than this from its hole is led to it by a line [mm]."""
+
 _SHARP = 70.0
 """On a body, edges are drawn that are sharper than this [degrees]: scans are rough."""
 
@@ -40,10 +43,9 @@ _SOFT = 0.008
 """Over what share of the picture the light on a body is blurred."""
 
 
-def winch_letter(index: int) -> str:
-    """By which a winch is known on the sheet: A to Z, then AA, AB ..."""
-    before, last = divmod(index, 26)
-    return (winch_letter(before - 1) if before else "") + chr(ord("A") + last)
+def winch_mark(index: int) -> str:
+    """By which a winch is known on the sheet: W1, W2, ... as single letters are notches of the pattern."""
+    return f"W{index + 1}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +72,7 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
 
     Args:
         robot: with a flat body.
-        stitches: of each cable.
+        stitches: of each cable; none if the body is cast, and cables run in the middle of its thickness.
         width: of the picture [mm].
         height: of the picture at most [mm]; it is no higher than what is drawn.
     """
@@ -85,7 +87,9 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
-    runs = [_stitched(robot, sewn, frame) for sewn in stitches]
+    runs = [_stitched(robot, sewn, frame) for sewn in stitches] or [
+        _within(robot, index, frame) for index in range(len(robot.cables))
+    ]
     _put_runs(canvas, labels, runs, [frame.on(1e3 * np.array(winch.at)) for winch in robot.winches])
     return canvas
 
@@ -151,6 +155,15 @@ def _stitched(robot: Robot, sewn: CableStitches, frame: Frame) -> Run:
     return Run(sewn.cable, frame.way(1e3 * np.array(cable.points)), sides, (~cable.bare).tolist(), holes)
 
 
+def _within(robot: Robot, index: int, frame: Frame) -> Run:
+    """A cable in the middle of a flat body that is cast."""
+    cable = robot.cables[index]
+    count = len(cable.points)
+    holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (count - 1)]
+    way = frame.way(1e3 * np.array(cable.points))
+    return Run(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
+
+
 def _sighted(robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Sight, frame: Frame) -> Run:
     """A cable in space."""
     cable = robot.cables[index]
@@ -177,17 +190,14 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run], stands: 
         middle = labels.beside(run.spots[-1], text_size(words, 9.0), gap=1.7)
         if middle is not None:
             canvas.text(middle, words, size=9.0, bold=True, halo=True)
-    for run in runs:
-        for number, (spot, hole) in enumerate(zip(run.spots[:-1], run.holes[:-1], strict=True), start=1):
-            if hole:
-                _put_number(canvas, labels, str(number), spot)
+    _put_numbers(canvas, labels, runs)
 
 
 def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) -> None:
-    """A letter on each winch; where one is on another already, beside it, led to its place by a line."""
+    """A mark on each winch; where one is on another already, beside it, led to its place by a line."""
     taken: list[Spot] = []
     for index, stand in enumerate(stands):
-        letter = winch_letter(index)
+        letter = winch_mark(index)
         radius, at = balloon_radius(letter), stand
         if any(np.hypot(*np.subtract(stand, other)) < 2 * radius for other in taken):
             at = labels.beside(stand, (2 * radius, 2 * radius), gap=0.8) or stand
@@ -198,10 +208,28 @@ def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) ->
         taken.append(at)
 
 
-def _put_number(canvas: Canvas, labels: LabelPlaces, words: str, spot: Spot) -> None:
-    middle = labels.beside(spot, text_size(words, 7.5), gap=0.75, most=3)
-    if middle is not None and np.hypot(*np.subtract(middle, spot)) < 3.2:
-        canvas.text(middle, words, size=7.5)
+def _put_numbers(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run]) -> None:
+    """The first and the last number of each cable, led to its hole if need be; others as far as there is room."""
+    # The first point is at the winch.
+    numbered = [[place for place, hole in enumerate(run.holes[:-1]) if hole and place] for run in runs]
+    for run, places in zip(runs, numbered, strict=True):
+        for place in dict.fromkeys((*places[:1], *places[-1:])):
+            _put_number(canvas, labels, str(place + 1), run.spots[place], led=True)
+    for first in (2, 1):
+        for run, places in zip(runs, numbered, strict=True):
+            for place in places[1:-1][first - 1 :: 2]:
+                _put_number(canvas, labels, str(place + 1), run.spots[place])
+
+
+def _put_number(canvas: Canvas, labels: LabelPlaces, words: str, spot: Spot, *, led: bool = False) -> None:
+    """A number beside its hole, or with `led` further away with a line to it."""
+    size = text_size(words, 7.5)
+    middle = labels.beside(spot, size, gap=0.75, most=40 if led else 3, rings=4 if led else 2)
+    if middle is None:
+        return
+    if np.hypot(*np.subtract(middle, spot)) > _NEAR:
+        canvas.line([[middle, spot]], width=0.12, grey=0.35)
+    canvas.text(middle, words, size=7.5, halo=led)
 
 
 def _put_cable(canvas: Canvas, run: Run) -> None:

@@ -160,7 +160,7 @@ def snug(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
 
 def text_size(words: str, size: float) -> tuple[float, float]:
     """About how wide and high words of a size [pt] are [mm]."""
-    return 0.5 * size * POINT * len(words), 0.75 * size * POINT
+    return 0.5 * size * POINT * (len(words) + words.count("W")), 0.75 * size * POINT
 
 
 def balloon_radius(words: str, size: float = 9.0) -> float:

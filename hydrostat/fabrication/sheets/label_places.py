@@ -41,7 +41,9 @@ class LabelPlaces:
         """Something is there that no label may cover."""
         self._boxes.append(box)
 
-    def beside(self, at: Spot, size: tuple[float, float], *, gap: float, most: int = 1000) -> Spot | None:
+    def beside(
+        self, at: Spot, size: tuple[float, float], *, gap: float, most: int = 1000, rings: int = 4
+    ) -> Spot | None:
         """The middle of the best free place for a box near a spot, which is then taken; None if none is free.
 
         Args:
@@ -49,10 +51,11 @@ class LabelPlaces:
             size: width and height of the box [mm].
             gap: between spot and box [mm].
             most: points of lines that may be covered.
+            rings: how many distances are tried.
         """
         best, least = None, float("inf")
         points = self._points_about(at, gap + _RINGS[-1] + max(size))
-        for ring, further in enumerate(_RINGS):
+        for ring, further in enumerate(_RINGS[:rings]):
             for turn, (x, y) in enumerate(_WAYS):
                 reach = gap + further
                 middle = (at[0] + x * (reach + size[0] / 2), at[1] + y * (reach + size[1] / 2))

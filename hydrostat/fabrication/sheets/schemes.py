@@ -10,12 +10,12 @@ _MOST = 7
 """Holes that are drawn; of a longer cable the last are left out but for the stopper's."""
 
 
-def stitch_scheme(sewn: CableStitches, letter: str, *, width: float, height: float) -> Canvas:
+def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float) -> Canvas:
     """A cut through the stuffed body along a cable: which way it goes at each hole.
 
     Args:
         sewn: how the cable is sewn.
-        letter: of its winch.
+        mark: of its winch.
         width: of the picture [mm].
         height: of the picture [mm].
     """
@@ -50,7 +50,7 @@ def stitch_scheme(sewn: CableStitches, letter: str, *, width: float, height: flo
         canvas.text((x, front - 7.0), words, size=8.5, bold=True)
         if stitch.passes:
             canvas.text((x, front - 10.2), "out" if stitch.after is Side.OUTSIDE else "in", size=8.5)
-    canvas.balloon(winch, letter, dark=True)
+    canvas.balloon(winch, mark, dark=True)
     canvas.text((0.5, front - 2.4), "outside", size=8, anchor="start", grey=0.25)
     middle = (front + _CLOTH + back) / 2 + 2.0
     canvas.text((width / 2, middle), "inside, stuffed", size=8, grey=0.25)
@@ -58,28 +58,71 @@ def stitch_scheme(sewn: CableStitches, letter: str, *, width: float, height: flo
     return canvas
 
 
-def skin_scheme(*, width: float, height: float) -> Canvas:
-    """A cut through foam, skin and a cable that is sewn on: first in its tube, then bare, up to its stopper."""
-    canvas = Canvas(width, height)
-    top, tube_end, stopper = 0.45 * height, 0.42 * width, width - 10.0
-    canvas.fill([[(0, top + 1.4), (width, top + 1.4), (width, height - 1), (0, height - 1)]], grey=0.9)
-    _put_cloth(canvas, top, [], width)
-    line = top - 1.9
-    canvas.line([[(0, line), (tube_end, line)]], width=2.2)
-    canvas.line([[(0, line), (tube_end, line)]], width=1.6, grey=1.0)
+def skin_scheme(*, sewn: bool, drawn: bool, tubes: bool, width: float) -> Canvas:
+    """A cut through foam and skin: a cable that is sewn to the skin, and one that is drawn through the foam.
+
+    Args:
+        sewn: whether there are cables on the skin.
+        drawn: whether there are cables within the foam.
+        tubes: whether they begin in tubes.
+        width: of the picture [mm].
+    """
+    top = 9.5 if sewn else 7.0
+    canvas = Canvas(width, top + (20.0 if drawn else 9.0))
+    canvas.fill([[(0, top), (width - 12, top), (width - 12, canvas.height - 1), (0, canvas.height - 1)]], grey=0.9)
+    _put_cloth(canvas, top, [], width - 12.0)
+    if sewn:
+        _put_sewn(canvas, top, tubes=tubes, width=width - 12.0)
+    if drawn:
+        _put_drawn(canvas, top, tubes=tubes, width=width - 12.0)
+    canvas.text((width - 11.0, top + 0.8), "skin", size=8, anchor="start")
+    canvas.text((width - 11.0, canvas.height - 3.0), "foam", size=8, anchor="start")
+    return canvas
+
+
+def _put_sewn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:
+    """A line over the skin, first in its tube, then bare, up to its stopper."""
+    line, tube_end, stopper = top - 1.9, 0.4 * width if tubes else 0.0, width - 8.0
+    _put_tube(canvas, [(0, line), (tube_end, line)])
     canvas.line([[(0, line), (stopper, line)]], width=THICK)
     canvas.fill([[(stopper, line - 1.6), (stopper + 1.8, line - 1.6), (stopper + 1.8, line + 1.6),
                   (stopper, line + 1.6)]], grey=0.0)  # fmt: skip
-    loops = [*(tube_end - at for at in (2.0, 4.0, 22.0, 24.0)), *(tube_end + 9.0 + 9.0 * k for k in range(4))]
-    for x in loops:
+    ends = [tube_end - at for at in (2.0, 4.0, 22.0, 24.0)] if tubes else []
+    for x in (*ends, *(tube_end + 9.0 + 9.0 * k for k in range(int((stopper - tube_end - 10) / 9) + 1))):
         canvas.line([[(x - 0.5, top + _CLOTH + 0.7), (x - 0.5, line - 1.5), (x + 0.5, line - 1.5),
                       (x + 0.5, top + _CLOTH + 0.7)]], width=THIN)  # fmt: skip
-    canvas.text((tube_end / 2, line - 4.4), "tube, sewn on at both ends", size=8)
-    canvas.text(((tube_end + stopper) / 2 + 2, line - 4.4), "a stitch at every number", size=8)
-    canvas.text((stopper + 0.9, line - 4.4), "stopper", size=8)
-    canvas.text((1.0, top + _CLOTH + 2.6), "knitted skin", size=8, anchor="start")
-    canvas.text((width / 2, height - 3.6), "foam", size=8)
-    return canvas
+    if tubes:
+        canvas.text((tube_end / 2, line - 4.4), "tube, sewn at both ends", size=8)
+    canvas.text(((tube_end + stopper) / 2, line - 4.4), "on the skin: a stitch at every number", size=8)
+
+
+def _put_drawn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:
+    """A line within the foam, first in its tube, then bare from pin to pin, out through the skin to its stopper."""
+    deep, out = top + 11.0, width - 10.0
+    tube_end = 0.33 * width if tubes else 0.0
+    bends: list[Spot] = [(0.46 * width, deep - 1.5), (0.62 * width, deep), (0.77 * width, deep - 2.5)]
+    _put_tube(canvas, [(0, deep), (tube_end, deep)])
+    end: Spot = (out, top - 1.6)
+    canvas.line([[(0, deep), (tube_end, deep), *bends, (out, top + _CLOTH), end]], width=THICK)
+    canvas.fill([[(out - 1.6, top - 2.2), (out + 1.6, top - 2.2), (out + 1.6, top - 0.4), (out - 1.6, top - 0.4)]],
+                grey=0.0)  # fmt: skip
+    for x, y in bends:
+        canvas.line([[(x, top - 3.0), (x, y)]], width=THIN, dash=(0.8, 0.6))
+        canvas.disc((x, top - 3.0), 0.6, grey=0.0)
+        canvas.disc((x, y), 0.7)
+    canvas.text((bends[1][0] + 1.0, top + 4.4), "depth", size=8, anchor="start")
+    canvas.text((bends[0][0] - 1.6, top + 4.4), "pin", size=8, anchor="end")
+    if tubes:
+        canvas.text((tube_end / 2, deep + 3.4), "tube", size=8)
+    canvas.text(((tube_end + out) / 2, deep + 4.2), "through the foam, from point to point", size=8)
+    canvas.text((out, top - 4.6), "stopper", size=8)
+
+
+def _put_tube(canvas: Canvas, way: list[Spot]) -> None:
+    """Two walls; nothing where it has no length."""
+    if way[0][0] < way[-1][0]:
+        canvas.line([way], width=2.2)
+        canvas.line([way], width=1.6, grey=1.0)
 
 
 def _put_cloth(canvas: Canvas, top: float, holes: list[float], width: float) -> None:
@@ -91,30 +134,38 @@ def _put_cloth(canvas: Canvas, top: float, holes: list[float], width: float) -> 
         canvas.line([box[:2], box[2:]], width=THIN)
 
 
-def stopper_scheme(*, outside: bool, width: float, height: float) -> Canvas:
-    """A cable pulled straight, from its winch at zero to its stopper: what is measured, and what is left loose.
+def stopper_scheme(*, cloth: str, width: float, height: float) -> Canvas:
+    """A cable pulled straight, its winch at zero: the stopper touches the cloth, and goes back by the slack.
 
     Args:
-        outside: whether the motors stand outside, on a base.
+        cloth: what the cable comes out of last.
         width: of the picture [mm].
         height: of the picture [mm].
     """
     canvas = Canvas(width, height)
-    line, exit_at, body_end, stopper = 0.55 * height, 16.0, width - 22.0, width - 13.0
+    line, exit_at, body_end, stopper = 0.48 * height, 16.0, width - 27.0, width - 15.0
     canvas.fill([[(exit_at, line - 5), (body_end, line - 5), (body_end, line + 5), (exit_at, line + 5)]], grey=0.93)
-    canvas.line([[(exit_at, line - 5), (body_end, line - 5), (body_end, line + 5), (exit_at, line + 5)]], width=THIN,
-                closed=True)  # fmt: skip
-    canvas.text(((exit_at + body_end) / 2, line + 2.6), "body", size=8, grey=0.25)
-    canvas.line([[(7.0, line), (stopper, line)]], width=THICK)
+    canvas.fill([[(body_end - _CLOTH, line - 7), (body_end, line - 7), (body_end, line + 7),
+                  (body_end - _CLOTH, line + 7)]], grey=0.72)  # fmt: skip
+    canvas.line([[(x, line - 7), (x, line + 7)] for x in (body_end - _CLOTH, body_end)], width=THIN)
+    canvas.text(((exit_at + body_end) / 2, line + 2.6), "straight, not tight", size=8, grey=0.25)
+    canvas.line([[(7.0, line - 4.2), (12.0, line), (stopper, line)]], width=THICK)
     canvas.line([[(stopper + 1.8, line), (width - 1.0, line)]], width=MIDDLE, dash=(1.2, 0.8))
     canvas.disc((7.0, line), 4.2, grey=1.0, edge=MIDDLE)
     canvas.disc((7.0, line), 1.0, grey=0.0)
-    canvas.line([[(11.4, line - 3), (exit_at, line - 3)], [(11.4, line + 3), (exit_at, line + 3)]], width=THIN)
-    canvas.fill([[(stopper, line - 2), (stopper + 1.8, line - 2), (stopper + 1.8, line + 2), (stopper, line + 2)]],
-                grey=0.0)  # fmt: skip
-    _dimension(canvas, exit_at, stopper, line - 8.0, line - 1.0, "stopper")
-    _dimension(canvas, body_end, stopper, line + 8.0, line + 1.0, "slack")
-    canvas.text((0.3, line + 7.4), "base, at zero" if outside else "winch at zero", size=8, anchor="start")
+    canvas.line([[(9.3, line - 6.0), (9.3, line - 2.4)]], width=MIDDLE)
+    canvas.text((11.0, line - 7.6), "spool mark", size=8, anchor="start")
+    for left, dash in ((body_end, (0.8, 0.6)), (stopper, None)):
+        box: list[Spot] = [(left, line - 2), (left + 1.8, line - 2), (left + 1.8, line + 2), (left, line + 2)]
+        if dash:
+            canvas.line([box], width=THIN, dash=dash, closed=True)
+        else:
+            canvas.fill([box], grey=0.0)
+    canvas.text((body_end + 2.0, line - 6.2), "1 touches", size=8, anchor="start")
+    canvas.text((stopper + 1.2, line - 3.8), "2", size=8)
+    _dimension(canvas, body_end, stopper, line + 8.0, line + 2.4, "slack")
+    canvas.text((0.3, line + 8.2), "winch at zero", size=8, anchor="start")
+    canvas.text((body_end - 2.4, line + 9.0), f"{cloth}, last point", size=8, anchor="end")
     return canvas
 
 

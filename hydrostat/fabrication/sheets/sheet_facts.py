@@ -7,25 +7,23 @@ from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.patterns.stitches import CableStitches
-from hydrostat.fabrication.sheets import foam_steps, plush_steps
-from hydrostat.fabrication.sheets.bill_facts import Facts, bill_facts, cost_of, shortened
-from hydrostat.fabrication.sheets.cable_map import winch_letter
+from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
+from hydrostat.fabrication.sheets.bill_facts import Facts, bill_facts, cost_text
+from hydrostat.fabrication.sheets.cable_map import winch_mark
+from hydrostat.fabrication.sheets.calibration import calibration
+from hydrostat.fabrication.sheets.minds import minds, sentence, shortened
+from hydrostat.fabrication.sheets.piece_facts import piece_facts, winch_files
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.step import Step, count_text, minutes_text
-from hydrostat.fabrication.solids.assembly import Placed
 
-_NAME, _SHORT, _SENTENCE = 60, 26, 260
-"""Longest name of the robot, of a winch, of a sentence, in letters."""
-
-_MOST_MINDS = 7
-"""Sentences in the box on the first page."""
+_NAME, _SHORT = 60, 26
+"""Longest name of the robot, of a winch, in letters."""
 
 _POURS = ("first", "second")
 
 _CABLES = {
     "cable": "cable",
     "cut to": "cut to",
-    "stopper from exit": "stopper",
     "slack": "slack",
     "spool mark from end": "spool mark",
 }
@@ -38,37 +36,38 @@ _PLACES = {"where the cable begins": "body"}
 """What the list of tubes calls a place, and the sheet, which has less room."""
 
 
-def sheet_facts(given: SheetInput) -> Facts:
-    """All words and numbers, long ones shortened."""
+def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
+    """All words and numbers, long ones shortened; `letters`: a sentence on letters that cannot be printed."""
     plush = given.method is Method.PLUSH
     steps = _all_steps(given)
     return {
         "paper": given.paper.value,
         "method": given.method.value,
         "title": shortened(given.robot.name, _NAME),
+        "flat": given.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
         "facts": _about(given, steps),
-        "mind": _minds(given),
+        "mind": minds(given.problems, (*((letters,) if letters else ()), *given.warnings)),
         "forced": bool(given.problems),
         "bill": bill_facts(given),
         "cables": _table(given, "cable_cuts", _CABLES),
         "log": [f"C{number}" for number in range(1, len(given.robot.cables) + 1)],
         "tubes": _table(given, "sheath_cuts", _TUBES),
         "winches": _winches(given),
-        "pieces": _pieces(given),
+        "pieces": piece_facts(given),
         "shown": f"C{stitches.cable}" if (stitches := shown_stitches(given)) else "",
         "motor": shortened(given.motor, 80),
         "steps": [[_step(step) for step in page] for page in steps],
-        "calibration": list(plush_steps.calibration(outside=given.outside)),
+        "calibration": list(calibration(given)),
         "safety": list(plush_steps.PLUSH_SAFETY if plush else foam_steps.foam_safety(given.mould)),
-        "checklist": list(plush_steps.PLUSH_CHECKLIST if plush else foam_steps.FOAM_CHECKLIST),
+        "checklist": list(plush_steps.plush_checklist(given) if plush else foam_steps.foam_checklist(given)),
         "checks": [
             {"what": check.what, "measured": check.measured, "allowed": check.allowed, "passed": check.passed}
             for check in given.checks
         ],
         "mould": _mould(given.mould),
-        "silicone_steps": list(foam_steps.SILICONE_STEPS),
-        "cures": [list(cure) for cure in foam_steps.cures(given.mould)],
+        "other_way": list(mould_steps.other_way(given.mould)) if given.mould else [],
+        "cures": [list(cure) for cure in mould_steps.cures(given.mould)],
     }
 
 
@@ -82,7 +81,7 @@ def _all_steps(given: SheetInput) -> list[tuple[Step, ...]]:
     """The steps, page by page."""
     if given.method is Method.PLUSH:
         return [plush_steps.plush_steps(given)]
-    before = [foam_steps.mould_steps(given, given.mould)] if given.mould is not None else []
+    before = [mould_steps.mould_steps(given, given.mould)] if given.mould is not None else []
     return [*before, foam_steps.skin_steps(given)]
 
 
@@ -94,21 +93,12 @@ def _about(given: SheetInput, steps: Iterable[Iterable[Step]]) -> list[str]:
     if robot.body.thickness is not None:
         sides.append(1e3 * robot.body.thickness)
     busy = sum(step.minutes for page in steps for step in page)
-    cost = cost_of(given)
     return [
         " × ".join(f"{side:.0f}" for side in sides) + " mm",
         f"{count_text(len(robot.winches), 'winch', 'winches')}, {count_text(len(robot.cables), 'cable')}",
-        f"about {minutes_text(busy)} of work" + (f", {cost:.0f} USD" if cost is not None else ""),
+        f"about {minutes_text(busy)} of work",
+        *cost_text(given),
     ]
-
-
-def _minds(given: SheetInput) -> list[str]:
-    """Problems first, then warnings; how many more there are, if there are many."""
-    sentences = [*given.problems, *given.warnings]
-    shown = [shortened(sentence(words), _SENTENCE) for words in sentences[:_MOST_MINDS]]
-    if len(sentences) > _MOST_MINDS:
-        shown.append(f"… and {len(sentences) - _MOST_MINDS} more in manifest.json")
-    return shown
 
 
 def _table(given: SheetInput, name: str, titles: Mapping[str, str]) -> Facts | None:
@@ -119,7 +109,7 @@ def _table(given: SheetInput, name: str, titles: Mapping[str, str]) -> Facts | N
     known = [column.title for column in table.columns]
     places = [known.index(title) for title in titles if title in known] or list(range(len(known)))
     return {
-        "file": f"{name}.csv",
+        "file": f"lists/{name}.csv",
         "heads": [titles.get(known[place], table.columns[place].heading) for place in places],
         "right": [table.columns[place].align is Align.RIGHT for place in places],
         # What stands in brackets after the number of a point is seen on the map.
@@ -131,11 +121,12 @@ def _table(given: SheetInput, name: str, titles: Mapping[str, str]) -> Facts | N
 
 
 def _winches(given: SheetInput) -> list[Facts]:
-    """Letter, name, cables and spool of each winch."""
+    """Mark, name, cables and spool of each winch."""
     robot = given.robot
     return [
         {
-            "letter": winch_letter(index),
+            "mark": winch_mark(index),
+            "files": ", ".join(winch_files(given, winch.name)),
             "name": shortened(winch.name, _SHORT),
             "cables": ", ".join(
                 f"C{number}" for number, cable in enumerate(robot.cables, start=1) if cable.winch == winch.name
@@ -145,61 +136,6 @@ def _winches(given: SheetInput) -> list[Facts]:
         }
         for index, winch in enumerate(robot.winches)
     ]
-
-
-def piece_numbers(given: SheetInput) -> tuple[dict[str, int], dict[str, int]]:
-    """Numbers of the pieces of the winch and of the stopper by name; pieces of one title share a number."""
-    numbers: list[dict[str, int]] = []
-    count = 0
-    for assembly in (given.winch, given.stopper):
-        titles: dict[str, int] = {}
-        for placed in assembly.pieces if assembly else ():
-            if placed.title not in titles:
-                count += 1
-                titles[placed.title] = count
-        numbers.append({placed.name: titles[placed.title] for placed in assembly.pieces} if assembly else {})
-    return numbers[0], numbers[1]
-
-
-def _pieces(given: SheetInput) -> list[Facts]:
-    """Every piece of the pictures with its number and how many are needed in all, then what else is printed."""
-    units = (len(given.robot.winches), len(given.robot.cables))
-    of_mould = {part.name for part in given.mould.printed} if given.mould else set()
-    kinds: dict[str, int] = {}
-    for part in given.printed:
-        kind = _kind(part.title)
-        if part.name in of_mould and "positive" not in kind:
-            kind = f"Mould, {kind[:1].lower()}{kind[1:]}"
-        kind = kind[:1].upper() + kind[1:]
-        kinds[kind] = kinds.get(kind, 0) + part.count
-    pieces: dict[int, Facts] = {}
-    for assembly, numbers, unit in zip((given.winch, given.stopper), piece_numbers(given), units, strict=True):
-        for placed in assembly.pieces if assembly else ():
-            number = numbers[placed.name]
-            entry = pieces.get(number)
-            if entry is None:
-                entry = {"number": str(number), "title": _called(placed), "printed": placed.printed, "count": 0}
-                pieces[number] = entry
-            entry["count"] += 0 if placed.printed and placed.title in kinds else unit
-    for entry in pieces.values():
-        entry["count"] += kinds.pop(entry["title"], 0) if entry["printed"] else 0
-    rest = [{"number": "", "title": title, "count": count, "printed": True} for title, count in kinds.items()]
-    return [
-        {**entry, "title": shortened(entry["title"], 44), "count": str(entry["count"])}
-        for entry in (*pieces.values(), *rest)
-    ]
-
-
-def _called(placed: Placed) -> str:
-    """A bought piece without its details, which are in the bill."""
-    return placed.title if placed.printed else placed.title.partition(",")[0]
-
-
-def _kind(title: str) -> str:
-    """What a printed part is, without for which winches, or which of several pieces."""
-    for mark in (" of winch", " of every winch", ", piece", ", part"):
-        title = title.partition(mark)[0]
-    return title.removeprefix("mould, ").removeprefix("Mould, ")
 
 
 def _step(step: Step) -> Facts:
@@ -238,9 +174,3 @@ def _undercut(share: float) -> str:
     return (
         f"The arrow is the pull. Hatched: {100 * share:.1f} % of the surface cannot slide out. Squeeze the body there."
     )
-
-
-def sentence(words: str) -> str:
-    """Words with a capital letter in front and a full stop behind."""
-    line = " ".join(words.split())
-    return line and line[0].upper() + line[1:] + ("" if line.endswith((".", "!", "?")) else ".")

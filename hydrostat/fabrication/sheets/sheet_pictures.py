@@ -1,13 +1,15 @@
 """`sheet_pictures`: all pictures of a sheet, made from the very robot."""
 
 from hydrostat.fabrication.kit_options import Method, Paper
-from hydrostat.fabrication.sheets.cable_map import body_piece, flat_map, space_map, winch_letter
+from hydrostat.fabrication.sheets.cable_depths import CableDepths
+from hydrostat.fabrication.sheets.cable_map import body_piece, flat_map, space_map, winch_mark
 from hydrostat.fabrication.sheets.canvas import Canvas
 from hydrostat.fabrication.sheets.exploded import exploded_picture
 from hydrostat.fabrication.sheets.mould_picture import undercut_picture
+from hydrostat.fabrication.sheets.piece_facts import piece_numbers
 from hydrostat.fabrication.sheets.portrait import portrait
 from hydrostat.fabrication.sheets.schemes import skin_scheme, stitch_scheme, stopper_scheme
-from hydrostat.fabrication.sheets.sheet_facts import piece_numbers, shown_stitches
+from hydrostat.fabrication.sheets.sheet_facts import shown_stitches
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.sight import best_views
 from hydrostat.fabrication.sheets.view import View
@@ -25,22 +27,31 @@ def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
     pictures = {"portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)}
     if views:
         pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + minds) / 2, views=views[:1])
-        pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views)
+        pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views[1:])
     else:
+        if given.method is Method.FOAM:
+            pictures["map_both"] = flat_map(robot, (), width=WIDE, height=112.0 - tight / 2)
         pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + minds) / 2)
-    pictures["calibration"] = stopper_scheme(outside=given.outside, width=HALF, height=30.0)
+    pictures["calibration"] = stopper_scheme(
+        cloth="cloth" if given.method is Method.PLUSH else "skin", width=HALF, height=26.0
+    )
     left = 195.0 - tight - minds - pictures["map"].height
     return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
 
 
 def _schemes(given: SheetInput) -> dict[str, Canvas]:
     if given.method is Method.FOAM:
-        return {"skin": skin_scheme(width=HALF, height=24.0)}
+        depths = CableDepths.of(given)
+        drawn = bool(depths.drawn or depths.laid or depths.tubed)
+        tubes = any(cable.sheathed for cable in given.robot.cables)
+        if not given.robot.cables:
+            return {}
+        return {"skin": skin_scheme(sewn=bool(depths.sewn), drawn=drawn, tubes=tubes, width=HALF)}
     shown = shown_stitches(given)
     if shown is None:
         return {}
     place = [winch.name for winch in given.robot.winches].index(shown.winch)
-    return {"stitches": stitch_scheme(shown, winch_letter(place), width=HALF, height=38.0)}
+    return {"stitches": stitch_scheme(shown, winch_mark(place), width=HALF, height=38.0)}
 
 
 def _parts(given: SheetInput, height: float) -> dict[str, Canvas]:

@@ -50,8 +50,8 @@ class Sight:
         return ~((before > 0) & (before > after))
 
 
-def best_views(robot: Robot, piece: Piece) -> tuple[View, View]:
-    """Two views: from where most of the cables lie in front, and then from where most of the others do."""
+def best_views(robot: Robot, piece: Piece) -> tuple[View, ...]:
+    """Three views: from where most of the cables lie in front, and then from where most of the others do."""
     cables = [1e3 * np.array(cable.points)[1:] for cable in robot.cables]
     points = np.concatenate([(way[:-1] + way[1:]) / 2 for way in cables if len(way) > 1] or [np.zeros((1, 3))])
     views = [View.at(float(turn), rise) for rise in _RISES for turn in _TURNS]
@@ -62,8 +62,16 @@ def best_views(robot: Robot, piece: Piece) -> tuple[View, View]:
     seen = np.array(fronts, dtype=float)
     # Of views that are as good, the one that shows most of the body, then the first.
     areas = np.array([np.prod(np.ptp(view.see(piece.vertices)[:, :2], axis=0)) for view in views])
-    first = int(np.argmax(seen.mean(axis=1) + 0.4 * areas / areas.max()))
-    rest = seen * (1 - seen[first])
-    apart = np.array([1 - float(view.axes[2] @ views[first].axes[2]) for view in views])
-    second = int(np.argmax(rest.mean(axis=1) + 0.3 * areas / areas.max() + 0.1 * np.minimum(apart, 1.0)))
-    return views[first], views[second]
+    chosen = [int(np.argmax(seen.mean(axis=1) + 0.4 * areas / areas.max()))]
+    rest = seen
+    for apart_counts in (0.1, 0.4):
+        rest = rest * (1 - seen[chosen[-1]])
+        apart = np.min([_apart(views, views[other]) for other in chosen], axis=0)
+        worth = rest.mean(axis=1) + 0.3 * areas / areas.max() + apart_counts * np.minimum(apart, 1.0)
+        chosen.append(int(np.argmax(worth)))
+    return tuple(views[index] for index in chosen)
+
+
+def _apart(views: list[View], one: View) -> Float[np.ndarray, " views"]:
+    """How far views are from one of them: 0 for itself, 1 for a right angle, 2 for the opposite."""
+    return np.array([1 - float(view.axes[2] @ one.axes[2]) for view in views])

@@ -9,6 +9,7 @@ from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, Shape
 from hydrostat.fabrication.patterns.svg_writer import COLOURS, shape_element
+from hydrostat.fabrication.sheets.legible import legible
 from hydrostat.fabrication.sheets.tile_grid import FOOTER, MARGIN, OVERLAP, PAPERS, Tile, TileGrid, tile_grid
 
 _WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
@@ -49,7 +50,7 @@ def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
     width, height = PAPERS[paper]
     pages = [
         _STYLE,
-        f"#set document(title: {_text(f'{pattern.name} - pattern')}, date: none)",
+        f"#set document(title: {_text(f'{legible(pattern.name)} - pattern')}, date: none)",
         f"#set page(width: {width}mm, height: {height}mm, margin: 0mm)",
         _overview(pattern, grid, paper),
         *(f"#pagebreak()\n{_page(pattern, grid, tile)}" for tile in grid.printed),
@@ -93,7 +94,7 @@ def _foot(pattern: Pattern, grid: TileGrid, name: str) -> list[str]:
     """The bar, the name of the page and that of the pattern."""
     y = MARGIN + grid.height + FOOTER - 5
     label = f'#text(size: 13pt, weight: "bold")[#{_text(name)}]'
-    title = f"#text(size: 8pt)[#{_text(f'{pattern.name} - pattern')}]"
+    title = f"#text(size: 8pt)[#{_text(f'{legible(pattern.name)} - pattern')}]"
     return [
         f"#bar({MARGIN}, {y})",
         f"#at({MARGIN + _BAR + 5}, {y - 5}, box(width: {grid.width - _BAR - 5}mm, height: 10mm, clip: true,"
@@ -106,13 +107,15 @@ def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
     page_width, _ = PAPERS[paper]
     pages, empty = len(grid.printed), [tile.name for tile in grid.tiles if not tile.shapes]
     said = [
-        f"{pattern.name}: a sheet of {pattern.width:.0f} x {pattern.height:.0f} mm on {pages} "
+        f"{legible(pattern.name)}: a sheet of {pattern.width:.0f} x {pattern.height:.0f} mm on {pages} "
         f"page{'s' if pages > 1 else ''} after this one, tiles A1 to {grid.tiles[-1].name}.{_left_out(empty)}",
         "Print all pages at 100 % (actual size, not fitted to the page) and measure the bar on each of them.",
         f"Cut each page along its dotted frame on the right and below, lay it {OVERLAP:g} mm over the next so that "
         "crosses fall on crosses, and glue or tape them.",
     ]
-    lines = [f'#at({MARGIN}, {MARGIN}, text(size: 18pt, weight: "bold")[#{_text(f"{pattern.name} - pattern")}])']
+    lines = [
+        f'#at({MARGIN}, {MARGIN}, text(size: 18pt, weight: "bold")[#{_text(f"{legible(pattern.name)} - pattern")}])'
+    ]
     body = "".join(f"#par[#{_text(sentence)}]" for sentence in said)
     room = f"box(width: {page_width - 2 * MARGIN}mm)"
     lines.append(f"#at({MARGIN}, {MARGIN + 11}, {room}[#set par(spacing: 2mm)\n{body}])")

@@ -1,6 +1,7 @@
 """The bill: what is counted, weighed and paid."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from small_inputs import PLAIN, box, given, square
@@ -17,6 +18,7 @@ from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.price import NO_SOURCE, Price
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.robot import Winch
 
 CUBE = Printed(name="cube", title="Cube", solid=solid_of(Box((10.0, 10.0, 10.0))), count=3)
 CUBES = 3 * 1.24e-3 * (1.2 * 600 + 0.15 * (1000 - 1.2 * 600))
@@ -87,6 +89,38 @@ def test_boards_and_drivers_for_many_motors() -> None:
     servo = needs(given(square(), motor=next(motor for motor in MOTORS if motor.horn is not None)))
     assert "motor driver" not in servo
     assert servo["controller board for servos"].quantity == 1
+
+
+def test_a_winch_without_cables_buys_nothing() -> None:
+    """Oracle: two winches, one of them with a cable."""
+    robot = square()
+    idle = replace(robot, winches=(*robot.winches, Winch(name="idle", at=(0.0, 0.0))))
+    assert idle.cables
+    for this in (robot, idle):
+        found = needs(replace(given(robot), robot=this))
+        assert found["geared motor"].quantity == 1
+        assert found["motor driver"].quantity == 1
+    none = needs(replace(given(robot), robot=replace(robot, cables=())))
+    assert not {"geared motor", "controller board", "power supply"} & set(none)
+
+
+def test_what_closes_a_mould() -> None:
+    """Oracle: what is asked for, and nothing of it else."""
+    robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
+    foam = FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0)
+    plain = needs(given(robot, foam=foam, mould=(CUBE,)))
+    assert not {"bolt M4 with nut", "rod of 3 mm", "glue for plastic", "modelling clay"} & set(plain)
+    assert plain["sealer"].quantity == 1
+    cut = needs(given(robot, foam=foam, mould=(CUBE,), bolts=8, dowels=6))
+    assert cut["bolt M4 with nut"].quantity == 8
+    assert cut["rod of 3 mm"].quantity == pytest.approx(6 * 0.015)
+    assert "6 dowels" in cut["rod of 3 mm"].specification
+    assert cut["glue for plastic"].quantity == 1
+    silicone = needs(given(robot, foam=replace(foam, silicone=1e6, silicone_mass=1180.0), mould=(CUBE,), dowels=2))
+    assert "modelling clay" in silicone
+    assert "sealer" not in silicone
+    with pytest.raises(InputError, match="bolts must not be negative, not -1"):
+        given(robot, bolts=-1)
 
 
 def test_motors_keep_the_source_of_their_price() -> None:

@@ -21,11 +21,29 @@ def test_sum_of_a_cable_of_known_points() -> None:
     assert cut.body == pytest.approx(50 + 30)  # a triangle of 30, 40, 50 and a straight piece
     assert cut.wraps == pytest.approx(20 * math.pi)
     assert cut.length == pytest.approx(80 + 7 + 300 + 12 + 20 * math.pi + 10 + KNOT + TAIL)
-    assert cut.stopper == pytest.approx(300 + 80 + 7)
-    assert cut.exit_mark == pytest.approx(TAIL + 387)
-    assert cut.spool_mark == pytest.approx(TAIL + 399)
+    assert cut.spool_mark == pytest.approx(TAIL + 7 + 80 + 300 + 12)
     assert cut.length <= cut.cut < cut.length + STEP
     assert cut.cut % STEP == 0
+
+
+def test_in_the_body_the_spool_is_where_the_cable_is_counted_from():
+    """Oracle: the body's length is counted from the shaft, so the way from the exit to the spool is in it already."""
+    (cut,) = cable_cuts(square(), leads={0: 12.0}, outside={}, spare_wraps=2.0)
+    assert cut.spool_mark == pytest.approx(TAIL + 80)
+
+
+def test_the_table_tells_no_mark_more_precisely_than_it_is_known():
+    """Oracle: where the stopper goes is a matter of the robot, not of the list."""
+    table = cable_table(cable_cuts(square(), leads={0: 12.3}, outside={0: 7.7}, spare_wraps=2.0))
+    titles = [column.title for column in table.columns]
+    assert {"cable", "cut to", "slack", "spool mark from end", "body"} <= set(titles)
+    assert not any("stopper" in title or "exit" in title for title in titles)
+    numbers = dict(zip(titles, table.texts[0], strict=True))
+    assert numbers["spool mark from end"] == f"{TAIL + 80 + 20:.0f}"
+    told = " ".join(table.notes)
+    assert "winch at zero" in told
+    assert "last hole" in told
+    assert "about" in told
 
 
 def test_a_stepped_spool_has_its_own_wraps_and_release() -> None:

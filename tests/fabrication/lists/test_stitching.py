@@ -2,9 +2,20 @@
 
 import pytest
 from shapely import box as rectangle
-from small_inputs import box, square
+from small_inputs import box, given, square
 
-from hydrostat.fabrication.lists.stitching import NEEDLE, SKIN, close_warnings, deep_warnings, depth_table, stitch_table
+from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.lists.list_input import FoamNeeds
+from hydrostat.fabrication.lists.lists import make_lists
+from hydrostat.fabrication.lists.stitching import (
+    NEEDLE,
+    SKIN,
+    close_warnings,
+    deep_warnings,
+    depth_table,
+    plane_table,
+    stitch_table,
+)
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.robot import Cable
 
@@ -55,3 +66,17 @@ def test_points_too_close_for_a_needle() -> None:
     robot = box((-0.05, 0.08, 0.08), (0.02, 0.08, 0.08), (0.021, 0.08, 0.08), (0.15, 0.02, 0.08))
     (warning,) = close_warnings(robot)
     assert warning == "cable C1: points as near to each other as 1.0 mm, below 2 mm, are sewn by one stitch"
+
+
+def test_a_flat_body_of_foam_has_its_points_in_the_plane() -> None:
+    """Oracle: the points that were given, and a triangle of 30, 40, 50."""
+    robot = square(Cable(winch="pull", points=((-0.02, -0.01), (0.01, 0.03), (0.04, 0.03))))
+    table = plane_table(robot)
+    assert table.column("point") == ("1 (winch)", "2", "3 (stopper)")
+    assert table.column("x") == pytest.approx((-20.0, 10.0, 40.0))
+    assert table.column("y") == pytest.approx((-10.0, 30.0, 30.0))
+    assert table.column("from the winch") == pytest.approx((0.0, 50.0, 80.0))
+    assert "before the foam is poured" in " ".join(table.notes)
+    foam = FoamNeeds(volume=3e5, part_a=20.0, part_b=20.0)
+    lists = make_lists(given(robot, method=Method.FOAM, foam=foam))
+    assert lists.table("stitching").texts == table.texts

@@ -23,6 +23,11 @@ def units_of(robot: Robot, motor: Motor = N20, **options: float) -> tuple[WinchU
     return winch_units(robot, PartOptions(**options), motor)
 
 
+def thick(robot: Robot) -> Robot:
+    """The same robot with a body of 120 mm, in which any unit has room."""
+    return replace(robot, body=replace(robot.body, thickness=0.12))
+
+
 def distinct(units: tuple[WinchUnit, ...]) -> list[WinchUnit]:
     """One unit of each kind."""
     return list({tuple(part.name for part in unit.printed): unit for unit in units}.values())
@@ -35,7 +40,8 @@ def test_units_of_the_gallery(name: str, motor: Motor, unchecked: None):
     robot = gallery_robot(name)
     units = units_of(robot, motor)
     assert [unit.winch for unit in units] == [winch.name for winch in robot.winches]
-    assert [unit.problems for unit in units] == [()] * len(units)
+    if (name, motor.key) != ("squid", "25d"):  # eight of 85 mm: see test_arrangement.py
+        assert [unit.problems for unit in units] == [()] * len(units)
     for unit in distinct(units):
         assert interferences(unit.assembly) == ()
         assert all(watertight_problems(part) == () for part in unit.printed)
@@ -117,7 +123,7 @@ def test_long_travel_lies_in_layers_and_says_how_much_the_radius_grows():
 
 def test_a_thick_cable_lies_in_one_layer_on_a_longer_spool():
     options = PartOptions(cable=1.0, tube=4.0, bore=2.0, clearance=0.4, fit=0.25)
-    robot = gallery_robot("letter_s")
+    robot = thick(gallery_robot("letter_s"))
     for motor in MOTORS:
         (unit,) = winch_units(robot, options, motor)
         assert unit.problems == ()
@@ -131,22 +137,16 @@ def test_more_than_a_spool_takes_is_refused():
 
 
 def test_a_shaft_too_short_for_thick_walls_is_refused():
-    robot = gallery_robot("letter_s")
+    robot = thick(gallery_robot("letter_s"))
     (unit,) = units_of(with_winches(robot, spool_radius=0.012), wall=5.0)
     assert any("of the shaft" in text and "3.6 mm are needed" in text for text in unit.problems)
     assert units_of(with_winches(robot, spool_radius=0.012), POLOLU_25D, wall=2.0)[0].problems == ()
 
 
-def test_a_unit_thicker_than_a_flat_body_is_said():
-    robot = gallery_robot("letter_s")
-    thin = replace(robot, body=replace(robot.body, thickness=0.02))
-    assert any("thicker than the body of 20 mm" in text for text in units_of(thin)[0].warnings)
-    assert units_of(robot)[0].warnings == ()
-
-
 def test_a_unit_stands_across_a_body_that_is_thick_enough_and_else_lies():
     robot = gallery_robot("starfish")
-    assert all(unit.across == (unit.size[2] <= 40.0) for unit in units_of(robot))
+    assert [unit.across for unit in units_of(robot)] == [unit.size[2] <= 40.0 for unit in units_of(robot)]
+    assert all(unit.place is not None and unit.place.across == unit.across for unit in units_of(robot))
     assert not any(unit.across for unit in units_of(robot, POLOLU_25D))
 
 

@@ -62,14 +62,14 @@ def printed(winches: int, cables: int) -> tuple[Printed, ...]:
 def tables(cables: int, bill: int = 8) -> dict[str, Table]:
     """Lists as the room of lists names their columns."""
     words = [Column(title=title, align=Align.LEFT) for title in ("cable", "winch", "from", "to")]
-    lengths = [Column(title=title, unit="mm") for title in ("cut to", "stopper from exit", "slack")]
+    lengths = [Column(title=title, unit="mm") for title in ("cut to", "slack", "spool mark from end")]
     bought = (Column(title="what", align=Align.LEFT), Column(title="quantity"), Column(title="unit", align=Align.LEFT))
     return {
         "cable_cuts": Table(
             name="cable_cuts",
             title="Cables",
             columns=(*words[:2], *lengths),
-            rows=tuple((f"C{number}", "pull", 400.0 + number, 121.5, 0.0) for number in range(1, cables + 1)),
+            rows=tuple((f"C{number}", "pull", 400.0 + number, 0.0, 121.5) for number in range(1, cables + 1)),
         ),
         "sheath_cuts": Table(
             name="sheath_cuts",
