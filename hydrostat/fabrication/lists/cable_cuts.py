@@ -125,7 +125,7 @@ def cable_table(cuts: tuple[CableCut, ...]) -> Table:
             for cut in cuts
         ),
         notes=(
-            "Body is the rest length from the place of the winch to the stopper, sheaths included, as it was simulated; "
+            "Body is the rest length from the place of the winch to the stopper as it was simulated, sheaths included; "
             "what is cut more than the total goes to the knot.",
             "Spool mark: about where the line meets the spool at rest, within a centimetre or so. Mark it with a pen "
             "before the line goes in, from the end that gets the stopper.",

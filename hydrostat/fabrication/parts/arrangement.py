@@ -1,0 +1,205 @@
+"""`arranged`: how all units in a flat body are laid: within its seam, and clear of each other if there is a way."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from hydrostat.arrays import Vector
+from hydrostat.fabrication.parts.places import GIVES, TOUCHES, Place, UnitBox, ways_to_lie
+
+_SWEEPS = 8
+"""Rounds of a search."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Laid:
+    """A unit as it is laid in the body.
+
+    Attributes:
+        place: where and how.
+        problems: why it cannot be built well.
+        warnings: what to mind.
+    """
+
+    place: Place
+    problems: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[Laid, ...]:
+    """How each unit is laid, in their order, with what is wrong with it.
+
+    Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
+    and is moved least, until none changes. Those that meet all the same lie one above the other, if the body is thick
+    enough for that.
+
+    Args:
+        boxes: of the units.
+        seam: of the body [mm].
+        thickness: of the body [mm].
+    """
+    ways = [_Ways(ways_to_lie(box, seam), thickness) for box in boxes]
+    total, places = _settled(ways)
+    if total[0] > 0:
+        thin = [way.thinnest() if _meets_another(places, number) else way for number, way in enumerate(ways)]
+        places = min((total, places), _settled(thin), key=lambda pair: pair[0])[1]
+    problems, warnings = (
+        [_alone(place, thickness) for place in places],
+        [_bulging(place, thickness) for place in places],
+    )
+    for pile in _piles(places):
+        words, possible = _piled([places[number] for number in pile], thickness)
+        (warnings if possible else problems)[pile[0]].append(words)
+    moved = [number for number, way in enumerate(ways) if places[number] is not way.alone or any(places[number].slid)]
+    if moved:
+        told = "; ".join(places[number].told for number in moved)
+        warnings[moved[0]].append(f"lay these units so, seen from the front, or they meet or reach the seam: {told}")
+    return tuple(
+        Laid(place=place, problems=tuple(wrong), warnings=tuple(minded))
+        for place, wrong, minded in zip(places, problems, warnings, strict=True)
+    )
+
+
+class _Ways:
+    """All ways to lay one unit."""
+
+    def __init__(self, places: list[Place], thickness: float) -> None:
+        self.places = places
+        self._footprints = np.array([place.footprint for place in places])
+        self._depths = np.array([place.depth for place in places])
+        self._thickness = thickness
+        self._room = (1 + GIVES) * thickness
+        outside = [round(max(place.outside - TOUCHES, 0.0), 3) for place in places]
+        bulges = np.maximum(self._depths - thickness, 0.0).round(3).tolist()
+        self._before = list(zip(outside, (self._depths > self._room).tolist(), strict=True))
+        self._after = list(zip(bulges, range(len(places)), strict=True))
+        self._shares: dict[int, tuple[Place, Vector, Vector]] = {}
+        self.alone, _ = self.best([])
+
+    def best(self, others: Sequence[Place]) -> tuple[Place, tuple[float, float]]:
+        """The best beside some others, and what it shares with them [mm^2]: without room above each other, and with."""
+        hard, soft = np.zeros(len(self.places)), np.zeros(len(self.places))
+        for other in others:
+            _, without, above = self._shared(other)
+            hard += without
+            soft += above
+        number = min(
+            range(len(self.places)),
+            key=lambda way: (*self._before[way], float(hard[way]), float(soft[way]), *self._after[way]),
+        )
+        return self.places[number], (float(hard[number]), float(soft[number]))
+
+    def thinnest(self) -> "_Ways":
+        """Those that take the least of the thickness, of those within the seam if there are any."""
+        inside = [place for place in self.places if place.outside <= TOUCHES] or self.places
+        least = min(place.depth for place in inside)
+        return _Ways([place for place in inside if place.depth <= least + 1e-9], self._thickness)
+
+    def _shared(self, other: Place) -> tuple[Place, Vector, Vector]:
+        """What each way shares with another unit, where one cannot lie above the other, and where it can."""
+        if id(other) not in self._shares:
+            near = shapely.intersects(self._footprints, other.footprint)
+            area = np.zeros(len(self.places))
+            area[near] = shapely.area(shapely.intersection(self._footprints[near], other.footprint))
+            area = np.round(np.where(area > TOUCHES, area, 0.0), 3)
+            above = self._depths + other.depth <= self._room
+            self._shares[id(other)] = (other, np.where(above, 0.0, area), np.where(above, area, 0.0))
+        return self._shares[id(other)]
+
+
+def _settled(ways: list[_Ways]) -> tuple[tuple[float, float], list[Place]]:
+    """Each in turn at its best beside the others, until none changes; the best of all beginnings, what is shared."""
+    found: list[tuple[tuple[float, float], list[Place]]] = []
+    for first in range(len(ways)):
+        total, places = _swept(ways, [*range(first, len(ways)), *range(first)])
+        if total == (0.0, 0.0):
+            return total, places
+        found.append((total, places))
+    return min(found, key=lambda pair: pair[0]) if found else ((0.0, 0.0), [])
+
+
+def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float], list[Place]]:
+    """Where all are after some rounds in an order, and what they share."""
+    chosen = [way.alone for way in ways]
+    hard = soft = 0.0
+    for _ in range(_SWEEPS):
+        before, hard, soft = list(chosen), 0.0, 0.0
+        for number in order:
+            chosen[number], shared = ways[number].best([*chosen[:number], *chosen[number + 1 :]])
+            hard, soft = hard + shared[0], soft + shared[1]
+        if all(one is other for one, other in zip(before, chosen, strict=True)):
+            break
+    return (hard, soft), chosen
+
+
+def _meet(places: Sequence[Place], numbers: Sequence[int]) -> bool:
+    """Whether some units all cover a common part of the plane."""
+    return float(shapely.intersection_all([places[number].footprint for number in numbers]).area) > TOUCHES
+
+
+def _meets_another(places: Sequence[Place], number: int) -> bool:
+    return any(_meet(places, (number, other)) for other in range(len(places)) if other != number)
+
+
+def _piles(places: Sequence[Place]) -> list[tuple[int, ...]]:
+    """Units that lie above each other, the largest piles only."""
+    piles: list[tuple[int, ...]] = []
+    grown = [(number,) for number in range(len(places))]
+    while grown:
+        more = [
+            (*pile, number)
+            for pile in grown
+            for number in range(pile[-1] + 1, len(places))
+            if _meet(places, (*pile, number))
+        ]
+        piles = [pile for pile in piles if not any(set(pile) < set(larger) for larger in more)] + more
+        grown = more
+    return piles
+
+
+def _piled(pile: Sequence[Place], thickness: float) -> tuple[str, bool]:
+    """What is said of units above each other, and whether that can be built."""
+    high = sum(place.depth for place in pile)
+    names = " and ".join(f'"{place.box.winch}"' for place in pile)
+    possible = high <= (1 + GIVES) * thickness
+    if possible:
+        bulge = f", so it bulges by {high - thickness:.0f} mm" if high > thickness else ""
+        return (
+            f"the units of winches {names} meet wherever they were tried: lay them one above the other, "
+            f"{high:.0f} mm in a body of {thickness:.0f} mm{bulge}",
+            True,
+        )
+    return (
+        f"the units of winches {names} meet wherever they were tried, and one above the other they take "
+        f"{high:.0f} mm of a body of {thickness:.0f} mm: move the winches apart, or take smaller motors",
+        False,
+    )
+
+
+def _alone(place: Place, thickness: float) -> list[str]:
+    """Why a unit cannot be built well, whatever stands beside it."""
+    found = []
+    if place.outside > TOUCHES:
+        share = 100 * place.outside / place.footprint.area
+        found.append(
+            f"{place.box.words} does not lie within the seam in any turn about its place, {share:.0f} % of it would be "
+            "outside: move the winch inwards, or take a smaller motor or spool"
+        )
+    if place.depth > (1 + GIVES) * thickness:
+        found.append(
+            f"{place.box.words} takes {place.depth:.0f} mm of a body of {thickness:.0f} mm, which gives by about "
+            f"{100 * GIVES:.0f} % at most: take a smaller motor or spool, or a thicker body"
+        )
+    return found
+
+
+def _bulging(place: Place, thickness: float) -> list[str]:
+    if not thickness < place.depth <= (1 + GIVES) * thickness:
+        return []
+    return [
+        f"{place.box.words} is thicker than the body of {thickness:.0f} mm: it will bulge by "
+        f"{place.depth - thickness:.0f} mm; take a smaller motor or spool, or a thicker body"
+    ]

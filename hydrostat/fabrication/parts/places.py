@@ -1,0 +1,151 @@
+"""`Place`: one way in which the unit of a winch lies in a flat body."""
+
+import math
+from dataclasses import dataclass
+
+import shapely
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from hydrostat.fabrication.solids.construct import Corner
+from hydrostat.robot import Body
+
+GIVES = 0.25
+"""Share of its thickness that stuffing and cloth give for a unit. Assumed, measured on none."""
+
+TOUCHES = 1.0
+"""Area that units may share, or that may stand over the seam [mm^2]: corners of boxes drawn square."""
+
+_SLIDE = 6.0
+"""How far a unit is slid from where the robot file has it [mm]: its place is still in its housing, and its tubes bend
+that much."""
+
+_STEP = 30
+"""Between the turns that are tried [degrees]: an hour of a clock, which is how a person is told."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnitBox:
+    """What is known of a unit before it is laid; lengths in millimetres.
+
+    Attributes:
+        winch: its name.
+        at: where the robot file has it: its shaft, or the middle of its housing if it lies.
+        low: least corner of the box round it, the shaft along z, the face of the motor at z = 0.
+        high: largest corner of that box; its z is the roof of the housing.
+        along: the way in which its first cable goes on, counted from +x [degrees].
+    """
+
+    winch: str
+    at: Corner
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    along: float
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Sides of the box [mm]."""
+        (a, b, c), (x, y, z) = self.low, self.high
+        return x - a, y - b, z - c
+
+    @property
+    def words(self) -> str:
+        """Its winch and its sides."""
+        return f'the unit of winch "{self.winch}", ' + " x ".join(f"{side:.0f}" for side in self.size) + " mm,"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Place:
+    """One way in which a unit lies.
+
+    Attributes:
+        box: the unit.
+        across: its shaft stands across the body, the roof to the front; else it lies in the plane of the body.
+        turn: where its +y points, counted from +x [degrees].
+        flipped: a unit that lies has its motor to the right of +y; else to the left.
+        slid: from its place, to the right of its +y, and along it [mm].
+        footprint: what of the plane it takes [mm].
+        outside: how much of that is beyond the seam [mm^2].
+    """
+
+    box: UnitBox
+    across: bool
+    turn: float
+    flipped: bool
+    slid: Corner
+    footprint: Polygon
+    outside: float
+
+    @property
+    def depth(self) -> float:
+        """How much of the thickness it takes [mm]."""
+        return self.box.size[2 if self.across else 0]
+
+    def azimuth(self, way: float) -> int:
+        """The side of the housing that is nearest to a way [degrees]: along +y 90; if it lies 90 or 270."""
+        quarter = 90 if self.across else 180
+        return (90 + quarter * round(_turned(way - self.turn) / quarter)) % 360
+
+    @property
+    def told(self) -> str:
+        """How a person lays it."""
+        right, ahead = self.slid
+        slid = ""
+        if right or ahead:
+            way = self.turn - math.degrees(math.atan2(right, ahead))
+            slid = f", slid {math.hypot(right, ahead):g} mm to {_clock(way)}"
+        if self.across:
+            channel = self.turn - 90 + self.azimuth(self.box.along)
+            return f'"{self.box.winch}" across the body, the channel of its first cable to {_clock(channel)}{slid}'
+        motor = self.turn + (-90 if self.flipped else 90)
+        return f'"{self.box.winch}" lying, its motor to {_clock(motor)}{slid}'
+
+
+def seam_of(body: Body) -> BaseGeometry:
+    """The line that a flat body is sewn along, with what is in it [mm]: as drawn, or round its mesh."""
+    if body.outline is not None:
+        return shapely.transform(body.outline.polygon, lambda points: 1e3 * points)
+    return shapely.union_all(shapely.polygons(1e3 * body.mesh.nodes[body.mesh.elements]))
+
+
+def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[Place]:
+    """Across the body and in its plane, turned by whole hours and slid a little: those first that are moved least."""
+    shapely.prepare(seam)
+    turns = sorted(range(-180 + _STEP, 181, _STEP), key=lambda turn: (abs(turn), turn))
+    slides = ((0.0, 0.0), *((sign * x, sign * y) for x, y in ((0.0, _SLIDE), (_SLIDE, 0.0)) for sign in (1.0, -1.0)))
+    return [
+        _place(box, seam, turn=box.along + turn, slid=slid, across=across, flipped=flipped)
+        for slid in slides
+        for across, flipped in ((True, False), (False, False), (False, True))
+        for turn in turns
+    ]
+
+
+def _place(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, across: bool, flipped: bool) -> Place:
+    """With its +y at a turn [degrees]: x is to the right of it, or z to the right or to the left."""
+    angle = math.radians(turn)
+    up = (math.cos(angle), math.sin(angle))
+    right = (up[1], -up[0])
+    if across:
+        low, high = box.low[0], box.high[0]
+    else:
+        middle = box.high[2] / 2
+        low, high = box.low[2] - middle, box.high[2] - middle
+        if flipped:
+            low, high = -high, -low
+    corners = ((low, box.low[1]), (high, box.low[1]), (high, box.high[1]), (low, box.high[1]))
+    x = box.at[0] + slid[0] * right[0] + slid[1] * up[0]
+    y = box.at[1] + slid[0] * right[1] + slid[1] * up[1]
+    footprint = Polygon([(x + u * right[0] + v * up[0], y + u * right[1] + v * up[1]) for u, v in corners])
+    outside = 0.0 if seam.covers(footprint) else float(footprint.difference(seam).area)
+    return Place(box=box, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=outside)
+
+
+def _turned(angle: float) -> float:
+    """The same between -180 and 180 degrees, a little towards 180, so that rounding noise changes nothing."""
+    return (angle + 180 - 1e-6) % 360 - 180 + 1e-6
+
+
+def _clock(angle: float) -> str:
+    """A way [degrees] as on the face of a clock, which people are surer of than of signs."""
+    return f"{round((90 - angle) / 30 - 1e-6) % 12 or 12} o'clock"
