@@ -1,7 +1,8 @@
 """What a robot is built from: patterns, printed parts, moulds, lists and pages; lengths in millimetres."""
 
+from hydrostat.fabrication.build_kit import build_kit, export_kit
 from hydrostat.fabrication.demand import Demand, find_demand
-from hydrostat.fabrication.kit import Kit, UnbuildableError, build_kit, export_kit
+from hydrostat.fabrication.kit import Kit, UnbuildableError
 from hydrostat.fabrication.kit_options import KitOptions, Method, Paper
 from hydrostat.fabrication.moulds.mould import Mould, make_mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
