@@ -5,7 +5,7 @@ from dataclasses import replace
 from hydrostat.fabrication.body_work import BodyWork
 from hydrostat.fabrication.checks.patch_checks import patch_checks
 from hydrostat.fabrication.checks.pattern_checks import pattern_checks
-from hydrostat.fabrication.kit_options import KitOptions
+from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions
 from hydrostat.fabrication.lists.list_input import Cloth
 from hydrostat.fabrication.patches.space_pattern import space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
@@ -43,9 +43,20 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
         gusset=bool(pattern.gusset),
         cloth=_cloth(pattern),
         summary=(f"Pattern: {counted(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
-        problems=pattern.problems,
+        problems=(*pattern.problems, *_wrong_stuffing(robot)),
         warnings=pattern.warnings,
         checks=checks,
+    )
+
+
+def _wrong_stuffing(robot: Robot) -> tuple[str, ...]:
+    """Why what is built would be another robot than was simulated; nothing is said of a material given by numbers."""
+    name = robot.body.material.name
+    if not name or name in STUFFINGS:
+        return ()
+    return (
+        f'the body was simulated as "{name}", which is not stuffed into cloth: set its material to '
+        f'"{STUFFINGS[0]}" and simulate again, or cast it (--method foam)',
     )
 
 

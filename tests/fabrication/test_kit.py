@@ -134,6 +134,13 @@ def test_a_stuffed_body_in_space_is_sewn_of_patches():
     assert len(pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages) == 2
 
 
+def test_a_body_of_foam_is_not_stuffed_unless_forced():
+    """Oracle: the fish tail was simulated as a castable foam."""
+    robot = hs.load_robot(gallery_folder("fish_tail"))
+    with pytest.raises(UnbuildableError, match='simulated as "flexfoam-it x", which is not stuffed'):
+        build_kit(robot, options=KitOptions(method=Method.PLUSH))
+
+
 def test_a_flat_body_can_be_cast():
     """Oracle: the volume of its mould's cavity is its area times its thickness."""
     kit = build_kit(replace(crossed(), cables=()), options=KitOptions(method=Method.FOAM))
