@@ -41,13 +41,14 @@ def plush_steps(given: SheetInput) -> tuple[Step, ...]:
 def _prints(given: SheetInput) -> tuple[Step, ...]:
     if not given.printed:
         return ()
+    count = count_text(sum(part.count for part in given.printed), "part")
     return (
         Step(
             "Print the parts",
             20,
-            f"All plates from parts/plate_1.3mf on: {count_text(sum(part.count for part in given.printed), 'part')} of PLA, 0.2 mm layers, "
-            "no supports, as they lie. Try every fit before you go on: spools turn freely, motors slide in without "
-            "force.",
+            f"All plates from parts/plate_1.3mf on: {count} of "
+            "PLA, 0.2 mm layers, no supports, as they lie. Try every fit before you go on: spools turn freely, motors "
+            "slide in without force.",
             wait=f"about {minutes_text(60 * given.print_hours)} of printing",
         ),
     )
@@ -57,6 +58,7 @@ def _cables(given: SheetInput) -> tuple[Step, ...]:
     cables = len(given.robot.cables)
     tubes = sum(len(cable.sheathed) for cable in given.robot.cables)
     sheaths = "Tie sheaths to the inside of the cloth at both ends, the line in them. " if tubes else ""
+    all_of_them = "C1" if cables == 1 else f"C1 to C{cables}"
     grommets = " Grommets are optional: sew one behind a hole that frays." if _grommets(given) else ""
     return (
         Step(
@@ -69,9 +71,9 @@ def _cables(given: SheetInput) -> tuple[Step, ...]:
         Step(
             "Stitch the cables",
             10 * cables,
-            f"Lay {'the front panel' if _flat(given) else 'each patch'} flat, right side up. Take {'C1' if cables == 1 else f'C1 to C{cables}'} in order "
-            "(lists/stitching.csv). Begin at the winch and follow the numbers of the map: solid runs outside, dashed "
-            f"inside. {sheaths}End outside; put the stopper on loosely behind the last hole.{grommets}",
+            f"Lay {'the front panel' if _flat(given) else 'each patch'} flat, right side up. Take {all_of_them} in "
+            "order (lists/stitching.csv). Begin at the winch and follow the numbers of the map: solid runs "
+            f"outside, dashed inside. {sheaths}End outside; put the stopper on loosely behind the last hole.{grommets}",
         ),
     )
 
@@ -102,9 +104,7 @@ def _stuff(given: SheetInput) -> Step:
     full = f"about {1e3 * thickness:.0f} mm thick" if thickness else "as large as on page 1"
     them = "it" if len(inside) == 1 else "them"
     places = (
-        f"Set {marks_text(inside)} where the map has {them} and tie {them} to the {'front panel' if _flat(given) else 'cloth'}. "
-        if inside
-        else ""
+        f"Set {marks_text(inside)} where the map has {them} and tie {them} to the cloth in front. " if inside else ""
     )
     winches = ", then round the winches," if inside else ""
     lumps = " No lumps by the cables." if given.robot.cables else ""

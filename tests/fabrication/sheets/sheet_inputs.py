@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 from builders import box_mesh, mesh_body
+from manifold3d import Manifold
 from plush_robots import SQUARE, drawn_body
 
 from hydrostat.fabrication.kit_options import Method, Paper
@@ -144,6 +145,7 @@ def mould(robot: Robot, *, silicone: bool = False) -> Mould:
         printed=(),
         assembly=Assembly(name="mould", pieces=pieces),
         volumes={},
+        poured=Manifold(),
         box=(120.0, 100.0, 80.0),
         bolts=0 if silicone else 6,
         dowels=0,

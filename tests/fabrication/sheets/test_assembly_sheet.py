@@ -153,7 +153,7 @@ def test_a_crowded_sheet_has_no_more_pages(make, pages, paper):
         winches=12,
         cables=24,
         paper=paper,
-        problems=(long,) * 9,
+        problems=tuple(f"{number}: {long}" for number in range(9)),
         tables=tables(24, bill=90),
         checks=checks(90, failed=1),
     )
@@ -286,7 +286,9 @@ def test_names_that_no_font_can_print_are_replaced_with_a_warning(plush_sheet):
     given = plush(name="章鱼 7", warnings=('winch "왼쪽" is near the seam',))
     winch = replace(given.robot.winches[0], name="왼쪽")
     cables = tuple(replace(cable, winch="왼쪽") for cable in given.robot.cables)
-    text = words(assembly_sheet(replace(given, robot=given.robot.with_network((winch,), cables))))
+    stitches = tuple(replace(sewn, winch="왼쪽") for sewn in given.stitches)
+    named = replace(given, robot=given.robot.with_network((winch,), cables), stitches=stitches)
+    text = words(assembly_sheet(named))
     assert "?? 7" in text
     assert 'Winch "W1" is near the seam.' in text
     assert "fonts of these pages lack letters" in text

@@ -1,0 +1,49 @@
+"""Every file that the assembly sheet names is in the kit."""
+
+import io
+import re
+
+import pypdf
+import pytest
+from plush_robots import crossed
+
+from hydrostat.fabrication import Kit, KitOptions, Method, MouldKind, MouldOptions, build_kit
+
+NAMED = re.compile(r"[\w/]*\w\.(?:pdf|csv|svg|dxf|3mf|stl|json|toml|step)\b")
+FOLDER = re.compile(r"\b(?:lists|parts|pattern|mould|positive)/(?=\W|$)")
+
+
+def named(kit: Kit) -> set[str]:
+    """All paths on the pages, by another program."""
+    pages = pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages
+    text = " ".join(" ".join(page.extract_text().split()) for page in pages)
+    return {*NAMED.findall(text), *FOLDER.findall(text)}
+
+
+def wrong(kit: Kit) -> set[str]:
+    """Paths on the pages that are not there."""
+    there = {*kit.files, *(f"{path.rpartition('/')[0]}/" for path in kit.files)}
+    return named(kit) - there
+
+
+@pytest.mark.parametrize("which", ["plush_kit", "foam_kit"])
+def test_files_that_are_named_are_there(which, request):
+    """Oracle: the paths of the kit."""
+    kit = request.getfixturevalue(which)
+    assert len(named(kit)) >= 5
+    assert wrong(kit) == set()
+
+
+def test_files_of_a_mould_of_silicone_are_there():
+    """Oracle: the paths of the kit."""
+    options = KitOptions(method=Method.FOAM, force=True, mould=MouldOptions(kind=MouldKind.SILICONE))
+    kit = build_kit(crossed(), options=options)
+    assert "mould/plate_1.3mf" in named(kit)
+    assert wrong(kit) == set()
+
+
+def test_the_check_of_names_can_fail(plush_kit):
+    """Oracle: a kit without its list of cables."""
+    files = {path: content for path, content in plush_kit.files.items() if path != "lists/cable_cuts.csv"}
+    kit = Kit(**{**vars(plush_kit), "files": files})
+    assert wrong(kit) == {"lists/cable_cuts.csv"}
