@@ -12,6 +12,9 @@ from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Cable, Robot
 from hydrostat.simulation import Simulation
 
+SPARE = 20.0
+"""What a tube takes at most from a side of a housing that looks away from it [mm]. Assumed, measured on none."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class SheathCut:
@@ -101,13 +104,27 @@ def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube
             *(Column(title=title, unit="mm") for title in ("bore", "outside", "run", "seat", "cut to")),
         ),
         rows=tuple(rows),
-        notes=(
-            "Cut square with a sharp blade, not with scissors: a squeezed end rubs. The run is measured along straight "
-            "stretches between the cable's points, as it was simulated.",
-        )
-        if rows
-        else ("No cable of this robot runs in a tube.",),
+        notes=_notes(cuts),
     )
+
+
+def _notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
+    """What is said below the table: of cutting, and of tubes whose length is no matter of the simulation."""
+    if not cuts:
+        return ("No cable of this robot runs in a tube.",)
+    found = [
+        "Cut square with a sharp blade, not with scissors: a squeezed end rubs. The run is measured along straight "
+        "stretches between the cable's points, as it was simulated.",
+        "A tube keeps its cable's length however it lies: a longer one does no harm but friction.",
+    ]
+    if any(cut.start is None for cut in cuts):
+        found.append("A tube from the base has to reach wherever the body stands in front of it, in gentle bends.")
+    if any(cut.start == 0 for cut in cuts):
+        found.append(
+            f"At a winch in the body the run counts from its shaft: cut {SPARE:g} mm more where it is turned away "
+            "from its cable, and trim the tube in place."
+        )
+    return tuple(found)
 
 
 def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int, float]) -> Check:

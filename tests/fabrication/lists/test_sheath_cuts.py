@@ -40,6 +40,10 @@ def test_the_table_ends_with_its_total() -> None:
     assert [row[2:4] for row in table.rows[:-1]] == [("1 (winch)", "2"), ("3", "5 (stopper)")]
     assert table.column("cut to") == pytest.approx((55.0, 100.0, 155.0))
     assert sheath_table(robot, (), bore=1.0, tube=2.0).rows == ()
+    assert any("from its shaft" in note for note in table.notes)
+    assert not any("from the base" in note for note in table.notes)
+    outside = sheath_table(robot, sheath_cuts(robot, seats={}, outside={0: 200.0}), bore=1.0, tube=2.0)
+    assert any("from the base" in note for note in outside.notes)
 
 
 def test_tubes_are_what_the_simulation_holds_and_others_are_caught() -> None:
