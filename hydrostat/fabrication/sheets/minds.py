@@ -2,7 +2,7 @@
 
 import re
 
-_SENTENCE, _MOST = 260, 7
+_SENTENCE, _MOST = 640, 7
 """Longest sentence in letters, and most sentences."""
 
 _PLACE = re.compile(r"\[[^\]]*\]")

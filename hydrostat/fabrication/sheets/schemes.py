@@ -92,8 +92,8 @@ def _put_sewn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:
         canvas.line([[(x - 0.5, top + _CLOTH + 0.7), (x - 0.5, line - 1.5), (x + 0.5, line - 1.5),
                       (x + 0.5, top + _CLOTH + 0.7)]], width=THIN)  # fmt: skip
     if tubes:
-        canvas.text((tube_end / 2, line - 4.4), "tube, sewn at both ends", size=8)
-    canvas.text(((tube_end + stopper) / 2, line - 4.4), "on the skin: a stitch at every number", size=8)
+        canvas.text((tube_end / 2, line - 4.4), "tube", size=8)
+    canvas.text((stopper, line - 4.4), "on the skin: a stitch at every number", size=8, anchor="end")
 
 
 def _put_drawn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:

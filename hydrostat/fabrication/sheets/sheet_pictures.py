@@ -1,10 +1,13 @@
 """`sheet_pictures`: all pictures of a sheet, made from the very robot."""
 
+import math
+
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.sheets.cable_depths import CableDepths
 from hydrostat.fabrication.sheets.cable_map import body_piece, flat_map, space_map, winch_mark
 from hydrostat.fabrication.sheets.canvas import Canvas
 from hydrostat.fabrication.sheets.exploded import exploded_picture
+from hydrostat.fabrication.sheets.minds import minds
 from hydrostat.fabrication.sheets.mould_picture import undercut_picture
 from hydrostat.fabrication.sheets.piece_facts import piece_numbers
 from hydrostat.fabrication.sheets.portrait import portrait
@@ -21,21 +24,22 @@ WIDE, HALF = 182.0, 88.0
 def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
     """Pictures by name, in millimetres of paper."""
     tight = 18.0 if given.paper is Paper.LETTER else 0.0
-    minds = 8.0 * min(len(given.problems) + len(given.warnings), 7)
+    told = minds(given.problems, given.warnings)
+    boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)
     robot = given.robot
     views = best_views(robot, body_piece(robot)) if robot.body.mesh.dim == 3 else ()
     pictures = {"portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)}
     if views:
-        pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + minds) / 2, views=views[:1])
+        pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + boxed) / 2, views=views[:1])
         pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views[1:])
     else:
         if given.method is Method.FOAM:
             pictures["map_both"] = flat_map(robot, (), width=WIDE, height=112.0 - tight / 2)
-        pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + minds) / 2)
+        pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + boxed) / 2)
     pictures["calibration"] = stopper_scheme(
         cloth="cloth" if given.method is Method.PLUSH else "skin", width=HALF, height=26.0
     )
-    left = 195.0 - tight - minds - pictures["map"].height
+    left = 195.0 - tight - boxed - pictures["map"].height
     return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
 
 
