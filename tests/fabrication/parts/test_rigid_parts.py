@@ -1,6 +1,7 @@
 """All rigid parts of a robot: counts, names, time, the same on every run."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -82,3 +83,15 @@ def test_it_takes_little_time(name: str, unchecked: None):
     made = rigid_parts(robot, given_demand(robot), motor="xl330", options=PartOptions(), bed=BED)
     assert sum(part.volume for part in made.printed) > 0
     assert time.process_time() - begin < 2.0
+
+
+def test_what_to_mind_of_the_base_is_told():
+    """Oracle: a cable that is bare from its beginning."""
+    robot = gallery_robot("fish_tail")
+    bare = replace(robot, cables=(robot.cables[0], replace(robot.cables[1], sheathed=())))
+    told = [
+        rigid_parts(each, given_demand(each), motor="n20", options=PartOptions(), bed=BED).warnings
+        for each in (robot, bare)
+    ]
+    assert not any("clamp the end of its tube" in text for text in told[0])
+    assert [text for text in told[1] if "clamp the end of its tube" in text and "C2" in text]
