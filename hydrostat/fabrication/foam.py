@@ -9,9 +9,17 @@ from hydrostat.fabrication.kit_options import KitOptions
 from hydrostat.fabrication.lists.list_input import FoamNeeds
 from hydrostat.fabrication.moulds.mould import make_mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind
+from hydrostat.fabrication.moulds.winch_room import WinchRoom
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
+from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 from hydrostat.units import counted
+
+MANY_PIECES = 40
+"""More pieces of a mould than that are a warning: a judgement, each is some hours on a printer."""
+
+MUCH_PLASTIC = 5e3
+"""More plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too."""
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
@@ -20,7 +28,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
     Raises:
         InputError: the body is not closed.
     """
-    pockets = {unit.winch: unit.size for unit in units if unit.mount is Mount.BODY}
+    pockets = {unit.winch: WinchRoom(low=unit.low, high=unit.high) for unit in units if unit.mount is Mount.BODY}
     mould = make_mould(robot, options.mould, pockets=pockets)
     spare = tuple(
         part for part in mould.printed if part.name.startswith("positive") and mould.kind is MouldKind.PRINTED
@@ -46,6 +54,17 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
             f"Pour: {body.mass:.0f} g of {body.material}",
         ),
         problems=(*mould.problems, *channel_problems(robot, options.parts)),
-        warnings=mould.warnings,
+        warnings=(*mould.warnings, *_effort(printed)),
         checks=mould_checks(robot, mould),
+    )
+
+
+def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
+    """A sentence if a mould takes more printing than a person has in mind."""
+    pieces, mass = sum(part.count for part in printed), sum(part.count * part.mass for part in printed)
+    if pieces <= MANY_PIECES and mass <= MUCH_PLASTIC:
+        return ()
+    return (
+        f"the mould takes {counted(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic: make the body smaller, use "
+        "a printer with a larger bed, or cut the body out of a block of foam",
     )

@@ -1,6 +1,9 @@
 """Whether a mould leaves room for just the body that was simulated."""
 
+import math
+
 from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Robot
 
@@ -13,27 +16,65 @@ _ROUNDING = 1e-9
 MESH = 0.05
 """Share of its volume by which the body that is cast may differ from the mesh that was simulated."""
 
-_PARTS = ("upper", "lower", "cavity", "sprue", "vents", "bolts", "slots", "keys")
-"""What a block becomes."""
+_VOIDS = ("sprue", "vents", "bolts", "slots", "keys")
+"""What of a printed block is neither plastic nor body."""
+
+_POURS = ("silicone_lower", "silicone_upper")
 
 
 def mould_checks(robot: Robot, mould: Mould) -> tuple[Check, ...]:
-    """The account of the block, and the volume of the body against that of the simulated mesh."""
-    volumes, mesh = mould.volumes, robot.body.mesh
-    lost = abs(sum(volumes[part] for part in _PARTS) / volumes["box"] - 1)
+    """The account of the block, the way that the foam takes, and the body against the simulated mesh."""
+    return (_account(mould), _filled(mould), _as_simulated(robot, mould))
+
+
+def _account(mould: Mould) -> Check:
+    """Pieces as they are printed, and all that is no piece, each measured on its own solid, against the block."""
+    volumes = mould.volumes
+    if mould.kind is MouldKind.PRINTED:
+        what = "pieces, cavity, sprue, vents, key gaps and holes of the mould add up to its block"
+        parts = _pieces(mould, "mould") + _body(mould) + sum(volumes[void] for void in _VOIDS)
+    else:
+        what = "pieces of the positive and silicone of both pours add up to the room in the frames"
+        parts = _pieces(mould, "positive") + sum(volumes[pour] for pour in _POURS)
+    lost = abs((parts + volumes["cutting"]) / math.prod(mould.box) - 1)
+    return Check(
+        what=what,
+        measured=f"{lost:.0e} of it left over" if lost > _ROUNDING else "nothing left over",
+        allowed=f"{LEFT_OVER:.0e}",
+        passed=lost <= LEFT_OVER,
+    )
+
+
+def _pieces(mould: Mould, name: str) -> float:
+    """Volume of all that is printed under a name [mm^3]."""
+    return sum(part.count * part.volume for part in mould.printed if part.name.startswith(name))
+
+
+def _body(mould: Mould) -> float:
+    """Volume of the body as it lies in the assembly [mm^3]."""
+    return sum(float(piece.solid.volume()) for piece in mould.assembly.pieces if piece.name == "body")
+
+
+def _filled(mould: Mould) -> Check:
+    """What is poured is one room, with a way in."""
+    rooms = sum(room.volume() > 0 for room in mould.poured.decompose())
+    sprue = mould.volumes["sprue"]
+    measured = "no sprue" if sprue <= 0 else "one room" if rooms == 1 else f"{rooms} rooms"
+    return Check(
+        what="sprue, cavity and vents of the mould are one room, which the foam fills",
+        measured=f"{measured}, {1e-3 * float(mould.poured.volume()):.0f} cm^3",
+        allowed="one room with a sprue",
+        passed=rooms == 1 and sprue > 0,
+    )
+
+
+def _as_simulated(robot: Robot, mould: Mould) -> Check:
+    mesh, volume = robot.body.mesh, mould.volumes["body"]
     simulated = 1e9 * float(mesh.volumes.sum()) * (robot.body.thickness or 1.0)
-    off = volumes["body"] / simulated - 1
-    return (
-        Check(
-            what="halves, cavity, sprue, vents, keys and holes of the mould add up to its block",
-            measured=f"{lost:.0e} of it left over" if lost > _ROUNDING else "nothing left over",
-            allowed=f"{LEFT_OVER:.0e}",
-            passed=lost <= LEFT_OVER,
-        ),
-        Check(
-            what="the body that is cast is as large as the one that was simulated",
-            measured=f"{1e-3 * volumes['body']:.0f} cm^3, {abs(100 * off):.1f} % {'more' if off > 0 else 'less'}",
-            allowed=f"{100 * MESH:g} %",
-            passed=abs(off) <= MESH,
-        ),
+    off = volume / simulated - 1
+    return Check(
+        what="the body that is cast is as large as the one that was simulated",
+        measured=f"{1e-3 * volume:.0f} cm^3, {abs(100 * off):.1f} % {'more' if off > 0 else 'less'}",
+        allowed=f"{100 * MESH:g} %",
+        passed=abs(off) <= MESH,
     )

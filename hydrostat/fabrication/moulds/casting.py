@@ -108,9 +108,9 @@ def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
     foam = MATERIALS["flexfoam-it x"]
     name = f'"{material.name}"' if material.name else "the body's material, given by its numbers,"
     problem = (
-        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts: the mould would be filled with {foam.name} "
-        f"({foam.density:.0f} kg/m^3), another robot than was simulated; set the body's material to what you pour, such "
-        f'as "{foam.name}", and simulate again, or make it of cloth with --method plush if it is flat'
+        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts; of {foam.name} ({foam.density:.0f} "
+        "kg/m^3), for which this mould is reckoned, it would be another robot than was simulated: set the "
+        f"body's material to what you pour, such as {foam.name}, and simulate again, or choose plush if it is flat"
     )
     return foam, (problem,)
 

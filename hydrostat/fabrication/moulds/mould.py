@@ -21,6 +21,7 @@ from hydrostat.fabrication.moulds.pocket import Pocket, cable_dents, make_pocket
 from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames, make_positive
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.split import grid
+from hydrostat.fabrication.moulds.winch_room import Sides, WinchRoom
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot
@@ -110,15 +111,13 @@ class _Inside:
     vents: tuple[Vent, ...]
 
 
-def make_mould(
-    robot: Robot, options: MouldOptions, *, pockets: Mapping[str, tuple[float, float, float]] | None = None
-) -> Mould:
+def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sides | WinchRoom] | None = None) -> Mould:
     """The mould for a robot's body.
 
     Args:
         robot: what is built.
         options: how its mould is made.
-        pockets: room for winches that sit in the body, by name: three sides [mm].
+        pockets: what winches that sit in the body take up, by name; three sides [mm] if the shaft is in the middle.
 
     Raises:
         InputError: the body is not closed, or a pocket is of a winch that is not there.
@@ -204,11 +203,11 @@ def _inside(
     solid: Manifold,
     pull: Pull,
     frame: Frame,
-    sizes: Mapping[str, tuple[float, float, float]],
+    rooms: Mapping[str, Sides | WinchRoom],
 ) -> _Inside:
     """Cavity, openings and the block round them."""
     body = frame.enter(solid)
-    pockets = make_pockets(robot, body, frame, sizes)
+    pockets = make_pockets(robot, body, frame, rooms, clearance=options.pocket_clearance)
     marks = options.mark_cables
     dents = cable_dents(robot, pull.skin, frame, deepest=options.mark_depth) if marks else Manifold()
     cavity = make_cavity(body, dents, pockets)

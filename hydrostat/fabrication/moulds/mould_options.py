@@ -23,17 +23,19 @@ class MouldOptions:
         wall: least thickness round the body [mm].
         bed: largest piece that the printer takes, along x, y and z [mm].
         key_clearance: between a key and its socket, on each side [mm].
+        pocket_clearance: between a winch in the body and the foam, on each side [mm].
         mark_cables: dents in the foam show where cables run.
         mark_depth: cable points that lie no deeper below the surface are marked [mm].
 
     Raises:
-        InputError: a length that is not above 0.
+        InputError: a length that is not above 0; a clearance of pockets may be 0.
     """
 
     kind: MouldKind = MouldKind.PRINTED
     wall: float = 8.0
     bed: tuple[float, float, float] = (220.0, 220.0, 250.0)
     key_clearance: float = 0.2
+    pocket_clearance: float = 1.0
     mark_cables: bool = True
     mark_depth: float = 10.0
 
@@ -43,3 +45,5 @@ class MouldOptions:
         for name, size in sizes.items():
             if not (math.isfinite(size) and size > 0):
                 raise InputError(f"{name} must be above 0 mm, not {size:g} mm")
+        if not (math.isfinite(self.pocket_clearance) and self.pocket_clearance >= 0):
+            raise InputError(f"pocket_clearance must not be below 0 mm, not {self.pocket_clearance:g} mm")

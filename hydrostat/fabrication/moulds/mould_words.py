@@ -104,8 +104,8 @@ def mould_warnings(
     found = []
     if kind is MouldKind.SILICONE and any(links):
         found.append(
-            f"{_reaches(links)} and closes behind it: silicone gives way, but a closed loop cannot be drawn out; cut the "
-            "silicone open there with a knife, and tape the cut from outside before you pour"
+            f"{_reaches(links)} and closes behind it: silicone gives way, but a closed loop cannot be drawn out; "
+            "cut the silicone open there with a knife, and tape the cut from outside before you pour"
         )
     if pull.share <= (UNNOTICED if kind is MouldKind.PRINTED else TOLERATED):
         return tuple(found)

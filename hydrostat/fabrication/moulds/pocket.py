@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import permutations, product
 
 import numpy as np
 from jaxtyping import Float
@@ -12,6 +13,7 @@ from hydrostat.fabrication.moulds.body_solid import MILLIMETRES
 from hydrostat.fabrication.moulds.frame import Frame
 from hydrostat.fabrication.moulds.release import Skin, axes_along
 from hydrostat.fabrication.moulds.simple_solids import joined, rod
+from hydrostat.fabrication.moulds.winch_room import Sides, WinchRoom
 from hydrostat.geometry.solid import Solid
 from hydrostat.geometry.surface import Surface
 from hydrostat.robot import Mount, Robot
@@ -19,9 +21,13 @@ from hydrostat.robot import Mount, Robot
 _LEAST_SKIN = 2.0
 """Foam between a pocket and the next surface [mm]."""
 
+_WIRES = (8.0, 4.0)
+"""Width and depth of the groove for the wires of a motor, beside it [mm]."""
+
 _OUTSIDE = 0.02
 _BARE = 0.1
 _SHARED = 0.01
+_ROUNDING = 1e-6
 _SWEEPS = 5
 
 _DENT = 1.0
@@ -36,7 +42,8 @@ class Pocket:
         winch: its name.
         size: of the room, in the coordinates of the mould [mm].
         upper: it is a core of the upper half; else of the lower.
-        reach: a box from the deep end of the pocket out of the body.
+        unit: the winch itself, a box within the room.
+        reach: from the deep end of the pocket out of the body, with a groove for wires at the end of the motor.
         core: what of the body it takes.
         outside: share of the room that is outside the body.
         problem: why it cannot be built well, or nothing.
@@ -45,6 +52,7 @@ class Pocket:
     winch: str
     size: tuple[float, float, float]
     upper: bool
+    unit: Manifold
     reach: Manifold
     core: Manifold
     outside: float
@@ -52,25 +60,34 @@ class Pocket:
 
 
 def make_pockets(
-    robot: Robot, body: Manifold, frame: Frame, sizes: Mapping[str, tuple[float, float, float]]
+    robot: Robot, body: Manifold, frame: Frame, rooms: Mapping[str, Sides | WinchRoom], *, clearance: float
 ) -> tuple[Pocket, ...]:
     """A pocket for each winch that sits in the body, from its place straight out along the pull.
+
+    The shaft is at the winch's place, whichever way the winch is laid. Pockets that meet become one room.
 
     Args:
         robot: whose winches they are.
         body: in the coordinates of the mould [mm].
         frame: of the mould.
-        sizes: of the room for each winch [mm], in any order of sides; winches that are missing get none.
+        rooms: what each winch takes up, or its sides [mm] if the shaft is in the middle; winches that are missing get
+            no pocket.
+        clearance: between a winch and the foam, on each side [mm].
 
     Raises:
         InputError: a size for a winch that is not there, or that is not above 0.
     """
-    for name, size in sizes.items():
+    boxes = {
+        name: room if isinstance(room, WinchRoom) else WinchRoom.about_the_middle(room) for name, room in rooms.items()
+    }
+    for name, box in boxes.items():
         robot.winch(name)
-        if not all(np.isfinite(side) and side > 0 for side in size):
-            raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {size}')
-    inside = [winch for winch in robot.winches if winch.mount is Mount.BODY and winch.name in sizes]
-    ways = [_ways(winch.name, body, frame.into(_spot(winch.at)[None])[0], sizes[winch.name]) for winch in inside]
+        if not all(np.isfinite(side) and side > 0 for side in box.sides):
+            raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {box.sides}')
+    inside = [winch for winch in robot.winches if winch.mount is Mount.BODY and winch.name in boxes]
+    ways = [
+        _ways(winch.name, body, frame.into(_spot(winch.at)[None])[0], boxes[winch.name], clearance) for winch in inside
+    ]
     return _together(ways)
 
 
@@ -88,11 +105,18 @@ def _together(ways: list[list[Pocket]]) -> tuple[Pocket, ...]:
     return tuple(chosen)
 
 
-def _worth(pocket: Pocket, others: list[Pocket]) -> tuple[float, bool, float, float]:
-    """The lower the better: whether it is in the body, well inside, what it shares with others, how large it is."""
-    shared = sum(_shared(pocket.reach, other.reach) for other in others)
+def _worth(pocket: Pocket, others: list[Pocket]) -> tuple[float, bool, float, float, float]:
+    """The lower the better: what is outside, too little skin, winches in one place, halves that cross, size."""
+    shared = sum(_shared(pocket.unit, other.unit) for other in others)
+    crossed = sum(_shared(pocket.reach, other.reach) for other in others if other.upper != pocket.upper)
     outside = round(max(pocket.outside, _OUTSIDE), 3)
-    return outside, bool(pocket.problem), round(shared, 3), round(float(pocket.core.volume()), 3)
+    return (
+        outside,
+        bool(pocket.problem),
+        round(shared, 3),
+        round(crossed, 3),
+        round(float(pocket.core.volume()), 3),
+    )
 
 
 def _shared(one: Manifold, other: Manifold) -> float:
@@ -106,25 +130,59 @@ def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
     return MILLIMETRES * np.array([*at, 0.0][:3])
 
 
-def _ways(name: str, body: Manifold, at: Float[np.ndarray, "3"], size: tuple[float, float, float]) -> list[Pocket]:
-    """All ways to lay a winch with its sides along those of the mould."""
-    a, b, c = sorted(size)
-    turned = ((b, c, a), (c, b, a), (a, c, b), (c, a, b), (a, b, c), (b, a, c))
-    return [_laid(name, body, at, sides, upper) for sides in dict.fromkeys(turned) for upper in (True, False)]
+@dataclass(frozen=True, kw_only=True)
+class _Lying:
+    """One way to lay a winch, with its sides along those of the mould.
+
+    Attributes:
+        sides: of the winch along x, y, z of the mould [mm].
+        middle: of its box [mm].
+        wires: the side wall at which its wires come out: axis across the pull, and sign.
+    """
+
+    sides: Sides
+    middle: Sides
+    wires: tuple[int, int]
 
 
-def _laid(name: str, body: Manifold, at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Pocket:
+def _ways(name: str, body: Manifold, at: Float[np.ndarray, "3"], room: WinchRoom, clearance: float) -> list[Pocket]:
+    """All ways to lay a winch that leave the least of it outside the body, each open to either half."""
+    lain = _lain(at, room)
+    boxes = [_cuboid(way, clearance) for way in lain]
+    outside = [round(max(_part_outside(box, body), _OUTSIDE), 3) for box in boxes]
+    best = [way for way, out in zip(lain, outside, strict=True) if out == min(outside)]
+    return [_laid(name, body, way, upper, clearance) for way in best for upper in (True, False)]
+
+
+def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[_Lying]:
+    """All ways to lay a winch; those that differ in no length only once."""
+    off = np.where(np.abs(room.off) > _ROUNDING, room.off, 0.0)
+    found = []
+    orders = sorted(permutations(range(3)), key=lambda order: (room.sides[order[2]], room.sides[order[0]], order))
+    for order, x, y in product(orders, (1, -1), (1, -1)):
+        turn = round(np.linalg.det(np.eye(3)[list(order)])) * x * y if off[0] and off[1] else 1
+        signs = np.array([x if off[0] else 1, y if off[1] else 1, turn])
+        a, b, c = (at + (signs * off)[list(order)]).tolist()
+        shaft = order.index(2)
+        wires = (shaft, -int(signs[2])) if shaft < 2 else (0, -1)
+        sides = (room.sides[order[0]], room.sides[order[1]], room.sides[order[2]])
+        found.append(_Lying(sides=sides, middle=(a, b, c), wires=wires))
+    return list(dict.fromkeys(found))
+
+
+def _laid(name: str, body: Manifold, way: _Lying, upper: bool, clearance: float) -> Pocket:
     """A pocket for a winch laid one way, open to one half."""
     low, high = np.reshape(body.bounding_box(), (2, 3))
+    at = np.array(way.middle)
+    a, b, c = (side + 2 * clearance for side in way.sides)
     far = (high[2] if upper else low[2]) + (5.0 if upper else -5.0)
-    deep = at[2] - sides[2] / 2 if upper else at[2] + sides[2] / 2
-    reach = _box(at, sides[0], sides[1], deep, far)
-    parts = (reach ^ body).decompose()
-    core = next((part for part in parts if _holds(part, at)), Manifold())
-    skin = _skin(at, sides, upper) - reach
-    room = Manifold.cube(sides, True).translate(tuple(at.tolist()))
-    out = float((room - body).volume()) / float(room.volume())
-    side = " x ".join(f"{length:.0f}" for length in sorted(sides, reverse=True))
+    deep = at[2] - c / 2 if upper else at[2] + c / 2
+    straight = _box(at, a, b, deep, far)
+    reach = straight + _groove(at, (a, b), way.wires, deep, far)
+    core = next((part for part in (reach ^ body).decompose() if _holds(part, at)), Manifold())
+    skin = _skin(at, (a, b, c), upper) - straight
+    out = _part_outside(_cuboid(way, clearance), body)
+    side = " x ".join(f"{length:.0f}" for length in sorted((a, b, c), reverse=True))
     problem = ""
     if core.is_empty() or out > _OUTSIDE:
         problem = (
@@ -136,7 +194,36 @@ def _laid(name: str, body: Manifold, at: np.ndarray, sides: tuple[float, float, 
             f'winch "{name}": less than {_LEAST_SKIN:g} mm of foam would be left beside the pocket of {side} mm; '
             "move the winch to where the body is thicker, or choose a smaller motor"
         )
-    return Pocket(winch=name, size=sides, upper=upper, reach=reach, core=core, outside=out, problem=problem)
+    return Pocket(
+        winch=name,
+        size=(a, b, c),
+        upper=upper,
+        unit=_cuboid(way, 0.0),
+        reach=reach,
+        core=core,
+        outside=out,
+        problem=problem,
+    )
+
+
+def _cuboid(way: _Lying, clearance: float) -> Manifold:
+    """The box round a winch with some air on all sides."""
+    return Manifold.cube([side + 2 * clearance for side in way.sides], True).translate(way.middle)
+
+
+def _part_outside(box: Manifold, body: Manifold) -> float:
+    """Share of a box that is outside the body."""
+    return float((box - body).volume()) / float(box.volume())
+
+
+def _groove(at: np.ndarray, across: tuple[float, float], wires: tuple[int, int], deep: float, far: float) -> Manifold:
+    """A groove along the pull in the middle of a side wall: wires lie in it from the motor to the outside."""
+    axis, sign = wires
+    width, depth = _WIRES
+    spot, sides = at.copy(), [0.0, 0.0]
+    spot[axis] += sign * (across[axis] + depth) / 2
+    sides[axis], sides[1 - axis] = depth, min(width, across[1 - axis])
+    return _box(spot, sides[0], sides[1], deep, far)
 
 
 def _skin(at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Manifold:
@@ -157,15 +244,15 @@ def _holds(part: Manifold, at: np.ndarray) -> bool:
 
 
 def clashes(pockets: tuple[Pocket, ...]) -> list[str]:
-    """Sentences for pockets that run into each other."""
+    """Sentences for winches that would need the same place; pockets round them may meet."""
     found = []
     for place, one in enumerate(pockets):
         for other in pockets[place + 1 :]:
-            shared = float((one.core ^ other.core).volume())
-            if shared > _SHARED * min(float(one.core.volume()), float(other.core.volume())):
+            shared = float((one.unit ^ other.unit).volume())
+            if shared > _SHARED * min(float(one.unit.volume()), float(other.unit.volume())):
                 found.append(
-                    f'the pockets of winches "{one.winch}" and "{other.winch}" run into each other by '
-                    f"{shared / 1e3:.1f} cm^3; move the winches apart, or choose smaller motors"
+                    f'winches "{one.winch}" and "{other.winch}" run into each other in the body by {shared / 1e3:.1f} '
+                    "cm^3; move the winches apart, or choose smaller motors"
                 )
     return found
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,11 +12,17 @@ from manifold3d import Manifold
 from mould_robots import blob_body, foam_robot, slab_body
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.checks.mould_checks import mould_checks
+from hydrostat.fabrication.foam import MANY_PIECES, foam_work
+from hydrostat.fabrication.kit_options import KitOptions, Method
+from hydrostat.fabrication.moulds import mould as mould_module
+from hydrostat.fabrication.moulds.body_solid import body_solid
+from hydrostat.fabrication.moulds.closing import Closing, make_closing
 from hydrostat.fabrication.moulds.halves import Halves
 from hydrostat.fabrication.moulds.mould import TOP_RIM, Mould, make_mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.mould_words import mould_problems
-from hydrostat.fabrication.moulds.openings import make_sprue
+from hydrostat.fabrication.moulds.openings import Sprue, make_sprue
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.robot import MATERIALS, Pin, Robot, gallery_folder, load_robot
@@ -58,8 +65,61 @@ def test_account_is_exact_on_tetrahedra(blob: Mould) -> None:
     assert whole[2].solid.volume() == pytest.approx(volumes["upper"])
 
 
-def test_account_can_fail(blob: Mould) -> None:
-    assert abs(left_over(replace(blob, volumes=blob.volumes | {"vents": blob.volumes["vents"] + 10}))) > 1e-6
+def failed(robot: Robot, mould: Mould) -> list[str]:
+    """Beginnings of the checks that do not hold."""
+    return [check.what[:8] for check in mould_checks(robot, mould) if not check.passed]
+
+
+def test_checks_of_a_mould_hold_and_fail_on_geometry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keys that fill the cavity, a sprue beside the mould, one that ends in the wall, a half with a hole too many."""
+    robot = foam_robot(slab_body())
+    pull = find_pull(body_solid(robot.body))
+    monkeypatch.setattr(mould_module, "find_pull", lambda solid: pull)
+    for kind in MouldKind:
+        assert failed(robot, make_mould(robot, MouldOptions(kind=kind, bed=BIG))) == []
+    whole = make_mould(robot, MouldOptions(bed=BIG))
+
+    def with_cube(*args: Any, **options: Any) -> Closing:
+        return replace(make_closing(*args, **options), bumps=Manifold.cube((40, 40, 40), True))
+
+    with monkeypatch.context() as swapped:
+        swapped.setattr(mould_module, "make_closing", with_cube)
+        assert failed(robot, make_mould(robot, MouldOptions(bed=BIG))) == ["pieces, "]
+    for away in ((500, 0, 0), (0, 15, 0)):
+
+        def moved(*args: Any, away: tuple[int, int, int] = away, **options: Any) -> Sprue | None:
+            sprue = make_sprue(*args, **options)
+            return sprue and replace(sprue, solid=sprue.solid.translate(away))
+
+        with monkeypatch.context() as swapped:
+            swapped.setattr(mould_module, "make_sprue", moved)
+            assert failed(robot, make_mould(robot, MouldOptions(bed=BIG))) == ["sprue, c"]
+    printed = (replace(whole.printed[0], solid=whole.printed[0].solid - Manifold.cube((2, 2, 2))), *whole.printed[1:])
+    assert failed(robot, replace(whole, printed=printed)) == ["pieces, "]
+
+
+def test_check_of_a_silicone_mould_fails_on_its_positive() -> None:
+    robot = foam_robot(slab_body())
+    mould = make_mould(robot, MouldOptions(kind=MouldKind.SILICONE, bed=BIG))
+    assert not any("halves" in check.what for check in mould_checks(robot, mould))
+    assert failed(robot, replace(mould, printed=mould.printed[1:])) == ["pieces o"]
+
+
+def test_much_printing_is_a_warning() -> None:
+    """Oracle: pieces and mass, counted here."""
+    robot = foam_robot(slab_body((1.2, 0.9, 0.03)))
+    work = foam_work(robot, KitOptions(method=Method.FOAM), ())
+    kilograms = 1e-3 * sum(part.count * part.mass for part in work.printed)
+    count = sum(part.count for part in work.printed)
+    assert count > MANY_PIECES
+    assert f"{count} pieces and {kilograms:.1f} kg" in " ".join(work.warnings)
+    assert foam_work(foam_robot(slab_body()), KitOptions(method=Method.FOAM), ()).warnings == ()
+
+
+def test_material_that_is_not_poured_is_a_problem() -> None:
+    mould = make_mould(foam_robot(slab_body(material="polyester fibre")), MouldOptions(bed=BIG))
+    assert len(mould.problems) == 1
+    assert "another robot than was simulated" in mould.problems[0]
 
 
 def test_slab_has_the_mould_of_the_closed_form(slab: Mould) -> None:
@@ -215,7 +275,7 @@ def cube_pull() -> Pull:
 def problems_of(share: float, material: str, kind: MouldKind) -> tuple[str, ...]:
     cube = Manifold.cube((50, 50, 50), True)
     pull = replace(cube_pull(), share=share)
-    halves = Halves(upper=cube, lower=cube, cavity=cube, volumes={})
+    halves = Halves(upper=cube, lower=cube, cavity=cube, poured=cube, volumes={})
     sprue = make_sprue(cube, top=45, room=(-40, 40), deep=33)
     return mould_problems(pull, MATERIALS[material], sprue, (), (), MouldOptions(kind=kind), halves)
 
@@ -230,7 +290,7 @@ def test_tight_grip_is_a_problem_of_a_rigid_mould_only() -> None:
 def test_half_in_two_and_no_sprue_are_problems() -> None:
     cube = Manifold.cube((50, 50, 50), True)
     two = cube + cube.translate((100, 0, 0))
-    halves = Halves(upper=two, lower=cube, cavity=cube, volumes={})
+    halves = Halves(upper=two, lower=cube, cavity=cube, poured=cube, volumes={})
     found = mould_problems(cube_pull(), MATERIALS["flexfoam-it x"], None, (), (), MouldOptions(), halves)
     assert [sentence[:20] for sentence in found] == ["the parting plane do", "the upper half of th"]
 
