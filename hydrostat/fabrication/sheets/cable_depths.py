@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hydrostat.fabrication.lists.stitching import SKIN
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 
-_OUTSIDE, _NEEDLE, _LAID = "outside the body", "long needle", "tube laid before casting"
+_NEEDLE, _LAID = "long needle", "tube laid before casting"
 _IN_TUBE = ("in its tube", "end of its tube")
 
 
