@@ -10,7 +10,7 @@ from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.assembly import Assembly
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Robot
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -50,11 +50,6 @@ class SheetInput:
     checks: tuple[Check, ...] = ()
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-
-    @property
-    def outside(self) -> bool:
-        """Whether motors stand outside the body."""
-        return any(winch.mount is Mount.WORLD for winch in self.robot.winches)
 
     @property
     def print_hours(self) -> float:
