@@ -15,6 +15,7 @@ from plush_robots import crossed, drawn_body, plush_robot
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Kit, KitOptions, Method, Paper, UnbuildableError, build_kit, export_kit
+from hydrostat.fabrication.sheets.legible import typeset
 from hydrostat.robot import MATERIALS, robot_hash
 from hydrostat.robot.gallery import gallery_folder
 
@@ -81,7 +82,7 @@ def test_every_check_stands_on_the_sheet(kit):
     """Oracle: pypdf's text of the pages."""
     words = words_of(kit.files["assembly_sheet.pdf"]).replace(" ", "")
     for check in kit.checks:
-        assert check.measured.replace(" ", "")[:40] in words, check.what
+        assert typeset(check.measured).replace(" ", "")[:40] in words, check.what
 
 
 def test_a_robot_that_cannot_be_built_is_refused_with_all_reasons(tmp_path):
