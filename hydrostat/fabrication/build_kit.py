@@ -214,6 +214,8 @@ def _list_input(
         stitches=work.stitches,
         cloth=work.cloth,
         foam=work.foam,
+        bolts=work.mould.bolts if work.mould else 0,
+        dowels=work.mould.dowels if work.mould else 0,
         stopper_hold=rigid.stopper.hold if rigid.stopper else None,
     )
 
