@@ -93,7 +93,7 @@ def _bill_notes(given: ListInput, items: tuple[Item, ...]) -> tuple[str, ...]:
     """What a mould costs against what comes out of it (N2)."""
     if given.foam is None:
         return ()
-    core = sum(item.cost for item in items if item.what.startswith("foam"))
+    core = sum(item.cost for item in items if ", part " in item.what)
     return (
         f"The mould costs about {cost_of(items, 'mould'):.0f} USD, each core of foam {core:.2f} USD. {_MOULD_COST}.",
     )

@@ -33,6 +33,8 @@ DOWEL = 15.0
 """Length of a dowel [mm]: a little less than the holes in both pieces are deep."""
 
 _BODY, _CABLES, _WINCHES, _CONTROL, _MOULD = "body", "cables", "winches", "control", "mould"
+_SILICONES = ("ecoflex", "dragon skin")
+"""Beginnings of names of materials that are poured and are no foam."""
 
 _NEEDLES = Item(
     group=_BODY,
@@ -99,15 +101,16 @@ def _plush(given: ListInput, cloth: Cloth) -> list[Item]:
 
 def _foam(given: ListInput, foam: FoamNeeds) -> list[Item]:
     kind = foam.material or given.robot.body.material.name or "as the robot file says"
+    what = "silicone" if kind.startswith(_SILICONES) else "foam"
     parts = (("A", foam.part_a), ("B", foam.part_b))
     return [
         *(
             Item(
                 group=_BODY,
-                what=f"foam, part {letter}",
+                what=f"{what}, part {letter}",
                 specification=kind,
                 quantity=1e-3 * mass,
-                price=PRICES["foam"],
+                price=PRICES[what],
                 mass=mass,
             )
             for letter, mass in parts

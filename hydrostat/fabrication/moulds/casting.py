@@ -16,6 +16,9 @@ SILICONE_PRICE = 40.0
 _EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")
 """Beginnings of names of castable materials that come as two parts."""
 
+_PLATINUM = ("ecoflex", "dragon skin")
+"""Of these, those that are cured by platinum."""
+
 THESIS = "thesis on cable-driven soft robots (R52, N2, N5)"
 
 
@@ -98,7 +101,17 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
         release=_release(foams),
         notes=_notes(foams, silicone=bool(pours)),
     )
-    return casting, problems
+    return casting, (*problems, *_poisoned(cast, silicone=bool(pours)))
+
+
+def _poisoned(material: Material, *, silicone: bool) -> tuple[str, ...]:
+    """Whether the mould keeps the body from curing."""
+    if not (silicone and material.name.startswith(_PLATINUM)):
+        return ()
+    return (
+        f"{material.name} is cured by platinum and does not cure against Mold Max 30, which is cured by tin (its maker "
+        "Smooth-On, FAQ 129: neither cures against the other): print the mould (--mould printed)",
+    )
 
 
 def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
@@ -135,7 +148,8 @@ def _ratio_in_words(material: Material) -> str:
 def _times(material: Material, *, silicone: bool) -> tuple[tuple[str, str], ...]:
     cures = {
         "flexfoam-it x": f"2 h at 25 C ({THESIS})",
-        "ecoflex 00-30": f"4 h at 25 C, then 2 h at 80 C and 1 h at 100 C ({THESIS})",
+        "ecoflex 00-30": f"4 h at 25 C in the mould; out of it, as PLA softens near 60 C, 2 h at 80 C and 1 h at 100 C "
+        f"({THESIS})",
     }
     body = (f"{material.name} cures", cures.get(material.name, "as the tin says; no source was found"))
     if not silicone:

@@ -22,12 +22,13 @@ _OVER: _Lying = (180.0, 0.0, 0.0)
 def mould_prints(
     halves: Halves, positive: Positive, frames: Frames | None, block: Block, bed: tuple[float, float, float]
 ) -> tuple[tuple[Printed, ...], int, float]:
-    """All pieces, how many dowels join them, and what cutting takes [mm^3].
+    """All pieces, how many dowels join those of the mould, and what cutting takes [mm^3].
 
-    It is taken from the halves of the mould, or of the positive where the mould is of silicone.
+    Of a printed mould the positive is spare: its dowels do not count. What cutting takes is taken from the halves of
+    the mould, or of the positive where the mould is of silicone.
     """
     printed: list[Printed] = []
-    dowels, holes = positive.dowels, positive.lost if frames else 0.0
+    dowels, holes = (positive.dowels, positive.lost) if frames else (0, 0.0)
     if frames is None:
         for name, title, solid, lying in (
             ("mould_lower", "lower half", halves.lower, _UP),
@@ -52,7 +53,7 @@ def mould_prints(
         pieces = _fitted(solid, bed)
         framing = name.startswith("frame")
         printed += _printed(name, title, pieces.solids, lying, _FRAME if framing else _POSITIVE)
-        dowels += pieces.dowels
+        dowels += pieces.dowels if frames else 0
         holes += pieces.lost if frames and not framing else 0.0
     if frames:
         printed.append(Printed(name="key_dome", title="key dome", solid=frames.dome, count=4, note=_DOME))

@@ -46,3 +46,11 @@ def test_what_is_not_poured_is_a_problem(material: Material) -> None:
     assert casting.body.material == "flexfoam-it x"
     assert "simulate again" in problem
     assert f"{material.density:.0f} kg/m^3" in problem
+
+
+def test_platinum_silicone_does_not_cure_in_a_mould_that_tin_cured():
+    """Oracle: Smooth-On, FAQ 129."""
+    cast, foam = MATERIALS["ecoflex 00-30"], MATERIALS["flexfoam-it x"]
+    assert "does not cure against Mold Max 30" in make_casting(cast, 1e5, pours=(1e5, 1e5))[1][0]
+    assert make_casting(cast, 1e5, pours=())[1] == ()
+    assert make_casting(foam, 1e5, pours=(1e5, 1e5))[1] == ()
