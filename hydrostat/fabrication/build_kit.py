@@ -284,7 +284,7 @@ def _summary(plan: _Plan) -> tuple[str, ...]:
     used, packs = plan.lists.cost
     return (
         *plan.work.summary,
-        f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}",
+        f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",
         f"To print: {counted(count, 'piece')}, about {mass:.0f} g",
         f"To buy: about {used:.0f} USD of what is used up, {packs:.0f} USD in whole packs",
     )

@@ -43,6 +43,10 @@ _SOFT = 0.008
 """Over what share of the picture the light on a body is blurred."""
 
 
+_MANY = 6
+"""More winches than this have smaller marks."""
+
+
 def winch_mark(index: int) -> str:
     """By which a winch is known on the sheet: W1, W2, ... as single letters are notches of the pattern."""
     return f"W{index + 1}"
@@ -196,14 +200,15 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run], stands: 
 def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) -> None:
     """A mark on each winch; where one is on another already, beside it, led to its place by a line."""
     taken: list[Spot] = []
+    size = 9.0 if len(stands) <= _MANY else 6.5
     for index, stand in enumerate(stands):
         letter = winch_mark(index)
-        radius, at = balloon_radius(letter), stand
+        radius, at = balloon_radius(letter, size), stand
         if any(np.hypot(*np.subtract(stand, other)) < 2 * radius for other in taken):
             at = labels.beside(stand, (2 * radius, 2 * radius), gap=0.8) or stand
             canvas.line([[stand, at]], width=MIDDLE)
             canvas.disc(stand, 0.7, grey=0.0)
-        canvas.balloon(at, letter, dark=True)
+        canvas.balloon(at, letter, dark=True, size=size)
         labels.take_box(box_round(at, radius))
         taken.append(at)
 
