@@ -7,6 +7,7 @@ errors word by word.
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from plot.designs import plain_network
 
 import hydrostat as hs
 from hydrostat.design import Alternative, Constraints, FibreKind, Network, RouteOptions, TreeOptions, Zone
+from hydrostat.fabrication.kit_folder import write_files
 from hydrostat.robot import Pose, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -150,15 +152,18 @@ def test_an_earlier_design_is_replaced_and_what_else_lies_there_stays(
 ) -> None:
     out = tmp_path / "out"
     assert run("design", strip, "--out", out)[0] == 0
-    for name in ("notes.txt", "alternatives/mine/robot.toml", "robot/photo.png", "pattern/pattern.svg"):
+    sheet = {"assembly_sheet.pdf": b"of the earlier design"}
+    told = {"files": {name: {"sha256": sha256(content).hexdigest()} for name, content in sheet.items()}}
+    write_files({**sheet, "manifest.json": json.dumps(told).encode()}, out / "kit")
+    for name in ("notes.txt", "alternatives/mine/robot.toml", "robot/photo.png", "kit/notes.txt"):
         (out / name).parent.mkdir(exist_ok=True)
         (out / name).write_text("mine")
     search.answer = replace(plain_network(), alternatives=plain_network().alternatives[1:])
     assert run("design", strip, "--out", out)[0] == 0
-    kept = {"notes.txt", "alternatives/mine/robot.toml", "robot/photo.png"}
+    kept = {"notes.txt", "alternatives/mine/robot.toml", "robot/photo.png", "kit/notes.txt"}
     assert {name for name in files_in(out) if (out / name).read_bytes() == b"mine"} == kept
     assert sorted(folder.name for folder in (out / "alternatives").iterdir()) == ["01_1_winches_1_cables", "mine"]
-    assert not (out / "pattern" / "pattern.svg").exists()
+    assert [path.name for path in (out / "kit").iterdir()] == ["notes.txt"]
     assert not list(tmp_path.rglob("*.part"))
 
 
