@@ -200,7 +200,7 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run], stands: 
 def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) -> None:
     """A mark on each winch; where one is on another already, beside it, led to its place by a line."""
     taken: list[Spot] = []
-    size = 9.0 if len(stands) <= _MANY else 6.5
+    size = 9.0 if len(stands) <= _MANY else 7.5
     for index, stand in enumerate(stands):
         letter = winch_mark(index)
         radius, at = balloon_radius(letter, size), stand
