@@ -1,0 +1,1 @@
+"""Winches and cables found while one looks on."""

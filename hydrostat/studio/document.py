@@ -1,0 +1,192 @@
+"""`Document`: the open robot, with all that was done to it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from threading import RLock
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.records.timeline import Timeline
+from hydrostat.studio.records.wishes import Wishes
+from hydrostat.studio.records.work import Work
+
+MOST_STEPS = 500
+"""So many changes can be undone; older ones are forgotten."""
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """A state of the work, with what led to it.
+
+    Attributes:
+        label: what was done, such as "move marker tip".
+        work: after that.
+        merge: changes in a row with the same word are one, such as those of one drag; "": a change of its own.
+    """
+
+    label: str
+    work: Work
+    merge: str = ""
+
+    @cached_property
+    def simulation(self) -> Simulation:
+        """Physics of the robot as it was then."""
+        return Simulation(self.work.robot)
+
+
+class Document:
+    """The open robot; every change of it can be undone and done again.
+
+    It can be changed from any thread: each change replaces one frozen `Work` by another.
+
+    Attributes:
+        bell: rung after each change.
+        folder: where the robot is saved; None: nowhere yet.
+        serial: counts the changes, undoing included; the same number means the same work.
+    """
+
+    def __init__(self, bell: Bell) -> None:
+        self.bell = bell
+        self.folder: Path | None = None
+        self.serial = 0
+        self._lock = RLock()
+        self._past: list[Change] = []
+        self._future: list[Change] = []
+        self._saved: Work | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is a robot."""
+        return bool(self._past)
+
+    @property
+    def work(self) -> Work:
+        """What is worked on.
+
+        Raises:
+            InputError: no robot is open.
+        """
+        return self._now.work
+
+    @property
+    def robot(self) -> Robot:
+        """The robot as it is now.
+
+        Raises:
+            InputError: no robot is open.
+        """
+        return self.work.robot
+
+    @property
+    def simulation(self) -> Simulation:
+        """Physics of the robot as it is now; made when first asked for, which can take a while.
+
+        Raises:
+            InputError: no robot is open.
+        """
+        return self._now.simulation
+
+    @property
+    def saved(self) -> bool:
+        """Whether the file has all that was done."""
+        return not self._past or self._past[-1].work is self._saved
+
+    @property
+    def undo_label(self) -> str:
+        """What would be undone; "" if nothing can be."""
+        return self._past[-1].label if len(self._past) > 1 else ""
+
+    @property
+    def redo_label(self) -> str:
+        """What would be done again; "" if nothing can be."""
+        return self._future[-1].label if self._future else ""
+
+    def open(self, work: Work, *, folder: Path | None = None, saved: bool = True) -> None:
+        """Begin with a robot; what was open before is left as it was."""
+        with self._lock:
+            self._past, self._future = [Change("open", work)], []
+            self.folder, self._saved = folder, work if saved else None
+            self.serial += 1
+        self.bell.ring(Topic.ROBOT, Topic.STAGE, Topic.SHAPE, Topic.THINGS)
+
+    def change(
+        self,
+        label: str,
+        *,
+        robot: Robot | None = None,
+        timeline: Timeline | None = None,
+        wishes: Wishes | None = None,
+        merge: str = "",
+    ) -> None:
+        """Replace parts of the work.
+
+        Args:
+            label: what was done, as a person would say it.
+            robot: in place of the one that was; as are `timeline` and `wishes`.
+            timeline: keyframes.
+            wishes: for a design.
+            merge: a change in a row with the same word replaces the one before; see `Change`.
+
+        Raises:
+            InputError: no robot is open.
+        """
+        with self._lock:
+            given = {"robot": robot, "timeline": timeline, "wishes": wishes}
+            parts = {key: value for key, value in given.items() if value is not None}
+            change = Change(label, replace(self.work, **parts), merge)
+            if robot is None:
+                _share_simulation(self._now, change)
+            if merge and len(self._past) > 1 and self._past[-1].merge == merge:
+                self._past.pop()
+            self._past.append(change)
+            del self._past[1 : max(1, len(self._past) - MOST_STEPS)]
+            self._future = []
+            self.serial += 1
+        self.bell.ring(Topic.ROBOT, Topic.THINGS)
+
+    def seal(self) -> None:
+        """A drag is over: the next change is one of its own."""
+        with self._lock:
+            if self._past and self._past[-1].merge:
+                last = self._past[-1]
+                self._past[-1] = Change(last.label, last.work)
+                _share_simulation(last, self._past[-1])
+
+    def undo(self) -> bool:
+        """Take back the last change; whether there was one."""
+        return self._move(self._past, self._future, least=2)
+
+    def redo(self) -> bool:
+        """Do again what was undone last; whether there was something."""
+        return self._move(self._future, self._past, least=1)
+
+    def mark_saved(self, folder: Path) -> None:
+        """The work is saved in this folder."""
+        with self._lock:
+            self.folder, self._saved = folder, self.work
+        self.bell.ring(Topic.ROBOT)
+
+    def _move(self, source: list[Change], goal: list[Change], *, least: int) -> bool:
+        with self._lock:
+            if len(source) < least:
+                return False
+            goal.append(source.pop())
+            self.serial += 1
+        self.bell.ring(Topic.ROBOT, Topic.SHAPE, Topic.THINGS)
+        return True
+
+    @property
+    def _now(self) -> Change:
+        past = self._past
+        if not past:
+            raise InputError("no robot is open; choose one of the gallery, open a folder or bring a drawing")
+        return past[-1]
+
+
+def _share_simulation(before: Change, after: Change) -> None:
+    """The same robot has the same physics."""
+    if "simulation" in before.__dict__:
+        after.__dict__["simulation"] = before.__dict__["simulation"]

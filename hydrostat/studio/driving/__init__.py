@@ -1,0 +1,1 @@
+"""Contractions by hand and in time (R58)."""

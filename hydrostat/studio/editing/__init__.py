@@ -1,0 +1,1 @@
+"""Pins, markers, winches and cables placed and moved by hand."""

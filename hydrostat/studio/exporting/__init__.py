@@ -1,0 +1,1 @@
+"""Files to take home: the kit, the report, pictures."""

@@ -1,0 +1,1 @@
+"""The face of the studio: its pages, panels and the stream to the screen."""

@@ -1,0 +1,63 @@
+"""What a screen may say to the studio: small JSON messages, checked before anything is done with them."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from hydrostat.errors import InputError
+
+Coordinate = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False)]
+Place = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
+
+LONGEST = 4096
+"""No message has more characters."""
+
+
+class _Message(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class Pointer(_Message):
+    """The pointer, in metres of the body.
+
+    A "grab" begins what "drag"s go on with and a "release" ends; a "click" is both at one place. `stamp` comes back with
+    the first frame that has the answer.
+    """
+
+    kind: Literal["grab", "drag", "click"]
+    key: Annotated[str, Field(max_length=200)] = ""
+    rest: Place | None = None
+    world: Place
+    shift: bool = False
+    stamp: Annotated[float, Field(ge=0, le=1e15)] = 0.0
+
+
+class Release(_Message):
+    """The pointer has let go."""
+
+    kind: Literal["release"]
+
+
+class Seen(_Message):
+    """A frame or scene is on the screen: the next may come."""
+
+    kind: Literal["seen"]
+
+
+Message = Pointer | Release | Seen
+_ADAPTER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
+
+
+def read_message(text: str) -> Message:
+    """A message from its text.
+
+    Raises:
+        InputError: it is too long, no JSON, of no known kind, or has a wrong value.
+    """
+    if len(text) > LONGEST:
+        raise InputError(f"a message may have {LONGEST} characters, not {len(text)}")
+    try:
+        return _ADAPTER.validate_json(text)
+    except (ValidationError, RecursionError) as error:
+        what = error.errors()[0]["msg"] if isinstance(error, ValidationError) else "nested too deep"
+        raise InputError(f"a message is not understood: {what}") from None

@@ -1,0 +1,1 @@
+"""Poses by hand: as if full of muscles, or by the robot's own cables."""

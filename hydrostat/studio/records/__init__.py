@@ -1,0 +1,1 @@
+"""What the studio keeps of one robot beside the robot itself: plain frozen records."""

@@ -1,0 +1,74 @@
+"""`Stage`: the contract of each part of the studio that a person works in."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from hydrostat.robot import Point
+from hydrostat.studio.view.shape import Shape
+from hydrostat.studio.view.things import Thing
+
+
+class StageName(StrEnum):
+    """The stages, in the order of work."""
+
+    START = "start"
+    EDIT = "edit"
+    POSE = "pose"
+    DESIGN = "design"
+    DRIVE = "drive"
+    EXPORT = "export"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hit:
+    """What is under the pointer.
+
+    Attributes:
+        key: of a thing, such as "marker:tip"; "body" for the body, "" for nothing.
+        rest: the place of the body under the pointer, in the rest shape [m]; None beside the body.
+        world: where the pointer is [m]; in space on the thing that was hit, or in a plane through what is dragged.
+        shift: whether the shift key is down.
+    """
+
+    key: str = ""
+    rest: Point | None = None
+    world: Point
+    shift: bool = False
+
+
+class Stage(ABC):
+    """What one stage does with the pointer, and what it shows. It knows no network and no screen.
+
+    All but `step` return at once. `step` is called by a thread of its own, again and again while it returns True.
+    """
+
+    @abstractmethod
+    def shape(self) -> Shape:
+        """Where the body is now."""
+
+    @abstractmethod
+    def things(self) -> Sequence[Thing]:
+        """What is shown beside the body, in an order that does not change while a person drags."""
+
+    def grab(self, hit: Hit) -> bool:
+        """Take hold of what is under the pointer; False: nothing to hold, the view may be turned instead."""
+        return False
+
+    def drag(self, hit: Hit) -> None:
+        """The pointer has moved with what it holds."""
+
+    def release(self) -> None:
+        """The pointer has let go."""
+
+    def click(self, hit: Hit) -> None:
+        """The pointer was pressed and let go at the same place."""
+
+    def key(self, name: str) -> bool:
+        """A key such as "delete", "escape", "space", "r" or "g"; whether it meant something here."""
+        return False
+
+    def step(self, now: float) -> bool:
+        """A bit of work, at a time [s] of a clock that only runs forward; whether there is more to do."""
+        return False

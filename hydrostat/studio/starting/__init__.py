@@ -1,0 +1,1 @@
+"""How work begins: the gallery, a folder, an upload, a drawing by hand, what a crash left."""

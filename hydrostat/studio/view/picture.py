@@ -1,0 +1,177 @@
+"""`Picture`: a body and things, made ready to be shown again and again while only places change."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.robot import Robot
+from hydrostat.studio.view.packet import packet
+from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Line, Thing
+
+Table = Float[np.ndarray, "rows 3"]
+
+
+class Picture:
+    """What stays the same from frame to frame: faces, styles, and how points are stuck to the body.
+
+    A *scene* is sent once, a *frame* for each new place. Every point has three coordinates; of a flat body the last is 0.
+
+    The head of a scene: kind "scene", serial, name, dim, things (a list; each with kind, its style, and "first" and
+    "count" of its points in the frame's `points`). Arrays: `rest` and `faces` of the shown surface; `rim`, edges of a
+    flat body; for each ghost `ghost:NAME` and for each cloud `cloud:NAME`.
+
+    The head of a frame: kind "frame", scene (the serial of the scene it belongs to), and what the session adds. Arrays:
+    `nodes` of the surface, `points` of all things, `loads` of the lines, `values` of the nodes (0 to 1) if coloured.
+    """
+
+    def __init__(self, robot: Robot, things: Sequence[Thing], serial: int) -> None:
+        """The picture of a robot with some things.
+
+        Args:
+            robot: whose body is shown.
+            things: beside it.
+            serial: names the scene.
+        """
+        self.robot, self.serial = robot, serial
+        self.signature = _signature(robot, things)
+        self._shown = _shown_nodes(robot)
+        self._stuck, self._rest = _stuck(things, robot.body.mesh.dim)
+        self._things = tuple(things)
+
+    def fits(self, robot: Robot, things: Sequence[Thing]) -> bool:
+        """Whether these need no new scene: only places in the world and loads may differ."""
+        return robot.body.mesh is self.robot.body.mesh and _signature(robot, things) == self.signature
+
+    def scene(self) -> bytes:
+        """All that stays the same."""
+        mesh = self.robot.body.mesh
+        renumber = np.zeros(len(mesh.nodes), dtype=np.uint32)
+        renumber[self._shown] = np.arange(len(self._shown), dtype=np.uint32)
+        faces = mesh.elements if mesh.dim == 2 else mesh.boundary
+        arrays = {"rest": _in_space(mesh.nodes[self._shown]), "faces": renumber[faces]}
+        if mesh.dim == 2:
+            arrays["rim"] = renumber[mesh.boundary]
+        for thing in self._things:
+            if isinstance(thing, Ghost):
+                arrays[f"ghost:{thing.name}"] = _in_space(thing.nodes[self._shown])
+            elif isinstance(thing, Cloud):
+                arrays[f"cloud:{thing.name}"] = _in_space(thing.points)
+        head = {
+            "kind": "scene",
+            "serial": self.serial,
+            "name": self.robot.name,
+            "dim": mesh.dim,
+            "things": _styles(self._things),
+        }
+        return packet(head, arrays)
+
+    def frame(
+        self, nodes: Nodes, things: Sequence[Thing], head: dict[str, Any], *, values: Vector | None = None
+    ) -> bytes:
+        """All that changes.
+
+        Args:
+            nodes: of the body [m].
+            things: as those of the scene, but for places in the world and loads.
+            head: words to go along.
+            values: of each node, 0 to 1, to be coloured by; none if left out.
+        """
+        points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
+        if self._stuck.any():
+            points[self._stuck] = self._anchors.positions(nodes)
+        loads = np.array([thing.load for thing in things if isinstance(thing, Line)], dtype=np.float32)
+        arrays = {"nodes": _in_space(nodes[self._shown]), "points": _in_space(points), "loads": loads}
+        if values is not None:
+            arrays["values"] = values[self._shown].astype(np.float32)
+        return packet({"kind": "frame", "scene": self.serial, **head}, arrays)
+
+    @cached_property
+    def _anchors(self) -> Anchors:
+        """The points that are stuck to the body."""
+        return locate(self.robot.body.mesh, self._rest[self._stuck])
+
+
+def _shown_nodes(robot: Robot) -> np.ndarray:
+    """Nodes of the surface; of a flat body all."""
+    mesh = robot.body.mesh
+    return np.arange(len(mesh.nodes)) if mesh.dim == 2 else np.unique(mesh.boundary)
+
+
+def _in_space(points: Points) -> Table:
+    table = np.zeros((len(points), 3), dtype=np.float32)
+    table[:, : points.shape[1]] = points
+    return table
+
+
+def _points(thing: Thing) -> Points:
+    """The points of a thing that are sent with every frame."""
+    if isinstance(thing, Dot):
+        return np.array([thing.at], dtype=float)
+    if isinstance(thing, Line):
+        return np.array(thing.points, dtype=float)
+    if isinstance(thing, Area):
+        return np.array(thing.outline or (thing.at,), dtype=float)
+    return np.zeros((0, (thing.nodes if isinstance(thing, Ghost) else thing.points).shape[1]))
+
+
+def _stuck(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
+    """Which of all points are stuck to the body, and all points as given."""
+    flags, places = [np.zeros(0, dtype=bool)], [np.zeros((0, dim))]
+    for thing in things:
+        points = _points(thing)
+        stuck = np.ones(len(points), dtype=bool)
+        if isinstance(thing, Dot):
+            stuck[:] = thing.stuck
+        elif isinstance(thing, Line):
+            stuck[: len(points) if thing.loose < 0 else thing.loose] = False
+        flags.append(stuck)
+        places.append(points)
+    return np.concatenate(flags), np.concatenate(places)
+
+
+def _styles(things: Sequence[Thing]) -> list[dict[str, Any]]:
+    """How things look, and which points are theirs."""
+    styles, first = [], 0
+    for thing in things:
+        count = len(_points(thing))
+        style = {"kind": type(thing).__name__.lower(), "first": first, "count": count, **_style(thing)}
+        styles.append(style)
+        first += count
+    return styles
+
+
+def _style(thing: Thing) -> dict[str, Any]:
+    if isinstance(thing, Dot):
+        return {
+            "key": thing.key, "look": str(thing.look), "colour": thing.colour, "label": thing.label,
+            "chosen": thing.chosen, "radius": thing.radius,
+        }  # fmt: skip
+    if isinstance(thing, Line):
+        return {"key": thing.key, "stroke": str(thing.stroke), "colour": thing.colour, "chosen": thing.chosen}
+    if isinstance(thing, Area):
+        return {
+            "key": thing.key, "colour": thing.colour, "radius": thing.radius, "label": thing.label,
+            "chosen": thing.chosen,
+        }  # fmt: skip
+    return {"name": thing.name, "colour": thing.colour}
+
+
+def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
+    """What a scene is made of: if it is the same, so is the scene."""
+    marks: list[Any] = [robot.name]
+    for thing in things:
+        if isinstance(thing, Dot):
+            marks.append((*_style(thing).values(), thing.at if thing.stuck else None))
+        elif isinstance(thing, Line):
+            stuck = thing.points[thing.loose :] if thing.loose >= 0 else len(thing.points)
+            marks.append((*_style(thing).values(), thing.loose, stuck))
+        elif isinstance(thing, Area):
+            marks.append((*_style(thing).values(), thing.at, thing.outline))
+        else:
+            marks.append((thing.name, thing.colour, id(thing.nodes if isinstance(thing, Ghost) else thing.points)))
+    return tuple(marks)

@@ -1,0 +1,116 @@
+"""`robot_things`: pins, winches, cables and markers of a robot as dots and lines."""
+
+from collections.abc import Collection
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.plot.palette import INK, winch_colours
+from hydrostat.robot import Cable, Mount, Point, Robot
+from hydrostat.studio.view.things import Dot, Line, Look, Stroke, Thing
+
+MARKER = "#2b2833"
+PIN = "#5f5a68"
+
+
+def robot_things(
+    robot: Robot,
+    *,
+    tensions: Vector | None = None,
+    scale: float = 10.0,
+    chosen: Collection[str] = (),
+    vias: bool = False,
+) -> list[Thing]:
+    """What a robot has, in the order pins, cables, winches, markers.
+
+    Keys are "pin:0", "cable:0", "via:0:2" (cable and point), "winch:left" and "marker:tip".
+
+    Args:
+        robot: to show.
+        tensions: of each cable [N]; none if left out.
+        scale: tension that is drawn as the largest [N].
+        chosen: keys that are selected.
+        vias: whether each point of a cable is a dot that can be taken hold of; else only its stopper is shown.
+    """
+    colours = winch_colours(robot)
+    things: list[Thing] = []
+    for index, pin in enumerate(robot.pins):
+        middle = pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())
+        key = f"pin:{index}"
+        things.append(Dot(key=key, at=middle, look=Look.PIN, colour=PIN, chosen=key in chosen, radius=pin.radius))
+    loads = np.zeros(len(robot.cables)) if tensions is None else np.clip(tensions / scale, 0.0, 1.0)
+    for index, cable in enumerate(robot.cables):
+        things += _cable(robot, index, cable, colours[cable.winch], float(loads[index]), chosen)
+    for index, cable in enumerate(robot.cables):
+        things += _vias(index, cable, colours[cable.winch], chosen, every=vias)
+    for winch in robot.winches:
+        key = f"winch:{winch.name}"
+        things.append(
+            Dot(
+                key=key,
+                at=winch.at,
+                look=Look.WINCH,
+                colour=colours[winch.name],
+                label=winch.name,
+                stuck=winch.mount is Mount.BODY,
+                chosen=key in chosen,
+            )
+        )
+    for marker in robot.markers:
+        key = f"marker:{marker.name}"
+        dot = Dot(key=key, at=marker.at, look=Look.MARKER, colour=MARKER, label=marker.name, chosen=key in chosen)
+        things.append(dot)
+    return things
+
+
+def target_things(
+    robot: Robot, targets: dict[str, Point], places: dict[str, Point], *, chosen: str = ""
+) -> list[Thing]:
+    """Rings where markers should go, with a line from where each is.
+
+    Args:
+        robot: whose markers they are.
+        targets: where markers should go [m]; their keys are "target:tip".
+        places: where they are [m].
+        chosen: key that is selected.
+    """
+    things: list[Thing] = []
+    for name, target in targets.items():
+        key = f"target:{name}"
+        if name in places:
+            miss = Line(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1)
+            things.append(miss)
+        things.append(
+            Dot(key=key, at=target, look=Look.TARGET, colour=INK, label="", stuck=False, chosen=key == chosen)
+        )
+    return things
+
+
+def _cable(robot: Robot, index: int, cable: Cable, colour: str, load: float, chosen: Collection[str]) -> list[Thing]:
+    """The run of a cable, its sheaths over it."""
+    key, loose = f"cable:{index}", int(robot.winch(cable.winch).mount is Mount.WORLD)
+    things: list[Thing] = [
+        Line(key=key, points=cable.points, stroke=Stroke.CABLE, colour=colour, loose=loose, load=load,
+             chosen=key in chosen)
+    ]  # fmt: skip
+    for start, end in cable.sheathed:
+        hidden = loose if start == 0 else 0
+        things.append(Line(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, colour=colour, loose=hidden))
+    return things
+
+
+def _vias(index: int, cable: Cable, colour: str, chosen: Collection[str], *, every: bool) -> list[Thing]:
+    """The points of a cable after its winch; the last is its stopper."""
+    last = len(cable.points) - 1
+    places = range(1, last + 1) if every else [last]
+    keys = {place: f"via:{index}:{place}" for place in places}
+    return [
+        Dot(
+            key=keys[place],
+            at=cable.points[place],
+            look=Look.STOPPER if place == last else Look.VIA,
+            colour=colour,
+            chosen=keys[place] in chosen,
+        )
+        for place in places
+    ]
