@@ -14,6 +14,7 @@ from hydrostat.cli.materials import materials
 from hydrostat.cli.new import new
 from hydrostat.cli.pose import pose
 from hydrostat.cli.simulate import simulate
+from hydrostat.cli.studio import studio
 from hydrostat.cli.trajectory import trajectory
 from hydrostat.errors import HydrostatError, InputError
 
@@ -27,7 +28,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (new, check, simulate, branches, pose, trajectory, animate, design, fabricate, materials):
+for command in (new, check, simulate, branches, pose, trajectory, animate, design, fabricate, studio, materials):
     app.command()(command)
 
 

@@ -1,1 +1,1 @@
-"""The studio: pose a robot by hand, watch it design itself, drive it, take it home. `Session` is all of it but the face."""
+"""The studio: pose a robot by hand, watch it design itself, drive it, take it home. Begin reading at `session.py`."""

@@ -52,6 +52,12 @@ class Stage(ABC):
     def things(self) -> Sequence[Thing]:
         """What is shown beside the body, in an order that does not change while a person drags."""
 
+    def enter(self) -> None:
+        """It is shown from now on."""
+
+    def leave(self) -> None:
+        """Another stage is shown."""
+
     def grab(self, hit: Hit) -> bool:
         """Take hold of what is under the pointer; False: nothing to hold, the view may be turned instead."""
         return False

@@ -20,7 +20,7 @@ class _Message(BaseModel):
 class Pointer(_Message):
     """The pointer, in metres of the body.
 
-    A "grab" begins what "drag"s go on with and a "release" ends; a "click" is both at one place. `stamp` comes back with
+    A "grab" begins what "drag"s go on with and a "release" ends; a "click" is both at one place. `stamp` returns with
     the first frame that has the answer.
     """
 

@@ -1,0 +1,40 @@
+"""`hydrostat studio`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrostat.errors import InputError
+
+
+def studio(
+    robot: Annotated[
+        Path | None, typer.Argument(metavar="[ROBOT]", help="Folder of a robot; the gallery is shown if left out.")
+    ] = None,
+    port: Annotated[int, typer.Option(metavar="PORT", help="To listen at; a free one if left out.")] = 0,
+    host: Annotated[
+        str, typer.Option(metavar="ADDRESS", help="To listen at; others than this machine need the printed token.")
+    ] = "127.0.0.1",
+    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
+) -> None:
+    """Open the studio in the browser: pose a robot by hand, watch it design itself, drive it, export it.
+
+    Example: hydrostat studio examples/starfish
+    """
+    try:
+        from hydrostat.studio.face.serve import serve
+    except ModuleNotFoundError as error:
+        if error.name != "nicegui":
+            raise
+        raise InputError('the studio needs the extra `studio`: pip install "hydrostat[studio]"') from None
+    from hydrostat.studio.session import Session
+
+    session = Session()
+    if robot is not None:
+        session.open_folder(robot)
+    serve(session, host=host, port=port, show=browser, announce=_announce)
+
+
+def _announce(address: str) -> None:
+    print(f"The studio is at {address}   (Ctrl-C ends it)", flush=True)

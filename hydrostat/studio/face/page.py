@@ -1,0 +1,113 @@
+"""`Page`: one browser window on a session."""
+
+from collections import defaultdict
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from nicegui import run, ui
+
+from hydrostat.errors import HydrostatError
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.viewport import Viewport
+from hydrostat.studio.session import Session, Tone
+from hydrostat.studio.stage import StageName
+
+HEARTBEAT = 0.1
+"""Panels follow the session within this time [s]."""
+
+COLOURS = {Tone.GOOD: "positive", Tone.PLAIN: "dark", Tone.BAD: "negative"}
+
+Refresh = Callable[[], Any]
+
+
+class Page:
+    """One browser window: its view, its panel, and what is to be drawn again when something changes.
+
+    Attributes:
+        session: that all windows share.
+        viewport: the view of the body.
+        panel: the column beside it, filled by the panel of the stage.
+        bottom: the strip below the view, likewise.
+        whole: in place of view and column, for the stage that needs all the room.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self._lasting: dict[Topic, list[Refresh]] = defaultdict(list)
+        self._passing: dict[Topic, list[Refresh]] = defaultdict(list)
+        self._rung: set[Topic] = set()
+        self._told = session.notes[-1].number if session.notes else 0
+        self._leave = session.bell.listen(self._rung.add)
+        self.viewport: Viewport
+        self.panel: ui.column
+        self.bottom: ui.column
+        self.whole: ui.column
+
+    def on(self, topic: Topic, refresh: Refresh, *, lasting: bool = False) -> None:
+        """Call something after a topic rang, and once now.
+
+        Args:
+            topic: that matters.
+            refresh: redraws what depends on it.
+            lasting: also when another stage is shown.
+        """
+        (self._lasting if lasting else self._passing)[topic].append(refresh)
+        refresh()
+
+    def act(self, action: Callable[..., Any], *arguments: Any) -> Any:
+        """Do something with the session; what was wrong is told to the person of this window. None if it was."""
+        try:
+            return action(*arguments)
+        except HydrostatError as error:
+            self.tell(str(error), Tone.BAD)
+            return None
+
+    async def act_slowly(self, action: Callable[..., Any], *arguments: Any) -> Any:
+        """As `act`, for what may take a second or more: in a thread, so that the page goes on."""
+        try:
+            return await run.io_bound(action, *arguments)
+        except HydrostatError as error:
+            self.tell(str(error), Tone.BAD)
+            return None
+
+    def doing(self, action: Callable[..., Any], *arguments: Any) -> Callable[[], Any]:
+        """A handler that does something with the session."""
+        return lambda: self.act(action, *arguments)
+
+    def doing_slowly(self, action: Callable[..., Any], *arguments: Any) -> Callable[[], Awaitable[Any]]:
+        """A handler that does something that may take a second or more."""
+        return lambda: self.act_slowly(action, *arguments)
+
+    def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+        """A note for the person of this window."""
+        timeout = 8000 if tone is Tone.BAD else 2500
+        ui.notify(text, color=COLOURS[tone], position="bottom", multi_line=len(text) > 60, timeout=timeout)
+
+    def go(self, stage: StageName) -> None:
+        """Show another stage, in all windows."""
+        self.act(self.session.go, stage)
+
+    def show_panel(self, build: Callable[["Page"], None]) -> None:
+        """Fill panel and bottom anew."""
+        self._passing.clear()
+        for room in (self.panel, self.bottom, self.whole):
+            room.clear()
+        with self.panel:
+            build(self)
+
+    def beat(self) -> None:
+        """Redraw what depends on what rang since the last beat."""
+        rung = set(self._rung)
+        self._rung -= rung
+        for topic in Topic:
+            if topic in rung:
+                for refresh in [*self._lasting[topic], *self._passing[topic]]:
+                    refresh()
+        for note in list(self.session.notes):
+            if note.number > self._told:
+                self._told = note.number
+                self.tell(note.text, note.tone)
+
+    def close(self) -> None:
+        """The window is gone."""
+        self._leave()

@@ -1,0 +1,83 @@
+"""`Pulse`: the thread that lets a session work, and hands what it shows to all screens."""
+
+import logging
+import time
+from collections.abc import Callable
+from threading import Event, Thread
+
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.session import Session, Tone
+from hydrostat.studio.view.show import Shown
+
+SHORTEST = 1 / 60
+"""Screens are not handed more than one picture in this time [s]."""
+
+PATIENCE = 0.25
+"""The session is looked at at least so often [s]."""
+
+SEEN = (Topic.SHAPE, Topic.THINGS, Topic.ROBOT, Topic.STAGE)
+"""What changes the picture."""
+
+
+class Pulse:
+    """Works while there is work, sleeps while there is none."""
+
+    def __init__(self, session: Session, publish: Callable[[Shown], None]) -> None:
+        """Let a session work; `publish` is called in the thread of the pulse."""
+        self._session, self._publish = session, publish
+        self._wake, self._ended = Event(), False
+        self._stale = True
+        self._leave = session.bell.listen(self._hear)
+        self._thread = Thread(target=self._run, name="studio", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End; returns when the thread has."""
+        self._ended = True
+        self._leave()
+        self._wake.set()
+        self._thread.join(timeout=10.0)
+
+    def refresh(self) -> None:
+        """Hand over a picture even if nothing has changed, as a new screen needs one."""
+        self._stale = True
+        self._wake.set()
+
+    def _hear(self, topic: Topic) -> None:
+        if topic in SEEN:
+            self._stale = True
+        self._wake.set()
+
+    def _run(self) -> None:
+        shown_at = 0.0
+        while not self._ended:
+            self._wake.clear()
+            more = self._guarded(lambda: self._session.step(time.monotonic()))
+            if self._stale or more:
+                self._stale = False
+                wait = shown_at + SHORTEST - time.monotonic()
+                if wait > 0:
+                    time.sleep(wait)
+                shown_at = time.monotonic()
+                self._guarded(self._hand_over)
+            if not more:
+                self._wake.wait(PATIENCE)
+
+    def _hand_over(self) -> bool:
+        shown = self._session.shown()
+        if shown is not None:
+            self._publish(shown)
+        return False
+
+    def _guarded(self, action: Callable[[], bool]) -> bool:
+        """The studio must go on whatever happens; what did is logged and told."""
+        try:
+            return action()
+        except Exception as error:
+            logging.getLogger("hydrostat").exception("the studio stumbled")
+            self._session.tell(f"something went wrong: {type(error).__name__}: {error}", Tone.BAD)
+            time.sleep(PATIENCE)
+            return False

@@ -1,0 +1,134 @@
+"""`Stream`: pictures to all screens and pointers back, over one websocket each; the latest wins."""
+
+import asyncio
+import itertools
+from collections.abc import Callable
+from contextlib import suppress
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Point
+from hydrostat.studio.face.messages import Pointer, Release, Seen, read_message
+from hydrostat.studio.session import Session
+from hydrostat.studio.stage import Hit
+from hydrostat.studio.view.show import Shown
+
+MOST_MISTAKES = 20
+"""A screen that says so much that is not understood is sent away."""
+
+PATIENCE = 2.0
+"""A screen that has not painted for so long [s] is sent the next picture all the same."""
+
+
+class Stream:
+    """All screens of one session."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._screens: dict[str, _Screen] = {}
+        self._numbers = itertools.count(1)
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._latest: Shown | None = None
+
+    @property
+    def count(self) -> int:
+        """How many screens there are."""
+        return len(self._screens)
+
+    def publish(self, shown: Shown) -> None:
+        """Hand a picture to all screens; from any thread."""
+        self._latest = shown
+        if self._loop is not None:
+            with suppress(RuntimeError):  # the loop has ended: there is no screen left
+                self._loop.call_soon_threadsafe(self._wake)
+
+    async def serve(self, socket: WebSocket) -> None:
+        """One screen, from its first word to its last."""
+        self._loop = asyncio.get_running_loop()
+        await socket.accept()
+        name = f"screen {next(self._numbers)}"
+        screen = _Screen(socket)
+        self._screens[name] = screen
+        writer = asyncio.create_task(screen.write(lambda: self._latest))
+        try:
+            await self._read(name, screen)
+        except WebSocketDisconnect:
+            pass
+        finally:
+            writer.cancel()
+            with suppress(asyncio.CancelledError, WebSocketDisconnect, RuntimeError):
+                await writer
+            del self._screens[name]
+            self._session.left(name)
+
+    def _wake(self) -> None:
+        for screen in self._screens.values():
+            screen.fresh.set()
+
+    async def _read(self, name: str, screen: "_Screen") -> None:
+        mistakes = 0
+        while mistakes < MOST_MISTAKES:
+            received = await screen.socket.receive()
+            if received["type"] == "websocket.disconnect":
+                return
+            try:
+                self._heed(name, screen, received.get("text") or "")
+            except InputError:
+                mistakes += 1
+        await screen.socket.close(1008)
+
+    def _heed(self, name: str, screen: "_Screen", text: str) -> None:
+        message = read_message(text)
+        if isinstance(message, Seen):
+            screen.seen.set()
+        elif isinstance(message, Release):
+            self._session.release(name)
+        else:
+            hit = self._hit(message)
+            if message.kind == "grab":
+                self._session.grab(name, hit, message.stamp)
+            elif message.kind == "drag":
+                self._session.drag(name, hit, message.stamp)
+            else:
+                self._session.click(name, hit)
+
+    def _hit(self, message: Pointer) -> Hit:
+        """What is under the pointer, with as many coordinates as the body."""
+        dim = 3
+        if self._session.document.is_open:
+            dim = self._session.document.robot.body.mesh.dim
+
+        def place(numbers: list[float]) -> Point:
+            return tuple(numbers[:dim])
+
+        rest = None if message.rest is None else place(message.rest)
+        return Hit(key=message.key, rest=rest, world=place(message.world), shift=message.shift)
+
+
+class _Screen:
+    """One screen: it is sent the latest picture when it has painted the one before."""
+
+    def __init__(self, socket: WebSocket) -> None:
+        self.socket = socket
+        self.fresh, self.seen = asyncio.Event(), asyncio.Event()
+        self.fresh.set()
+        self.seen.set()
+        self._serial = -1
+
+    async def write(self, latest: Callable[[], Shown | None]) -> None:
+        """Send pictures until the connection ends."""
+        while True:
+            await self.fresh.wait()
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self.seen.wait(), PATIENCE)
+            self.fresh.clear()
+            self.seen.clear()
+            shown = latest()
+            if shown is None:
+                self.seen.set()
+                continue
+            if shown.serial != self._serial:
+                self._serial = shown.serial
+                await self.socket.send_bytes(shown.scene)
+            await self.socket.send_bytes(shown.frame)

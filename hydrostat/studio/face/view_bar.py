@@ -1,0 +1,68 @@
+"""`view_bar`: how the body is looked at, in this window."""
+
+from nicegui import ui
+
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.page import Page
+from hydrostat.studio.view.colouring import Colouring
+
+AXES = {"off": None, "x": "x", "y": "y", "z": "z"}
+
+COLOURINGS = {Colouring.FELT: "Felt", Colouring.STRAIN: "Strain", Colouring.STRESS: "Stress"}
+
+
+def view_bar(page: Page) -> None:
+    """Buttons in a corner of the view."""
+    view = page.viewport
+    with ui.element("div").classes("studio-view-bar"):
+        _button("fit_screen", "Fit", view.fit)
+        space = ui.element("div").classes("column gap-1")
+        with space:
+            _button("crop_portrait", "Front (1)", lambda: view.view("front"))
+            _button("flip", "Side (3)", lambda: view.view("side"))
+            _button("layers", "Top (7)", lambda: view.view("top"))
+            with ui.button(icon="view_in_ar").props('flat round dense size=sm aria-label="Looks"').tooltip("Looks"):
+                _space_menu(page)
+        with ui.button(icon="palette").props('flat round dense size=sm aria-label="Colours"').tooltip("Colours"):
+            _colour_menu(page)
+        mesh = ui.button(icon="grid_4x4").props('flat round dense size=sm aria-label="Mesh"').tooltip("Mesh")
+        mesh.on_click(lambda: _toggle_mesh(page, mesh))
+
+    def show() -> None:
+        document = page.session.document
+        space.set_visibility(document.is_open and document.robot.body.mesh.dim == 3)
+
+    page.on(Topic.ROBOT, show, lasting=True)
+
+
+def _space_menu(page: Page) -> None:
+    view = page.viewport
+    with ui.menu(), ui.column().classes("q-pa-md gap-2").style("min-width: 220px"):
+        ui.switch("Perspective", value=True, on_change=lambda event: view.orthographic(not event.value))
+        ui.label("See through").classes("studio-section")
+        ui.slider(min=0.1, max=1.0, step=0.05, value=0.75, on_change=lambda event: view.opacity(event.value))
+        ui.label("Section").classes("studio-section")
+        share = ui.slider(min=0.0, max=1.0, step=0.01, value=0.5)
+        axis = ui.toggle(list(AXES), value="off").props("dense no-caps")
+        for control in (share, axis):
+            control.on_value_change(lambda: view.section(AXES[axis.value], share.value))
+
+
+def _colour_menu(page: Page) -> None:
+    session = page.session
+    with ui.menu(), ui.column().classes("q-pa-md gap-2"):
+        choice = ui.radio(COLOURINGS, value=session.colouring)
+        choice.on_value_change(lambda event: session.colour_by(Colouring(event.value)))
+    page.on(Topic.SHAPE, lambda: choice.set_value(session.colouring), lasting=True)
+
+
+def _toggle_mesh(page: Page, button: ui.button) -> None:
+    shown = "flat" in button.props
+    button.props(remove="flat" if shown else "outline", add="outline" if shown else "flat")
+    page.viewport.mesh(shown)
+
+
+def _button(icon: str, words: str, action: object) -> None:
+    ui.button(icon=icon, on_click=lambda: action()).props(  # type: ignore[operator]
+        f'flat round dense size=sm aria-label="{words}"'
+    ).tooltip(words)

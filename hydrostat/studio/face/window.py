@@ -1,0 +1,134 @@
+"""`build_window`: the page: stages at the top, the view, the panel beside it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from nicegui import events, ui
+
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.page import HEARTBEAT, Page
+from hydrostat.studio.face.panels.design_panel import design_panel
+from hydrostat.studio.face.panels.drive_panel import drive_panel
+from hydrostat.studio.face.panels.edit_panel import edit_panel
+from hydrostat.studio.face.panels.export_panel import export_panel
+from hydrostat.studio.face.panels.pose_panel import pose_panel
+from hydrostat.studio.face.panels.start_panel import start_panel
+from hydrostat.studio.face.save_dialog import save_dialog
+from hydrostat.studio.face.theme import dress
+from hydrostat.studio.face.tour import help_dialog, offer_tour
+from hydrostat.studio.face.view_bar import view_bar
+from hydrostat.studio.face.viewport import Viewport
+from hydrostat.studio.session import Session
+from hydrostat.studio.stage import StageName
+
+PANELS = {
+    StageName.START: start_panel,
+    StageName.EDIT: edit_panel,
+    StageName.POSE: pose_panel,
+    StageName.DESIGN: design_panel,
+    StageName.DRIVE: drive_panel,
+    StageName.EXPORT: export_panel,
+}
+
+TITLES = {
+    StageName.START: ("Start", "home"),
+    StageName.EDIT: ("Edit", "edit"),
+    StageName.POSE: ("Pose", "back_hand"),
+    StageName.DESIGN: ("Design", "auto_awesome"),
+    StageName.DRIVE: ("Drive", "tune"),
+    StageName.EXPORT: ("Export", "ios_share"),
+}
+
+
+Ask = Callable[[], Any]
+
+
+def build_window(session: Session) -> Page:
+    """Build the page of one browser window; it follows the session from now on."""
+    page = Page(session)
+    dark = dress()
+    ask_save, ask_help = save_dialog(page), help_dialog()
+    _header(page, dark, ask_save, ask_help)
+    with ui.element("div").classes("studio-body"):
+        page.whole = ui.column().classes("studio-whole")
+        with ui.element("div").classes("studio-work") as work:
+            with ui.element("div").classes("studio-view"):
+                page.viewport = Viewport(stream="/stream").classes("studio-viewport")
+                view_bar(page)
+            page.bottom = ui.column().classes("studio-bottom")
+        page.panel = ui.column().classes("studio-panel")
+
+    def show_stage() -> None:
+        start = session.stage is StageName.START
+        work.set_visibility(not start)
+        page.panel.set_visibility(not start)
+        page.whole.set_visibility(start)
+        page.show_panel(PANELS[session.stage])
+
+    page.on(Topic.STAGE, show_stage, lasting=True)
+    dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
+    ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
+    ui.timer(HEARTBEAT, page.beat)
+    offer_tour(page)
+    return page
+
+
+def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> None:
+    """Name, stages, undo, save."""
+    session = page.session
+    with ui.header().classes("studio-header"):
+        ui.label("hydrostat").classes("studio-brand")
+        name = ui.label().classes("studio-name")
+        ui.space()
+        with ui.element("div").classes("studio-stages"):
+            buttons = {
+                stage: ui.button(title, icon=icon, on_click=lambda stage=stage: page.go(stage))
+                .props("flat no-caps dense")
+                .classes("studio-stage")
+                .mark(f"stage-{stage}")
+                for stage, (title, icon) in TITLES.items()
+            }
+        ui.space()
+        undo = _tool("undo", "Undo", session.undo)
+        redo = _tool("redo", "Do again", session.redo)
+        save = _tool("save", "Save", ask_save)
+        _tool("dark_mode", "Light or dark", dark.toggle)
+        _tool("help_outline", "Help", ask_help)
+
+    def show_stage() -> None:
+        for stage, button in buttons.items():
+            button.classes(**{"add" if stage is session.stage else "remove": "studio-stage-now"})
+            button.set_enabled(stage is StageName.START or session.document.is_open)
+
+    def show_robot() -> None:
+        document = session.document
+        name.set_text(("" if document.saved else "● ") + document.robot.name if document.is_open else "")
+        undo.set_enabled(bool(document.undo_label))
+        redo.set_enabled(bool(document.redo_label))
+        save.set_enabled(document.is_open)
+        show_stage()
+
+    page.on(Topic.STAGE, show_stage, lasting=True)
+    page.on(Topic.ROBOT, show_robot, lasting=True)
+
+
+def _tool(icon: str, words: str, action: Ask) -> ui.button:
+    button = ui.button(icon=icon, on_click=lambda: action()).props(f'flat round dense aria-label="{words}"')
+    return button.tooltip(words).mark(f"tool-{icon}")
+
+
+def _key(page: Page, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> None:
+    """What a key does; see `keys.KEYS`."""
+    if not event.action.keydown:
+        return
+    name = str(event.key.name)
+    if name in ("1", "3", "7") and not event.modifiers.ctrl:
+        page.viewport.view({"1": "front", "3": "side", "7": "top"}[name])
+    elif name.lower() == "z":
+        page.session.redo() if event.modifiers.shift else page.session.undo()
+    elif name.lower() == "s" and (event.modifiers.ctrl or event.modifiers.meta):
+        ask_save()
+    elif name == "?":
+        ask_help()
+    elif not (event.modifiers.ctrl or event.modifiers.meta or event.modifiers.alt):
+        page.session.key({" ": "space", "Backspace": "delete"}.get(name, name.lower()))

@@ -1,0 +1,253 @@
+"""`Session`: one person's studio, all of it but its face."""
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from threading import RLock
+from typing import Any
+
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.designing.designer import Designer
+from hydrostat.studio.document import Document
+from hydrostat.studio.driving.driver import Driver
+from hydrostat.studio.editing.editor import Editor
+from hydrostat.studio.exporting.exporter import Exporter
+from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.posing.poser import Poser
+from hydrostat.studio.stage import Hit, Stage, StageName
+from hydrostat.studio.starting.starter import Starter
+from hydrostat.studio.view.colouring import Colouring, node_values
+from hydrostat.studio.view.shape import rest_shape
+from hydrostat.studio.view.show import Show, Shown
+from hydrostat.studio.work_folder import open_work, save_work
+
+MOST_NOTES = 50
+"""So many notes are kept."""
+
+
+class Tone(StrEnum):
+    """What a note is."""
+
+    GOOD = "good"
+    PLAIN = "plain"
+    BAD = "bad"
+
+
+@dataclass(frozen=True)
+class Note:
+    """A line for the person.
+
+    Attributes:
+        number: counts the notes.
+        text: of it.
+        tone: good news, plain or bad.
+    """
+
+    number: int
+    text: str
+    tone: Tone
+
+
+class Session:
+    """One open robot and all that can be done with it; it knows no network, so it is plainly testable (R2, R30, R46, R58).
+
+    Methods return at once, but for `step`, which a thread of its own calls again and again. Several screens may use one
+    session: they all see the same, and one of them at a time holds something with its pointer.
+
+    Attributes:
+        bell: rings when something has changed.
+        document: the robot, with undo.
+        jobs: long work.
+        starter: the stage where work begins; as are `editor`, `poser`, `designer`, `driver` and `exporter`.
+        stage: that is shown.
+        colouring: of the body.
+        notes: the last ones, for the person.
+    """
+
+    def __init__(self) -> None:
+        self.bell = Bell()
+        self.document = Document(self.bell)
+        self.jobs = Jobs(self.bell)
+        self.starter = Starter(self.document, self.jobs)
+        self.editor = Editor(self.document, self.jobs)
+        self.poser = Poser(self.document, self.jobs)
+        self.designer = Designer(self.document, self.jobs)
+        self.driver = Driver(self.document, self.jobs)
+        self.exporter = Exporter(self.document, self.jobs)
+        self.stages: Mapping[StageName, Stage] = {
+            StageName.START: self.starter,
+            StageName.EDIT: self.editor,
+            StageName.POSE: self.poser,
+            StageName.DESIGN: self.designer,
+            StageName.DRIVE: self.driver,
+            StageName.EXPORT: self.exporter,
+        }
+        self.stage = StageName.START
+        self.colouring = Colouring.FELT
+        self.notes: deque[Note] = deque(maxlen=MOST_NOTES)
+        self._told = 0
+        self._holder: str | None = None
+        self._stamp = self._answered = 0.0
+        self._show = Show()
+        self._lock = RLock()
+
+    @property
+    def current(self) -> Stage:
+        """The stage that is shown."""
+        return self.stages[self.stage]
+
+    def go(self, name: StageName) -> None:
+        """Show another stage.
+
+        Raises:
+            InputError: it needs a robot, and none is open.
+        """
+        if name is not StageName.START:
+            _ = self.document.work
+        with self._lock:
+            self._let_go()
+            self.current.leave()
+            self.stage = name
+            self.current.enter()
+        self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.THINGS)
+
+    def open_folder(self, folder: Path) -> None:
+        """Open the robot in a folder and show it.
+
+        Raises:
+            InputError: as for `load_robot`.
+        """
+        self.document.open(open_work(folder), folder=folder)
+        self.go(StageName.POSE)
+
+    def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:
+        """A screen's pointer takes hold of something; whether it did.
+
+        Args:
+            screen: which one.
+            hit: what is under the pointer.
+            stamp: comes back with the first frame that has the answer.
+        """
+        with self._lock:
+            if self._holder is not None and self._holder != screen:
+                self.tell("another window is holding something; wait until it lets go", Tone.PLAIN)
+                return False
+            held = self._try(lambda: self.document.is_open and self.current.grab(hit))
+            self._holder = screen if held else None
+            self._stamp = stamp
+        self.bell.ring(Topic.SHAPE)
+        return bool(held)
+
+    def drag(self, screen: str, hit: Hit, stamp: float = 0.0) -> None:
+        """The pointer of a screen has moved; nothing happens if it holds nothing."""
+        with self._lock:
+            if self._holder != screen:
+                return
+            self._try(lambda: self.current.drag(hit))
+            self._stamp = stamp
+        self.bell.ring(Topic.SHAPE)
+
+    def release(self, screen: str) -> None:
+        """The pointer of a screen has let go."""
+        with self._lock:
+            if self._holder != screen:
+                return
+            self._let_go()
+        self.bell.ring(Topic.SHAPE, Topic.THINGS)
+
+    def click(self, screen: str, hit: Hit) -> None:
+        """A screen's pointer was pressed at one place."""
+        with self._lock:
+            if self._holder in (None, screen) and self.document.is_open:
+                self._try(lambda: self.current.click(hit))
+        self.bell.ring(Topic.SHAPE, Topic.THINGS)
+
+    def key(self, name: str) -> bool:
+        """A key of the current stage; whether it meant something."""
+        with self._lock:
+            meant = self.document.is_open and bool(self._try(lambda: self.current.key(name)))
+        self.bell.ring(Topic.SHAPE, Topic.THINGS)
+        return meant
+
+    def undo(self) -> None:
+        """Take back the last change."""
+        label = self.document.undo_label
+        self.tell(f"undone: {label}" if self.document.undo() else "there is nothing to undo")
+
+    def redo(self) -> None:
+        """Do again what was undone."""
+        label = self.document.redo_label
+        self.tell(f"done again: {label}" if self.document.redo() else "there is nothing to do again")
+
+    def save(self, folder: Path | None = None) -> None:
+        """Save the robot where it was, or in another folder.
+
+        Raises:
+            InputError: it has no folder yet, or cannot be written.
+        """
+        folder = folder or self.document.folder
+        if folder is None:
+            raise InputError("choose a folder to save this robot in")
+        save_work(self.document.work, folder)
+        self.document.mark_saved(folder)
+        self.tell(f"saved in {folder}", Tone.GOOD)
+
+    def colour_by(self, colouring: Colouring) -> None:
+        """Choose what the colours of the body mean."""
+        self.colouring = colouring
+        self.bell.ring(Topic.SHAPE)
+
+    def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+        """Leave a note for the person."""
+        self._told += 1
+        self.notes.append(Note(self._told, text, tone))
+        self.bell.ring(Topic.NOTE)
+
+    def step(self, now: float) -> bool:
+        """A bit of work of the current stage; whether there is more. Called by a thread of its own.
+
+        Args:
+            now: time [s] of a clock that only runs forward.
+        """
+        if not self.document.is_open:
+            return False
+        asked = self._stamp
+        more = bool(self._try(lambda: self.current.step(now)))
+        self._answered = asked
+        return more
+
+    def shown(self) -> Shown | None:
+        """What all screens show now; None without a robot."""
+        if not self.document.is_open:
+            return None
+        with self._lock:
+            robot, shape, things = self.document.robot, self.current.shape(), self.current.things()
+        if len(shape.nodes) != len(robot.body.mesh.nodes):
+            shape = rest_shape(robot)  # the body was changed at this very moment; the next one is right
+        head = {"stage": str(self.stage), "stamp": self._answered, "errors": shape.errors, "notes": list(shape.notes)}
+        return self._show.moment(robot, shape, things, head, node_values(robot, shape.nodes, self.colouring))
+
+    def left(self, screen: str) -> None:
+        """A screen is gone."""
+        self.release(screen)
+
+    def close(self) -> None:
+        """End all work."""
+        self.jobs.close()
+
+    def _let_go(self) -> None:
+        if self._holder is not None:
+            self._holder = None
+            self._try(self.current.release)
+            self.document.seal()
+
+    def _try(self, action: Callable[[], Any]) -> Any:
+        """Do it; what a person did wrong is told."""
+        try:
+            return action()
+        except HydrostatError as error:
+            self.tell(str(error), Tone.BAD)
+            return None
