@@ -52,7 +52,7 @@ class Note:
 
 
 class Session:
-    """One open robot and all that can be done with it; it knows no network, so it is plainly testable (R2, R30, R46, R58).
+    """One open robot and all that can be done with it (R2, R30, R46, R58); it knows no network, so it is plainly testable.
 
     Methods return at once, but for `step`, which a thread of its own calls again and again. Several screens may use one
     session: they all see the same, and one of them at a time holds something with its pointer.

@@ -17,11 +17,11 @@ KINDS = {"f": "<f4", "i": "<u4", "u": "<u4"}
 
 
 def packet(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> bytes:
-    """One message; arrays are sent as tables of float32 or uint32."""
+    """One message; arrays of one or two axes are sent as tables of float32 or uint32."""
     tables, bodies = {}, []
     for name, array in arrays.items():
         kind = KINDS[array.dtype.kind]
-        table = np.ascontiguousarray(array.reshape(len(array), -1) if array.ndim != 1 else array[:, None], dtype=kind)
+        table = np.ascontiguousarray(array if array.ndim == 2 else array[:, None], dtype=kind)
         tables[name] = [kind[1:], *table.shape]
         bodies.append(table.tobytes())
     text = json.dumps({**head, "arrays": tables}, separators=(",", ":")).encode()

@@ -19,7 +19,7 @@ Table = Float[np.ndarray, "rows 3"]
 class Picture:
     """What stays the same from frame to frame: faces, styles, and how points are stuck to the body.
 
-    A *scene* is sent once, a *frame* for each new place. Every point has three coordinates; of a flat body the last is 0.
+    A *scene* is sent once, a *frame* for each new place. Every point has three coordinates, the last 0 in a flat body.
 
     The head of a scene: kind "scene", serial, name, dim, things (a list; each with kind, its style, and "first" and
     "count" of its points in the frame's `points`). Arrays: `rest` and `faces` of the shown surface; `rim`, edges of a

@@ -1,6 +1,6 @@
 """`robot_things`: pins, winches, cables and markers of a robot as dots and lines."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
@@ -63,13 +63,10 @@ def robot_things(
     return things
 
 
-def target_things(
-    robot: Robot, targets: dict[str, Point], places: dict[str, Point], *, chosen: str = ""
-) -> list[Thing]:
+def target_things(targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "") -> list[Thing]:
     """Rings where markers should go, with a line from where each is.
 
     Args:
-        robot: whose markers they are.
         targets: where markers should go [m]; their keys are "target:tip".
         places: where they are [m].
         chosen: key that is selected.

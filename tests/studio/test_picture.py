@@ -1,0 +1,100 @@
+"""What screens are sent. The oracle is the robot's own mesh and anchors."""
+
+import numpy as np
+import pytest
+
+from hydrostat.geometry.anchors import locate
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.studio.view.packet import opened, packet
+from hydrostat.studio.view.picture import Picture
+from hydrostat.studio.view.robot_things import robot_things, target_things
+from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look
+
+pytestmark = pytest.mark.filterwarnings("error")
+
+
+@pytest.fixture(scope="module", params=["starfish", "tongue"])
+def robot(request: pytest.FixtureRequest) -> Robot:
+    return load_robot(gallery_folder(request.param))
+
+
+def test_a_packet_opens_to_what_was_put_in() -> None:
+    rows = np.arange(12.0).reshape(4, 3)
+    numbers = np.array([[1, 2]], dtype=np.uint32)
+    head, arrays = opened(packet({"kind": "frame", "name": "Seestern é"}, {"a": rows, "b": numbers, "c": rows[:0]}))
+    assert head == {"kind": "frame", "name": "Seestern é"}
+    assert np.array_equal(arrays["a"], rows)
+    assert np.array_equal(arrays["b"], numbers)
+    assert arrays["c"].shape == (0, 3)
+
+
+def test_the_scene_has_the_surface_of_the_body(robot: Robot) -> None:
+    head, arrays = opened(Picture(robot, robot_things(robot), 7).scene())
+    mesh = robot.body.mesh
+    assert (head["serial"], head["dim"], head["name"]) == (7, mesh.dim, robot.name)
+    faces = mesh.elements if mesh.dim == 2 else mesh.boundary
+    there = arrays["rest"][arrays["faces"]][..., : mesh.dim]
+    assert np.allclose(there, mesh.nodes[faces], atol=1e-6)
+    if mesh.dim == 2:
+        assert (arrays["rest"][:, 2] == 0).all()
+        assert np.allclose(arrays["rest"][arrays["rim"]][..., :2], mesh.nodes[mesh.boundary], atol=1e-6)
+
+
+def test_a_frame_moves_what_is_stuck_to_the_body(robot: Robot) -> None:
+    mesh = robot.body.mesh
+    things = robot_things(robot, vias=True)
+    picture = Picture(robot, things, 1)
+    moved = mesh.nodes * 1.1 + 0.01
+    _, arrays = opened(picture.frame(moved, things, {}))
+    head, _ = opened(picture.scene())
+    style = next(style for style in head["things"] if style["kind"] == "dot" and style["look"] == "marker")
+    marker = robot.markers[0]
+    expected = locate(mesh, np.array([marker.at])).positions(moved)[0]
+    assert np.allclose(arrays["points"][style["first"], : mesh.dim], expected, atol=1e-6)
+    assert len(arrays["loads"]) == sum(style["kind"] == "line" for style in head["things"])
+
+
+def test_places_in_the_world_and_loads_need_no_new_scene(robot: Robot) -> None:
+    name, at = robot.markers[0].name, robot.markers[0].at
+    away = tuple(value + 0.01 for value in at)
+
+    def things(target: tuple[float, ...], tension: float) -> list:
+        tensions = np.full(len(robot.cables), tension)
+        return [*robot_things(robot, tensions=tensions), *target_things({name: target}, {name: at})]
+
+    picture = Picture(robot, things(at, 0.0), 1)
+    assert picture.fits(robot, things(away, 5.0))
+    _, arrays = opened(picture.frame(robot.body.mesh.nodes, things(away, 5.0), {}))
+    assert np.allclose(arrays["points"][-1, : len(away)], away, atol=1e-6)
+    assert not picture.fits(robot, robot_things(robot))
+    assert not picture.fits(robot, things(at, 0.0)[1:])
+
+
+def test_what_is_stuck_elsewhere_needs_a_new_scene(robot: Robot) -> None:
+    dot = Dot(at=robot.markers[0].at, look=Look.MARKER, colour="#000000")
+    other = Dot(at=tuple(value + 0.001 for value in dot.at), look=Look.MARKER, colour="#000000")
+    assert not Picture(robot, [dot], 1).fits(robot, [other])
+
+
+def test_ghosts_clouds_and_areas_come_along(robot: Robot) -> None:
+    mesh = robot.body.mesh
+    cloud = Cloud(name="reach", points=mesh.nodes[:5] + 1.0, colour="#0b5fa5")
+    ghost = Ghost(name="rest", nodes=mesh.nodes, colour="#b4afbc")
+    area = Area(key="zone:0", colour="#c8243f", at=tuple(mesh.nodes[0].tolist()), radius=0.01)
+    things = [area, ghost, cloud]
+    picture = Picture(robot, things, 1)
+    head, arrays = opened(picture.scene())
+    assert [style["kind"] for style in head["things"]] == ["area", "ghost", "cloud"]
+    assert np.allclose(arrays["cloud:reach"][:, : mesh.dim], mesh.nodes[:5] + 1.0, atol=1e-6)
+    assert arrays["ghost:rest"].shape == arrays["rest"].shape
+    assert picture.fits(robot, things)
+    assert not picture.fits(robot, [area, ghost, Cloud(name="reach", points=mesh.nodes[:6], colour="#0b5fa5")])
+
+
+def test_values_are_those_of_the_shown_nodes(robot: Robot) -> None:
+    mesh = robot.body.mesh
+    values = np.linspace(0.0, 1.0, len(mesh.nodes))
+    picture = Picture(robot, [], 1)
+    _, arrays = opened(picture.frame(mesh.nodes, [], {}, values=values))
+    shown = np.arange(len(mesh.nodes)) if mesh.dim == 2 else np.unique(mesh.boundary)
+    assert np.allclose(arrays["values"][:, 0], values[shown], atol=1e-6)
