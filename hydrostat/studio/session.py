@@ -52,7 +52,7 @@ class Note:
 
 
 class Session:
-    """One open robot and all that can be done with it (R2, R30, R46, R58); it knows no network, so it is plainly testable.
+    """One open robot and all that can be done with it (R2, R30, R46, R58). It knows no network, so tests are plain.
 
     Methods return at once, but for `step`, which a thread of its own calls again and again. Several screens may use one
     session: they all see the same, and one of them at a time holds something with its pointer.
@@ -91,6 +91,7 @@ class Session:
         self._told = 0
         self._holder: str | None = None
         self._stamp = self._answered = 0.0
+        self._complaint = ""
         self._show = Show()
         self._lock = RLock()
 
@@ -214,9 +215,14 @@ class Session:
         """
         if not self.document.is_open:
             return False
-        asked = self._stamp
-        more = bool(self._try(lambda: self.current.step(now)))
-        self._answered = asked
+        asked, more, complaint = self._stamp, False, ""
+        try:
+            more = self.current.step(now)
+        except HydrostatError as error:
+            complaint = str(error)
+        if complaint and complaint != self._complaint:  # a step is tried again and again: it complains once
+            self.tell(complaint, Tone.BAD)
+        self._complaint, self._answered = complaint, asked
         return more
 
     def shown(self) -> Shown | None:

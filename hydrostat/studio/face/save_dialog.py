@@ -19,11 +19,12 @@ def save_dialog(page: Page) -> Callable[[], None]:
             ui.button("Save", on_click=lambda: save()).props("unelevated no-caps").mark("save-now")
 
     async def save() -> None:
-        if not folder.value.strip():
+        name = (folder.value or "").strip()
+        if not name:
             page.tell("name a folder")
             return
         dialog.close()
-        await page.act_slowly(page.session.save, Path(folder.value.strip()).expanduser())
+        await page.act_slowly(page.session.save, Path(name).expanduser())
 
     async def ask() -> None:
         document = page.session.document

@@ -40,12 +40,12 @@ def _space_menu(page: Page) -> None:
     with ui.menu(), ui.column().classes("q-pa-md gap-2").style("min-width: 220px"):
         ui.switch("Perspective", value=True, on_change=lambda event: view.orthographic(not event.value))
         ui.label("See through").classes("studio-section")
-        ui.slider(min=0.1, max=1.0, step=0.05, value=0.75, on_change=lambda event: view.opacity(event.value))
+        ui.slider(min=0.1, max=1.0, step=0.05, value=0.75, on_change=lambda event: view.opacity(event.value or 1.0))
         ui.label("Section").classes("studio-section")
         share = ui.slider(min=0.0, max=1.0, step=0.01, value=0.5)
         axis = ui.toggle(list(AXES), value="off").props("dense no-caps")
         for control in (share, axis):
-            control.on_value_change(lambda: view.section(AXES[axis.value], share.value))
+            control.on_value_change(lambda: view.section(AXES[axis.value], share.value or 0.0))
 
 
 def _colour_menu(page: Page) -> None:

@@ -1,6 +1,7 @@
 """`build_window`: the page: stages at the top, the view, the panel beside it."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from nicegui import events, ui
@@ -82,7 +83,7 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
         ui.space()
         with ui.element("div").classes("studio-stages"):
             buttons = {
-                stage: ui.button(title, icon=icon, on_click=lambda stage=stage: page.go(stage))
+                stage: ui.button(title, icon=icon, on_click=partial(page.go, stage))
                 .props("flat no-caps dense")
                 .classes("studio-stage")
                 .mark(f"stage-{stage}")
