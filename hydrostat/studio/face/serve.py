@@ -3,7 +3,7 @@
 import socket
 import sys
 import webbrowser
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from secrets import token_urlsafe
 
@@ -30,7 +30,7 @@ def make_app(session: Session) -> FastAPI:
     pulse = Pulse(session, stream.publish)
 
     @asynccontextmanager
-    async def life(app: FastAPI):  # noqa: ANN202
+    async def life(_: FastAPI) -> AsyncIterator[None]:
         pulse.start()
         yield
         pulse.stop()

@@ -1,0 +1,82 @@
+"""A studio as a program of its own, and a browser. Where there is no Chromium these tests are skipped."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+CHROMIUM = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), ""
+)
+
+FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+
+RUN = "from hydrostat.cli.main import main; main()"
+
+PATIENCE = 60_000
+"""The most that a test waits for one thing [ms]: the machine may be busy, and compile."""
+
+Open = Callable[..., "Page"]
+
+
+@pytest.fixture(scope="session")
+def browser() -> "Iterator[Browser]":
+    if not CHROMIUM:
+        pytest.skip("there is no Chromium; install Debian's package chromium")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@contextmanager
+def running(*arguments: str, state: Path) -> Iterator[str]:
+    """A studio that runs; its address."""
+    command = [sys.executable, "-c", RUN, "studio", *arguments, "--no-browser"]
+    environment = {**os.environ, "XDG_STATE_HOME": str(state), "XDG_CACHE_HOME": str(state / "cache")}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, cwd=state) as process:
+        assert process.stdout is not None
+        line = process.stdout.readline()
+        assert "http://" in line, line
+        try:
+            yield line.split("at ", 1)[1].split()[0]
+        finally:
+            process.terminate()
+            process.wait(timeout=20)
+
+
+@pytest.fixture
+def studio(tmp_path: Path) -> Callable[..., Any]:
+    """Start a studio with some arguments, as a context that gives its address."""
+    return lambda *arguments: running(*arguments, state=tmp_path)
+
+
+@pytest.fixture
+def window(browser: "Browser") -> Iterator[Open]:
+    """Open a window on an address, with all that it complained about in `complaints`."""
+    contexts = []
+
+    def open_window(address: str, *, tour: bool = False) -> "Page":
+        context = browser.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True)
+        contexts.append(context)
+        if not tour:
+            context.add_init_script("localStorage.setItem('hydrostat-tour', 'seen')")
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto(address)
+        return page
+
+    yield open_window
+    for context in contexts:
+        context.close()
