@@ -8,12 +8,13 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from threading import Lock, Thread
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.studio.bell import Bell, Topic
 
 
+@runtime_checkable
 class Report(Protocol):
     """How work in another process tells of itself."""
 
