@@ -1,20 +1,140 @@
 """`Exporter`: the stage "export"."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
+from hydrostat.errors import InputError
+from hydrostat.fabrication import KitOptions
+from hydrostat.robot import Robot
+from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
+from hydrostat.studio.exporting.archive import archive, file_name
+from hydrostat.studio.exporting.download import Download
+from hydrostat.studio.exporting.kit_made import KitMade
+from hydrostat.studio.exporting.kit_work import make_kit
+from hydrostat.studio.exporting.picture_work import make_pictures
+from hydrostat.studio.exporting.report_work import make_report
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.shape import Shape, rest_shape
 from hydrostat.studio.view.things import Thing
+from hydrostat.studio.work_folder import save_work
+
+
+class Export(StrEnum):
+    """What is made in a process of its own."""
+
+    KIT = "kit"
+    REPORT = "report"
+    PICTURES = "pictures"
+
+
+@dataclass(frozen=True, eq=False)
+class _Made:
+    """A result, with the robot it is of."""
+
+    robot: Robot
+    value: Any
 
 
 class Exporter(Stage):
-    """To be written."""
+    """What a person takes home: kit, report, pictures, the robot itself. All is in memory until it is downloaded.
+
+    A result is that of one robot: it is not shown once the robot has changed, and is back if the change is undone.
+
+    Attributes:
+        options: of the next kit.
+        busy: what is being made; None: nothing.
+        errors: why something could not be made, by what it was.
+    """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
         self._document, self._jobs = document, jobs
+        self.options = KitOptions()
+        self.busy: Export | None = None
+        self.errors: dict[Export, str] = {}
+        self._made: dict[Export, _Made] = {}
+
+    @property
+    def kit(self) -> KitMade | None:
+        """The kit of the robot as it is now, if it was made."""
+        return self._result(Export.KIT)
+
+    @property
+    def report(self) -> Download | None:
+        """The report of the robot as it is now, if it was made."""
+        return self._result(Export.REPORT)
+
+    @property
+    def pictures(self) -> tuple[Download, ...]:
+        """Pictures of the robot as it is now, if they were made."""
+        return self._result(Export.PICTURES) or ()
+
+    def outdated(self, export: Export) -> bool:
+        """Whether something was made, and the robot has changed since."""
+        return export in self._made and self._result(export) is None
+
+    def make_kit(self, *, force: bool = False) -> None:
+        """Make the kit, in a process of its own.
+
+        Args:
+            force: even if the robot cannot be built well.
+
+        Raises:
+            InputError: the robot has no cables, or other work is in progress.
+        """
+        if not self._document.robot.cables:
+            raise InputError("a kit needs cables; press Design, or place winches and cables by hand")
+        options = replace(self.options, force=True) if force else self.options
+        self._start(Export.KIT, "Making the kit", make_kit, options)
+
+    def make_report(self) -> None:
+        """Write the report, in a process of its own.
+
+        Raises:
+            InputError: other work is in progress.
+        """
+        self._start(Export.REPORT, "Writing the report", make_report)
+
+    def make_pictures(self) -> None:
+        """Draw the pictures, in a process of its own.
+
+        Raises:
+            InputError: other work is in progress.
+        """
+        self._start(Export.PICTURES, "Drawing pictures", make_pictures)
+
+    def pictures_zip(self) -> Download:
+        """All pictures in one file.
+
+        Raises:
+            InputError: there are none yet.
+        """
+        if not self.pictures:
+            raise InputError("there are no pictures of this robot yet; draw them first")
+        name = f"{file_name(self._document.robot.name)}_pictures"
+        files = {picture.name: picture.content for picture in self.pictures}
+        return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Pictures")
+
+    def robot_zip(self) -> Download:
+        """The folder of the robot in one file.
+
+        Raises:
+            InputError: no robot is open.
+        """
+        work = self._document.work
+        name = file_name(work.robot.name)
+        with TemporaryDirectory() as scratch:
+            folder = Path(scratch)
+            save_work(work, folder)
+            paths = [path for path in folder.rglob("*") if path.is_file()]
+            files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+        return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Robot")
 
     def shape(self) -> Shape:
         """The rest shape."""
@@ -23,3 +143,25 @@ class Exporter(Stage):
     def things(self) -> Sequence[Thing]:
         """All parts of the robot."""
         return robot_things(self._document.robot)
+
+    def _start(self, export: Export, title: str, function: Callable[..., Any], *arguments: Any) -> None:
+        robot = self._document.robot
+
+        def keep(value: Any) -> None:
+            self._made[export] = _Made(robot, value)
+
+        def end() -> None:
+            state = self._jobs.state
+            self.busy = None
+            if state is not None and state.error and state.error != "stopped":
+                self.errors[export] = state.error
+            self._document.bell.ring(Topic.JOB)
+
+        self._jobs.start(title, function, robot, *arguments, on_done=keep, on_end=end)
+        self.busy = export
+        self.errors.pop(export, None)
+
+    def _result(self, export: Export) -> Any:
+        made = self._made.get(export)
+        current = made is not None and self._document.is_open and made.robot is self._document.robot
+        return made.value if made is not None and current else None

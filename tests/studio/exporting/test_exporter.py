@@ -1,0 +1,186 @@
+"""Taking home: results belong to one robot, and are zips, pages and pictures that others can read."""
+
+import io
+import xml.etree.ElementTree as ET
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+
+import pytest
+from PIL import Image
+
+import hydrostat as hs
+from hydrostat.errors import InputError
+from hydrostat.fabrication import KitOptions
+from hydrostat.robot import Robot
+from hydrostat.robot.gallery import gallery_folder
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.document import Document
+from hydrostat.studio.exporting.exporter import Export, Exporter
+from hydrostat.studio.exporting.kit_made import KitMade
+from hydrostat.studio.exporting.kit_work import make_kit
+from hydrostat.studio.exporting.picture_work import make_pictures
+from hydrostat.studio.exporting.report_work import make_report
+from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.work import Work
+
+LONGEST = 60.0
+
+
+class Told:
+    """Keeps the stages that work tells."""
+
+    def __init__(self) -> None:
+        self.stages: list[str] = []
+
+    def progress(self, stage: str, done: int, total: int) -> None:
+        """One stage."""
+        self.stages.append(stage)
+
+    def part(self, value: object) -> None:
+        """Nothing is handed over on the way."""
+
+
+@pytest.fixture(scope="module")
+def starfish() -> Robot:
+    return hs.load_robot(gallery_folder("starfish"))
+
+
+@pytest.fixture(scope="module")
+def kit(starfish: Robot) -> tuple[KitMade, Told]:
+    told = Told()
+    return make_kit(told, starfish, KitOptions()), told
+
+
+@pytest.fixture
+def exporter(starfish: Robot) -> Exporter:
+    bell = Bell()
+    document = Document(bell)
+    document.open(Work(robot=starfish))
+    return Exporter(document, Jobs(bell))
+
+
+def finished(exporter: Exporter) -> None:
+    """Wait until nothing is being made."""
+    done = Event()
+
+    def hear(topic: Topic) -> None:
+        if topic is Topic.JOB and exporter.busy is None:
+            done.set()
+
+    exporter._document.bell.listen(hear)
+    if exporter.busy is not None:
+        assert done.wait(LONGEST)
+
+
+def test_a_kit_is_the_files_of_the_library_in_one_zip(
+    kit: tuple[KitMade, Told], starfish: Robot, plush_kit: hs.Kit
+) -> None:
+    made, told = kit
+    assert made.zip is not None
+    with zipfile.ZipFile(io.BytesIO(made.zip.content)) as zipped:
+        assert zipped.testzip() is None
+        unpacked = {name: zipped.read(name) for name in zipped.namelist()}
+        assert list(unpacked) == sorted(unpacked)
+        assert {entry.date_time for entry in zipped.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    assert unpacked == {f"starfish_kit/{path}": content for path, content in plush_kit.files.items()}
+    assert made.summary == plush_kit.summary
+    assert made.told == f"{len(plush_kit.checks)} of {len(plush_kit.checks)} checks hold"
+    assert "Pattern" in told.stages
+
+
+def test_pages_are_pictures_of_the_sheet(kit: tuple[KitMade, Told]) -> None:
+    made, _ = kit
+    assert len(made.pages) == 2  # of a robot of plush
+    for page in made.pages:
+        with Image.open(io.BytesIO(page)) as picture:
+            assert picture.height / picture.width == pytest.approx(297 / 210, abs=0.01)
+    assert made.pattern is not None
+    assert ET.fromstring(made.pattern).tag.endswith("svg")
+
+
+def test_what_cannot_be_built_is_told_and_made_all_the_same_if_forced(starfish: Robot) -> None:
+    small = replace(KitOptions(), mould=replace(KitOptions().mould, bed=(20.0, 20.0, 20.0)))
+    refused = make_kit(Told(), starfish, small)
+    assert refused.refused
+    assert refused.zip is None
+    forced = make_kit(Told(), starfish, replace(small, force=True))
+    assert forced.problems == refused.refused
+    assert forced.zip is not None
+
+
+def test_results_belong_to_the_robot_they_were_made_of(exporter: Exporter) -> None:
+    document = exporter._document
+    exporter.make_pictures()
+    with pytest.raises(InputError, match="in progress"):
+        exporter.make_report()
+    finished(exporter)
+    assert exporter.errors == {}
+    assert exporter.pictures
+    assert not exporter.outdated(Export.PICTURES)
+    document.change("remove markers", robot=replace(document.robot, gravity=(0.0, -1.0)))
+    assert not exporter.pictures
+    assert exporter.outdated(Export.PICTURES)
+    document.undo()
+    assert exporter.pictures
+
+
+def test_failed_work_says_why(exporter: Exporter) -> None:
+    exporter.options = replace(exporter.options, motor="none such")
+    exporter.make_kit()
+    finished(exporter)
+    assert exporter.kit is None
+    assert "none such" in exporter.errors[Export.KIT]
+
+
+def test_a_robot_without_cables_has_no_kit(exporter: Exporter) -> None:
+    document = exporter._document
+    document.change("remove cables", robot=document.robot.with_network((), ()))
+    with pytest.raises(InputError, match="Design"):
+        exporter.make_kit()
+
+
+def test_the_robot_reads_back_the_same(exporter: Exporter, tmp_path: Path) -> None:
+    robot = exporter._document.robot
+    download = exporter.robot_zip()
+    with zipfile.ZipFile(io.BytesIO(download.content)) as zipped:
+        zipped.extractall(tmp_path)
+    again = hs.load_robot(tmp_path / "starfish")
+    assert hs.robot.robot_hash(again) == hs.robot.robot_hash(robot)
+    assert exporter.robot_zip().content == download.content
+
+
+def test_pictures_open_and_the_same_robot_gives_the_same(starfish: Robot) -> None:
+    pictures = make_pictures(Told(), starfish)
+    names = [picture.name for picture in pictures]
+    assert len(names) == len(set(names))
+    for pose in starfish.poses:
+        assert f"starfish_pose_{pose}.png" in names
+    for picture in pictures:
+        if picture.name.endswith(".png"):
+            with Image.open(io.BytesIO(picture.content)) as opened:
+                opened.verify()
+        else:
+            assert ET.fromstring(picture.content).tag.endswith("svg")
+    first = [picture for picture in pictures if "rest" in picture.name]
+    again = [picture for picture in make_pictures(Told(), replace(starfish, poses={})) if "rest" in picture.name]
+    assert [picture.content for picture in first] == [picture.content for picture in again]
+
+
+def test_a_report_tells_errors_and_tensions(starfish: Robot) -> None:
+    report = make_report(Told(), starfish)
+    text = report.content.decode()
+    for pose in starfish.poses.values():
+        reached = hs.solve_ik(hs.Simulation(starfish), pose)
+        for error in reached.errors.values():
+            assert f"{1e3 * error:.2f}" in text
+        assert f"{max(reached.pose.tensions):.2f}" in text
+    assert "http" not in text.replace("http://www.w3.org", "")
+
+
+def test_a_report_of_a_bare_body_has_no_network(starfish: Robot) -> None:
+    bare = replace(starfish.with_network((), ()), poses={})
+    text = make_report(Told(), bare).content.decode()
+    assert "The body" in text
+    assert "Winches and cables" not in text
