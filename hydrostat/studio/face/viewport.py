@@ -1,32 +1,99 @@
 """`Viewport`: the view of the body in a window."""
 
+from importlib import import_module
+from pathlib import Path
+from typing import Literal
+
 from nicegui import ui
+from nicegui.dependencies import register_esm
+
+from hydrostat.plot import palette
+
+STATIC = Path(__file__).parent / "static"
+MODULES = STATIC / "view"
+
+COLOURS = {
+    "felt": palette.FELT,
+    "felt_light": palette.FELT_LIGHT,
+    "seam": palette.SEAM,
+    "stitch": palette.STITCH,
+    "mesh": palette.MESH,
+    "dark": palette.DARK,
+    "light": palette.LIGHT,
+    "ink": palette.INK,
+    "ghost": palette.GHOST,
+    "tension": list(palette.TENSION),
+}
+"""What the view is painted with; ink and ghosts are lighter on a dark page."""
+
+Side = Literal["front", "side", "top"]
+Axis = Literal["x", "y", "z"]
+
+import_module("nicegui.elements.scene")  # brings three.js, which the view is drawn with
+# named after the newest of its files, so that no browser keeps an old one
+register_esm("hydrostat-view", MODULES, max_time=max(file.stat().st_mtime for file in MODULES.glob("*.js")))
 
 
-class Viewport(ui.element):
-    """To be written."""
+class Viewport(ui.element, component="static/viewport.js"):
+    """The view of the body: it fills its parent, draws what comes over a stream and tells where the pointer is.
 
-    def __init__(self, *, stream: str) -> None:
-        super().__init__("div")
+    Pictures come and pointers go over a websocket of its own (`view.packet`, `face.messages`); only what is asked for
+    here goes over the page's.
+    """
+
+    def __init__(self, *, stream: str, dark: bool | None = None, brush: bool = False) -> None:
+        """A view.
+
+        Args:
+            stream: path of the websocket, such as "/stream".
+            dark: whether it is dark; None: as the page is.
+            brush: whether a drag beside the body paints instead of moving the view.
+        """
+        super().__init__()
         self._props["stream"] = stream
+        self._props["palette"] = COLOURS
+        self._props["dark"] = dark
+        self._props["brush"] = brush
 
-    def set_dark(self, dark: bool) -> None:
-        """Dark or light."""
+    def set_dark(self, dark: bool | None) -> None:
+        """Dark or light; None: as the page is."""
+        self._props["dark"] = dark
+        self.update()
 
-    def view(self, name: str) -> None:
-        """Look from a side."""
+    def set_brush(self, brush: bool) -> None:
+        """Whether a drag beside the body paints instead of moving the view."""
+        self._props["brush"] = brush
+        self.update()
+
+    def view(self, name: Side) -> None:
+        """Turn a body in space: seen along +y ("front"), along -x ("side") or along -z ("top")."""
+        self.run_method("view", name)
 
     def fit(self) -> None:
-        """Show all."""
+        """Show all there is."""
+        self.run_method("fit")
+
+    def section(self, axis: Axis | None, share: float) -> None:
+        """Cut a body in space open.
+
+        Args:
+            axis: across which; None: not at all.
+            share: where, as a share of the body's extent along it.
+        """
+        self.run_method("section", axis, share)
 
     def orthographic(self, on: bool) -> None:
-        """Kind of camera."""
+        """See a body in space without perspective."""
+        self.run_method("orthographic", on)
 
     def opacity(self, value: float) -> None:
-        """See through."""
-
-    def section(self, axis: str | None, share: float) -> None:
-        """Cut."""
+        """How solid a body in space looks, from 0 to 1."""
+        self.run_method("opacity", value)
 
     def mesh(self, on: bool) -> None:
-        """Show edges."""
+        """Show the edges of the mesh."""
+        self.run_method("mesh", on)
+
+    async def picture(self) -> str:
+        """What is seen, as a PNG in a data URL."""
+        return await self.run_method("picture", timeout=10.0)

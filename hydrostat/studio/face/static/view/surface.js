@@ -1,0 +1,269 @@
+// The surface of a body: felt, or coloured by values; and the ghost of a body.
+
+import { THREE } from "nicegui-scene";
+import { rgb } from "./theme.js";
+
+const VERTEX = `
+attribute float value;
+varying vec3 facing;
+varying vec3 toward;
+varying vec3 world;
+varying float share;
+void main() {
+  vec4 seen = modelViewMatrix * vec4(position, 1.0);
+  facing = normalMatrix * normal;
+  toward = projectionMatrix[3][3] == 1.0 ? vec3(0.0, 0.0, 1.0) : -seen.xyz;
+  world = position;
+  share = value;
+  gl_Position = projectionMatrix * seen;
+}`;
+
+const CUT = `
+varying vec3 world;
+uniform vec4 cut; // what lies beyond this plane is not shown
+`;
+
+const FELT = `
+varying vec3 facing;
+varying vec3 toward;
+varying float share;
+uniform vec3 felt;
+uniform vec3 light;
+uniform vec3 seam;
+uniform vec3 inside;
+uniform float lit;
+uniform float coloured;
+uniform float opacity;
+uniform sampler2D ramp;
+${CUT}
+void main() {
+  if (dot(world, cut.xyz) > cut.w) discard;
+  vec3 base = texture2D(ramp, vec2(clamp(share, 0.0, 1.0) * 0.996 + 0.002, 0.5)).rgb;
+  if (lit < 0.5) {
+    gl_FragColor = vec4(mix(felt, base, coloured), opacity);
+    return;
+  }
+  vec3 n = normalize(facing);
+  vec3 eye = normalize(toward);
+  float edge = 1.0 - abs(dot(n, eye));
+  float bright = 0.5 + 0.5 * dot(n, vec3(-0.38, 0.62, 0.686));
+  if (!gl_FrontFacing) {
+    gl_FragColor = vec4(inside * (1.0 - 0.22 * bright), 1.0);
+    return;
+  }
+  vec3 wool = mix(mix(seam, felt, smoothstep(-0.15, 0.62, bright)), light, 0.9 * smoothstep(0.5, 1.0, bright));
+  wool = mix(wool, seam, 0.62 * edge * edge * edge);
+  vec3 data = base * (0.66 + 0.4 * bright) * (1.0 - 0.25 * edge * edge * edge);
+  gl_FragColor = vec4(mix(wool, data, coloured), opacity);
+}`;
+
+const DEPTH = `
+${CUT}
+void main() {
+  if (dot(world, cut.xyz) > cut.w) discard;
+  gl_FragColor = vec4(1.0);
+}`;
+
+const GHOST = `
+varying vec3 facing;
+varying vec3 toward;
+uniform vec3 tint;
+uniform float lit;
+uniform float opacity;
+void main() {
+  float edge = 1.0 - abs(dot(normalize(facing), normalize(toward)));
+  gl_FragColor = vec4(tint, lit < 0.5 ? opacity : opacity * (0.16 + 0.7 * edge * edge));
+}`;
+
+function smooth(position, faces, normal) {
+  normal.fill(0);
+  for (let f = 0; f < faces.length; f += 3) {
+    const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
+    const ux = position[b] - position[a], uy = position[b + 1] - position[a + 1], uz = position[b + 2] - position[a + 2];
+    const vx = position[c] - position[a], vy = position[c + 1] - position[a + 1], vz = position[c + 2] - position[a + 2];
+    // in squared millimetres, so that they are far from the smallest numbers
+    const x = 1e6 * (uy * vz - uz * vy), y = 1e6 * (uz * vx - ux * vz), z = 1e6 * (ux * vy - uy * vx);
+    normal[a] += x; normal[a + 1] += y; normal[a + 2] += z;
+    normal[b] += x; normal[b + 1] += y; normal[b + 2] += z;
+    normal[c] += x; normal[c + 1] += y; normal[c + 2] += z;
+  }
+}
+
+function surface(rest, faces, dynamic) {
+  const geometry = new THREE.BufferGeometry();
+  const usage = dynamic ? THREE.DynamicDrawUsage : THREE.StaticDrawUsage;
+  for (const [name, columns] of [["position", 3], ["normal", 3], ["value", 1]]) {
+    const attribute = new THREE.BufferAttribute(new Float32Array((rest.length / 3) * columns), columns);
+    geometry.setAttribute(name, attribute.setUsage(usage));
+  }
+  geometry.attributes.position.array.set(rest);
+  geometry.setIndex(new THREE.BufferAttribute(faces, 1));
+  smooth(rest, faces, geometry.attributes.normal.array);
+  return geometry;
+}
+
+function shown(geometry, material, order) {
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.frustumCulled = false;
+  mesh.renderOrder = order;
+  return mesh;
+}
+
+/** A row of colours as a texture of 256. */
+export function rampTexture(colours) {
+  const data = new Uint8Array(4 * 256);
+  for (let i = 0; i < 256; i++) {
+    const place = (i / 255) * (colours.length - 1);
+    const first = Math.min(Math.floor(place), colours.length - 2);
+    const [a, b] = [rgb(colours[first]), rgb(colours[first + 1])];
+    for (let k = 0; k < 3; k++) data[4 * i + k] = Math.round(255 * (a[k] + (place - first) * (b[k] - a[k])));
+    data[4 * i + 3] = 255;
+  }
+  const texture = new THREE.DataTexture(data, 256, 1);
+  texture.magFilter = texture.minFilter = THREE.LinearFilter;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+export class Surface {
+  constructor(rest, faces, flat, ramp, order) {
+    this.flat = flat;
+    this.faces = faces;
+    this.geometry = surface(rest, faces, true);
+    this.uniforms = {
+      felt: { value: new THREE.Vector3() }, light: { value: new THREE.Vector3() }, seam: { value: new THREE.Vector3() },
+      inside: { value: new THREE.Vector3() }, lit: { value: flat ? 0 : 1 }, coloured: { value: 0 }, opacity: { value: 1 },
+      ramp: { value: ramp }, cut: { value: new THREE.Vector4(0, 0, 0, 1) },
+    };
+    const own = { vertexShader: VERTEX, uniforms: this.uniforms, transparent: true };
+    const depth = !flat;
+    this.before = shown(this.geometry, new THREE.ShaderMaterial({ ...own, fragmentShader: DEPTH, colorWrite: false }), order);
+    this.body = shown(this.geometry, new THREE.ShaderMaterial({
+      ...own, fragmentShader: FELT, side: flat ? THREE.DoubleSide : THREE.FrontSide, depthTest: depth, depthWrite: depth,
+    }), order + 1);
+    this.edges = new THREE.LineSegments(this.geometry.clone(), new THREE.ShaderMaterial({
+      vertexShader: `void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        gl_Position.z -= 0.0006 * gl_Position.w; }`,
+      fragmentShader: "uniform vec4 tint; void main() { gl_FragColor = tint; }",
+      uniforms: { tint: { value: new THREE.Vector4(0, 0, 0, 0.4) } }, transparent: true, depthWrite: false, depthTest: depth,
+    }));
+    this.edges.geometry.setAttribute("position", this.geometry.attributes.position);
+    this.edges.geometry.setIndex(sides(faces));
+    this.edges.frustumCulled = false;
+    this.edges.renderOrder = order + 3;
+    this.edges.visible = false;
+    this.objects = [this.before, this.body, this.edges];
+    this.see(1);
+  }
+
+  get position() {
+    return this.geometry.attributes.position.array;
+  }
+
+  colour(palette, inside) {
+    this.uniforms.felt.value.set(...rgb(palette.felt));
+    this.uniforms.light.value.set(...rgb(palette.felt_light));
+    this.uniforms.seam.value.set(...rgb(palette.seam));
+    this.uniforms.inside.value.set(...rgb(inside));
+    this.edges.material.uniforms.tint.value.set(...rgb(palette.mesh), 0.42);
+  }
+
+  move(nodes, values) {
+    const { position, normal, value } = this.geometry.attributes;
+    position.array.set(nodes);
+    position.needsUpdate = true;
+    if (!this.flat) {
+      smooth(position.array, this.faces, normal.array);
+      normal.needsUpdate = true;
+    }
+    this.uniforms.coloured.value = values ? 1 : 0;
+    if (values) {
+      value.array.set(values);
+      value.needsUpdate = true;
+    }
+  }
+
+  /** See through the body, from 0 to 1 (not at all). */
+  see(opacity) {
+    this.uniforms.opacity.value = opacity;
+    this.before.visible = !this.flat && opacity < 1;
+  }
+
+  /** Show only one side of a plane: [x, y, z, share]; null for all. */
+  section(plane) {
+    this.uniforms.cut.value.set(...(plane ?? [0, 0, 0, 1]));
+    const side = plane || this.flat ? THREE.DoubleSide : THREE.FrontSide;
+    for (const mesh of [this.before, this.body]) {
+      if (mesh.material.side !== side) mesh.material.needsUpdate = true;
+      mesh.material.side = side;
+    }
+  }
+
+  dispose() {
+    this.geometry.dispose();
+    this.edges.geometry.dispose();
+    for (const object of this.objects) object.material.dispose();
+  }
+}
+
+/** The body in another shape: a pale field in the plane, a skin of glass in space. */
+export class Ghost {
+  constructor(nodes, faces, flat, order) {
+    this.flat = flat;
+    this.geometry = surface(nodes, faces, false);
+    this.uniforms = { tint: { value: new THREE.Vector3() }, lit: { value: flat ? 0 : 1 }, opacity: { value: 1 } };
+    this.objects = [shown(this.geometry, new THREE.ShaderMaterial({
+      vertexShader: VERTEX, fragmentShader: GHOST, uniforms: this.uniforms, transparent: true, depthWrite: false,
+      depthTest: !flat, side: flat ? THREE.DoubleSide : THREE.FrontSide,
+    }), order)];
+  }
+
+  colour(fill, opacity) {
+    this.uniforms.tint.value.set(...rgb(fill));
+    this.uniforms.opacity.value = opacity;
+  }
+
+  dispose() {
+    this.geometry.dispose();
+    this.objects[0].material.dispose();
+  }
+}
+
+/** Many small points. */
+export class Cloud {
+  constructor(points, colour, flat, order) {
+    this.geometry = new THREE.BufferGeometry();
+    this.geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+    this.uniforms = { tint: { value: new THREE.Vector3(...rgb(colour)) }, across: { value: 4 } };
+    const points3 = new THREE.Points(this.geometry, new THREE.ShaderMaterial({
+      vertexShader: `uniform float across;
+        void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); gl_PointSize = across; }`,
+      fragmentShader: `uniform vec3 tint;
+        void main() { if (length(gl_PointCoord - 0.5) > 0.5) discard; gl_FragColor = vec4(tint, 0.5); }`,
+      uniforms: this.uniforms, transparent: true, depthWrite: false, depthTest: !flat,
+    }));
+    points3.frustumCulled = false;
+    points3.renderOrder = order;
+    this.objects = [points3];
+  }
+
+  dispose() {
+    this.geometry.dispose();
+    this.objects[0].material.dispose();
+  }
+}
+
+/** Each edge of some triangles once. */
+function sides(faces) {
+  const seen = new Set(), index = [];
+  for (let f = 0; f < faces.length; f += 3) {
+    for (let k = 0; k < 3; k++) {
+      const a = Math.min(faces[f + k], faces[f + ((k + 1) % 3)]), b = Math.max(faces[f + k], faces[f + ((k + 1) % 3)]);
+      const key = a * 4294967 + b;
+      if (seen.has(key)) continue;
+      seen.add(key);
+      index.push(a, b);
+    }
+  }
+  return new THREE.BufferAttribute(new Uint32Array(index), 1);
+}

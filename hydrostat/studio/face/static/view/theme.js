@@ -1,0 +1,38 @@
+// Colours that follow the page. The colours of felt and cables come from palette.py, as a prop.
+
+const LIGHT = {
+  back: "#faf8f6", grid: "#efebed", axis: "#e0dbe0", ink: "#2b2833", muted: "#6d6876", paper: "#ffffff",
+  ghost: "#b4afbc", ghostFill: "#efecf1", ghostFade: 1.0, accent: "#0b5fa5",
+};
+const DARK = {
+  back: "#1a1820", grid: "#24212b", axis: "#332f3b", ink: "#efecf2", muted: "#a7a1af", paper: "#221f29",
+  ghost: "#8b8498", ghostFill: "#2c2834", ghostFade: 1.0, accent: "#6db3ec",
+};
+
+export function theme(dark) {
+  return dark ? DARK : LIGHT;
+}
+
+/** Red, green and blue, 0 to 1, of a colour such as "#0b5fa5". */
+export function rgb(hex) {
+  const number = parseInt(hex.slice(1), 16);
+  return [(number >> 16) / 255, ((number >> 8) & 255) / 255, (number & 255) / 255];
+}
+
+/** A colour with a share, 0 to 1, of another. */
+export function mix(colour, other, share) {
+  const [a, b] = [rgb(colour), rgb(other)];
+  return "#" + a.map((value, i) => Math.round(255 * (value + share * (b[i] - value))).toString(16).padStart(2, "0")).join("");
+}
+
+/** A colour of some opacity, for a canvas. */
+export function veil(colour, opacity) {
+  return `rgba(${rgb(colour).map((value) => Math.round(255 * value)).join(",")},${opacity})`;
+}
+
+/** The colour at a share, 0 to 1, of a row of colours. */
+export function ramp(colours, share) {
+  const place = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
+  const first = Math.min(Math.floor(place), colours.length - 2);
+  return mix(colours[first], colours[first + 1], place - first);
+}

@@ -1,0 +1,440 @@
+// The view: holds a scene, takes frames, paints when something has changed.
+
+import { THREE } from "nicegui-scene";
+import { Camera } from "./camera.js";
+import { Grid } from "./grid.js";
+import { Link } from "./link.js";
+import { Overlay } from "./overlay.js";
+import { opened, same } from "./packet.js";
+import { met, pick } from "./pick.js";
+import { Pointer } from "./pointer.js";
+import { Probe } from "./probe.js";
+import { Seam } from "./seam.js";
+import { Strokes } from "./strokes.js";
+import { cableLook, strokeLines } from "./style.js";
+import { Cloud, Ghost, Surface, rampTexture } from "./surface.js";
+import { mix, theme } from "./theme.js";
+
+const BARE = 300; // a scene without a frame is shown at rest after so long [ms]
+const MARGIN = { flat: [84, 44, 44, 56], space: [84, 44, 44, 72] };
+
+export class View {
+  /**
+   * @param element that is filled
+   * @param canvases for the body and for what is drawn on top
+   * @param options {stream, dark, palette: colours by name and `tension`, a row of them, brush}
+   * @param tell (name, value) is told "connected" and "note"
+   */
+  constructor(element, canvases, options, tell) {
+    Object.assign(this, { element, tell, brush: options.brush, palette: options.palette, ink: options.palette.ink });
+    this.renderer = new THREE.WebGLRenderer({ canvas: canvases[0], antialias: true, alpha: false, stencil: true, powerPreference: "high-performance" });
+    this.renderer.autoClear = true;
+    this.overlay = new Overlay(canvases[1]);
+    this.world = new THREE.Scene();
+    this.camera = new Camera();
+    this.ramp = rampTexture(options.palette.tension);
+    this.font = getComputedStyle(element).fontFamily || "sans-serif";
+    Object.assign(this, { dots: [], lines: [], areas: [], ghosts: {}, clouds: {}, points: new Float32Array(), hover: "" });
+    Object.assign(this, { surface: null, rest: new Float32Array(), seam: null, strokes: null, cut: null, serial: -1 });
+    this.see = null; // what the person chose; null: as fits the body
+    this.dirty = new Set();
+    this.pixel = new Uint8Array(4);
+    this.grid = new Grid();
+    this.world.add(this.grid.object);
+    this.probe = new Probe(this);
+    window.__app = this.probe;
+    this.dress(options.dark);
+    this.pointer = new Pointer(this);
+    this.watch = new ResizeObserver(() => this.mark("size"));
+    this.watch.observe(element);
+    canvases[0].addEventListener("webglcontextlost", (event) => event.preventDefault());
+    canvases[0].addEventListener("webglcontextrestored", () => this.mark("camera"));
+    this.link = new Link(options.stream, (buffer) => this.guarded(() => this.receive(buffer)), (connected) => this.linked(connected));
+    this.mark("size");
+  }
+
+  linked(connected) {
+    this.probe.connected = connected;
+    if (!connected) this.pointer.cancel();
+    this.tell("connected", connected);
+  }
+
+  send(message) {
+    this.link.send(message);
+  }
+
+  /** Do something; an error is kept for tests and told on the console, and the view goes on. */
+  guarded(work) {
+    try {
+      return work();
+    } catch (error) {
+      if (this.probe.errors.length < 100) this.probe.errors.push(String(error?.stack ?? error));
+      console.error(error);
+      return undefined;
+    }
+  }
+
+  receive(buffer) {
+    const { head, arrays } = opened(buffer);
+    if (head.kind === "scene") {
+      this.probe.scenes += 1;
+      this.coming = { head, arrays };
+      clearTimeout(this.bare);
+      this.bare = setTimeout(() => this.mark("bare"), BARE);
+    } else if (head.kind === "frame") {
+      this.probe.frames += 1;
+      this.latest = { head, arrays };
+      this.mark("frame");
+    } else if (head.kind === "note") {
+      this.tell("note", head);
+    }
+  }
+
+  /** Something has changed: the next animation frame paints. */
+  mark(what) {
+    this.dirty.add(what);
+    if (this.ticket || this.ended) return;
+    this.ticket = requestAnimationFrame((now) => {
+      this.ticket = 0;
+      this.guarded(() => this.tick(now));
+    });
+  }
+
+  tick(now) {
+    const dirty = this.dirty;
+    this.dirty = new Set();
+    this.pointer.tick();
+    const start = performance.now();
+    if (dirty.has("size")) this.resize();
+    let fresh = false;
+    if (dirty.has("frame") || dirty.has("bare")) fresh = this.guarded(() => this.advance(dirty.has("bare")));
+    if (this.camera.turn(now)) this.mark("camera");
+    const only = (...names) => [...dirty].every((name) => names.includes(name));
+    if (only("drag")) return;
+    if (only("drag", "hover") && !this.point()) return;
+    if (!only("hover", "drag")) this.point();
+    this.paint();
+    if (!dirty.has("frame") && !dirty.has("bare")) return;
+    this.send({ kind: "seen" });
+    if (fresh) this.probe.saw(this.stamp ?? 0, performance.now() - start);
+  }
+
+  /** Take the newest frame, and the scene it belongs to if that is new; whether there was one. */
+  advance(bare) {
+    const { coming, latest } = this;
+    this.latest = null;
+    if (coming && (bare || latest?.head.scene === coming.head.serial)) {
+      this.coming = null;
+      clearTimeout(this.bare);
+      this.build(coming.head, coming.arrays);
+    }
+    if (!latest || latest.head.scene !== this.serial) return false;
+    this.stamp = latest.head.stamp;
+    this.move(latest.arrays);
+    return true;
+  }
+
+  /** Show another scene; what is the same in it is kept. */
+  build(head, arrays) {
+    const flat = head.dim === 2;
+    const other = !this.surface || flat !== this.camera.flat || !same(arrays.rest, this.rest) || !same(arrays.faces, this.surface.faces);
+    const elsewhere = !this.surface || flat !== this.camera.flat || head.name !== this.name || this.grown(arrays.rest);
+    Object.assign(this, { serial: head.serial, name: head.name, rest: arrays.rest, rim: arrays.rim });
+    if (other) this.newBody(flat, arrays);
+    const before = new Map(this.dots.map((dot) => [dot.key, dot]));
+    this.dots = head.things.filter((thing) => thing.kind === "dot").map((dot) => ({
+      ...dot, short: initials(dot.label), x: -99, y: -99, depth: 0, density: 1, place: [0, 0, 0], slot: before.get(dot.key)?.slot,
+    }));
+    this.lines = head.things.filter((thing) => thing.kind === "line");
+    this.areas = head.things.filter((thing) => thing.kind === "area").map((area) => ({ ...area, spots: [] }));
+    this.swap("ghosts", "ghost:", head, arrays, (thing, nodes) => new Ghost(nodes, this.surface.faces, flat, flat ? 1 : 8));
+    this.swap("clouds", "cloud:", head, arrays, (thing, points) => new Cloud(points, thing.colour, flat, flat ? 7 : 4));
+    this.ghostNodes = Object.fromEntries(Object.entries(this.ghosts).map(([name, { array }]) => [`ghost:${name}`, array]));
+    this.layLines();
+    this.applyLook();
+    if (elsewhere) {
+      this.camera.begin(flat);
+      this.fitting = true;
+    }
+    this.mark("camera");
+  }
+
+  /** Whether a body is so much larger or smaller than before that one has to look anew. */
+  grown(rest) {
+    const size = (table) => table.reduce((most, value) => Math.max(most, Math.abs(value)), 1e-9);
+    const ratio = size(rest) / size(this.rest);
+    return ratio > 1.5 || ratio < 0.67;
+  }
+
+  newBody(flat, arrays) {
+    for (const old of [this.surface, this.inner]) this.drop(old);
+    this.surface = new Surface(arrays.rest, arrays.faces, flat, this.ramp, flat ? 2 : 5);
+    this.seam = flat ? new Seam(arrays.rim, arrays.rest, arrays.faces) : null;
+    this.inner = flat && this.seam.faces.length ? new Surface(this.seam.position, this.seam.faces, true, this.ramp, 3) : null;
+    this.add(this.surface);
+    if (this.inner) this.add(this.inner);
+    this.rests = arrays.rest;
+  }
+
+  /** Take over ghosts or clouds that are the same, make those that are not. */
+  swap(kind, prefix, head, arrays, make) {
+    const old = this[kind], fresh = {};
+    for (const thing of head.things) {
+      const array = `${thing.kind}:` === prefix ? arrays[prefix + thing.name] : null;
+      if (!array || fresh[thing.name]) continue;
+      const kept = old[thing.name];
+      if (kept && kept.thing.colour === thing.colour && kept.faces === this.surface.faces && same(kept.array, array)) {
+        fresh[thing.name] = kept;
+        delete old[thing.name];
+      } else {
+        const object = make(thing, array);
+        this.add(object);
+        fresh[thing.name] = { thing, array, object, faces: this.surface.faces };
+      }
+    }
+    for (const { object } of Object.values(old)) this.drop(object);
+    this[kind] = fresh;
+  }
+
+  add(part) {
+    for (const object of part.objects) this.world.add(object);
+  }
+
+  drop(part) {
+    if (!part) return;
+    for (const object of part.objects) this.world.remove(object);
+    part.dispose();
+  }
+
+  layLines() {
+    const flat = this.camera.flat = this.rim !== undefined;
+    if (this.strokes?.flat !== flat) {
+      this.drop(this.strokes);
+      this.strokes = new Strokes(flat);
+      this.strokes.mesh.renderOrder = flat ? 6 : 3;
+      this.strokes.behind.renderOrder = 9;
+      this.add(this.strokes);
+    }
+    this.laid = strokeLines(this);
+    this.strokes.lay(this.laid);
+  }
+
+  /** Everything to the place of a frame. */
+  move(arrays) {
+    this.surface.move(arrays.nodes, arrays.values);
+    this.points = arrays.points;
+    const tables = { points: arrays.points, nodes: arrays.nodes, ...this.ghostNodes };
+    if (this.seam) {
+      this.seam.move(arrays.nodes);
+      tables.seam = this.seam.position;
+      this.inner?.move(this.seam.position, null);
+      if (this.inner) this.inner.body.visible = !arrays.values;
+    }
+    let index = 0;
+    for (const line of this.lines) line.load = arrays.loads[index++] ?? 0;
+    for (const line of this.laid) {
+      if (!line.cable) continue;
+      const { width, colour } = cableLook(this, line.cable);
+      this.strokes.paint(line, line.casing ? width + 2.6 : width, line.casing ? line.colour : colour);
+    }
+    this.strokes.move(tables);
+    for (const dot of this.dots) dot.place = [0, 1, 2].map((k) => arrays.points[3 * dot.first + k]);
+    this.stale = true;
+    if (this.fitting) this.fit();
+  }
+
+  /** Colours, and how much is seen through the body. */
+  applyLook() {
+    const { surface, inner, palette } = this;
+    if (!surface) return;
+    const flat = this.camera.flat;
+    surface.colour(palette, mix(palette.seam, palette.dark, 0.12));
+    inner?.colour({ ...palette, felt: palette.felt_light }, palette.felt);
+    const cables = this.lines.some((line) => line.stroke === "cable");
+    const opacity = flat ? 1 : this.see ?? (cables ? 0.86 : 1);
+    surface.see(opacity);
+    if (inner) inner.edges.visible = false;
+    surface.edges.visible = Boolean(this.edges);
+    if (this.strokes) this.strokes.hidden.fade.value = 0.3 + 0.55 * (1 - opacity);
+    surface.section(this.cut);
+    for (const { thing, object } of Object.values(this.ghosts)) {
+      const pale = thing.colour === this.palette.ghost;
+      const fill = pale ? this.theme.ghost : thing.colour;
+      object.colour(flat ? mix(this.theme.back, fill, 0.28) : fill, flat ? 1 : pale ? 0.6 : 0.8);
+    }
+  }
+
+  dress(dark) {
+    this.theme = theme(dark);
+    this.renderer.setClearColor(this.theme.back, 1);
+    this.grid.colour(this.theme);
+    if (this.strokes) {
+      this.layLines();
+      if (this.points.length || !this.dots.length) this.strokes.move({ points: this.points, nodes: this.surface.position, seam: this.seam?.position, ...this.ghostNodes });
+    }
+    this.applyLook();
+    this.mark("camera");
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.element;
+    if (!clientWidth || !clientHeight) return;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.overlay.resize(clientWidth, clientHeight, ratio);
+    this.camera.resize(clientWidth, clientHeight);
+    this.ratio = ratio;
+    if (!this.camera.moved && this.surface) this.fit();
+  }
+
+  fit() {
+    if (!this.surface) return;
+    this.fitting = !this.element.clientWidth;
+    this.camera.fit([this.surface.position, this.points, ...Object.values(this.ghostNodes ?? {})], MARGIN[this.camera.flat ? "flat" : "space"]);
+    this.mark("camera");
+  }
+
+  /** What is under the pointer; whether that is another thing than before. */
+  point() {
+    const { pointer, element } = this;
+    const { press, at } = pointer;
+    const was = this.hover;
+    let cursor = this.brush ? "crosshair" : "default";
+    if (press) {
+      this.hover = press.hit?.key ?? "";
+      cursor = press.mode === "still" ? element.style.cursor : press.mode === "orbit" ? "move" : "grabbing";
+    } else {
+      const hit = at && this.surface ? pick(this, ...at) : { key: "" };
+      this.hover = hit.key;
+      if (!this.brush && hit.key) cursor = hit.key === "body" ? "grab" : "pointer";
+    }
+    if (element.style.cursor !== cursor) element.style.cursor = cursor;
+    return this.hover !== was;
+  }
+
+  paint() {
+    const { camera, renderer, strokes, ratio } = this;
+    if (!ratio) return;
+    camera.place();
+    this.grid.move(camera);
+    if (strokes) {
+      strokes.uniforms.size.value.set(renderer.domElement.width, renderer.domElement.height);
+      strokes.uniforms.ratio.value = ratio;
+      strokes.uniforms.metre.value = camera.metre;
+    }
+    for (const { object } of Object.values(this.clouds)) object.uniforms.across.value = 3.5 * ratio;
+    this.spread();
+    renderer.render(this.world, camera.now);
+    this.overlay.draw(this);
+    // reading a pixel waits until all is drawn: what is told as painted is painted
+    const gl = renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
+    this.overlay.pen.getImageData(0, 0, 1, 1);
+  }
+
+  /** Dots and areas to their pixels. */
+  spread() {
+    const { camera, points } = this;
+    const spot = [0, 0, 0];
+    for (const dot of this.dots) {
+      [dot.x, dot.y] = camera.project(...dot.place, spot);
+      dot.density = camera.density(dot.place);
+      if (!camera.flat && this.surface) dot.depth = this.covers(dot.place);
+    }
+    for (const area of this.areas) {
+      area.spots = Array.from({ length: points.length ? area.count : 0 }, (_, k) => {
+        const i = 3 * (area.first + k);
+        const place = [points[i], points[i + 1], points[i + 2]];
+        const [x, y, depth] = camera.project(...place, spot);
+        return [x, y, depth, camera.density(place)];
+      });
+    }
+  }
+
+  /** How many layers of skin lie before a point: one if it is inside, two if it is behind the body. */
+  covers(place) {
+    const { camera, surface } = this;
+    const toward = camera.flat || camera.parallel ? camera.toward.clone()
+      : camera.now.position.clone().sub({ x: place[0], y: place[1], z: place[2] }).normalize();
+    const origin = new THREE.Vector3(...place).addScaledVector(toward, 0.004 * camera.reach);
+    return met(origin, toward, surface.position, surface.faces, this.cut, true).length;
+  }
+
+  // What the page may ask for.
+
+  look(name) {
+    this.camera.look(name, performance.now());
+    this.mark("camera");
+  }
+
+  parallel(on) {
+    this.camera.parallel = on;
+    this.mark("camera");
+  }
+
+  opacity(value) {
+    this.see = value;
+    this.applyLook();
+    this.mark("camera");
+  }
+
+  mesh(on) {
+    this.edges = on;
+    this.applyLook();
+    this.mark("camera");
+  }
+
+  /** Cut the body across an axis at a share of its extent; the side that faces the viewer goes away. */
+  section(axis, share) {
+    const k = ["x", "y", "z"].indexOf(axis);
+    if (k < 0 || this.camera.flat || !this.surface) {
+      [this.cut, this.cutAxis] = [null, null];
+    } else {
+      if (this.cutAxis !== axis) this.cutSide = this.camera.toward[axis] < 0 ? -1 : 1;
+      this.cutAxis = axis;
+      let low = Infinity, high = -Infinity;
+      for (let i = k; i < this.rest.length; i += 3) {
+        low = Math.min(low, this.rest[i]);
+        high = Math.max(high, this.rest[i]);
+      }
+      const at = low + share * (high - low);
+      this.cut = [0, 0, 0, this.cutSide * at];
+      this.cut[k] = this.cutSide;
+    }
+    this.applyLook();
+    this.mark("camera");
+  }
+
+  /** The view as a PNG, as a data URL. */
+  picture() {
+    this.paint();
+    const sheet = document.createElement("canvas");
+    [sheet.width, sheet.height] = [this.overlay.canvas.width, this.overlay.canvas.height];
+    const pen = sheet.getContext("2d");
+    this.renderer.render(this.world, this.camera.now);
+    pen.drawImage(this.renderer.domElement, 0, 0);
+    pen.drawImage(this.overlay.canvas, 0, 0);
+    return sheet.toDataURL("image/png");
+  }
+
+  dispose() {
+    this.ended = true;
+    this.link.close();
+    this.pointer.dispose();
+    this.watch.disconnect();
+    cancelAnimationFrame(this.ticket);
+    clearTimeout(this.bare);
+    for (const part of [this.surface, this.inner, this.strokes, this.grid]) this.drop(part);
+    for (const { object } of [...Object.values(this.ghosts), ...Object.values(this.clouds)]) this.drop(object);
+    this.ramp.dispose();
+    this.renderer.dispose();
+    if (window.__app === this.probe) delete window.__app;
+  }
+}
+
+/** Up to two letters for a disc: "index flexor" is IF, "winch_2" is W2, "left" is L. */
+function initials(label) {
+  const parts = label.split(/[\s_\-.]+|(?<=[a-z])(?=[0-9])/i).filter(Boolean);
+  return parts.slice(0, 2).map((part) => part[0]).join("").toUpperCase();
+}

@@ -1,0 +1,89 @@
+// The view of the body in the page: a Vue component around `View`.
+
+import { View } from "hydrostat-view";
+
+const FILL = "position:absolute;inset:0;width:100%;height:100%;display:block;pointer-events:none";
+
+export default {
+  template: `
+    <div ref="root" tabindex="-1" role="img" aria-label="The body"
+         style="position:relative;width:100%;height:100%;overflow:hidden;touch-action:none;user-select:none;outline:none">
+      <canvas ref="body" style="${FILL}"></canvas>
+      <canvas ref="over" style="${FILL}"></canvas>
+      <div v-if="failure" style="position:absolute;inset:0;display:grid;place-items:center;padding:24px;text-align:center">
+        {{ failure }}</div>
+      <div v-if="!connected && !failure" role="status"
+           style="position:absolute;top:14px;left:50%;transform:translateX(-50%);padding:5px 14px;border-radius:14px;
+                  font-size:13px;background:#2b2833;color:#fffdfb;opacity:0.92;pointer-events:none">
+        {{ met ? "reconnecting ..." : "connecting ..." }}</div>
+    </div>`,
+
+  props: { stream: String, palette: Object, dark: { default: null }, brush: Boolean },
+
+  data: () => ({ connected: true, met: false, failure: "" }),
+
+  mounted() {
+    const { root, body, over } = this.$refs;
+    const options = { stream: this.stream, palette: this.palette, dark: this.isDark(), brush: this.brush };
+    try {
+      this.view_ = new View(root, [body, over], options, (name, value) => this.hear(name, value));
+    } catch (error) {
+      console.error(error);
+      this.failure = "This browser shows no WebGL, which the view is drawn with. Switch it on, or use another browser.";
+      return;
+    }
+    this.slow = setTimeout(() => (this.connected = this.connected && this.met), 1500);
+    this.page = new MutationObserver(() => this.view_.dress(this.isDark()));
+    this.page.observe(document.body, { attributes: true, attributeFilter: ["class"] });
+  },
+
+  unmounted() {
+    clearTimeout(this.slow);
+    this.page?.disconnect();
+    this.view_?.dispose();
+  },
+
+  watch: {
+    dark() {
+      this.view_?.dress(this.isDark());
+    },
+    brush(on) {
+      if (this.view_) this.view_.brush = on;
+    },
+  },
+
+  methods: {
+    isDark() {
+      return this.dark ?? document.body.classList.contains("body--dark");
+    },
+    hear(name, value) {
+      if (name === "connected") {
+        this.connected = value;
+        this.met = this.met || value;
+      } else {
+        this.$emit(name, value);
+      }
+    },
+    view(name) {
+      this.view_?.look(name);
+    },
+    fit() {
+      this.view_?.fit();
+    },
+    section(axis, share) {
+      this.view_?.section(axis, share);
+    },
+    orthographic(on) {
+      this.view_?.parallel(on);
+    },
+    opacity(value) {
+      this.view_?.opacity(value);
+    },
+    mesh(on) {
+      this.view_?.mesh(on);
+    },
+    picture() {
+      return this.view_?.picture() ?? null;
+    },
+  },
+};
