@@ -11,6 +11,7 @@ from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.tree_options import TreeOptions
 from hydrostat.design.trees.design_trees import design_trees
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 
@@ -32,6 +33,7 @@ def design_cables(
     options: RouteOptions | TreeOptions | None = None,
     improve: bool = False,
     progress: Progress | None = None,
+    watch: Watch | None = None,
 ) -> Network:
     """A network of winches and cables that brings a robot into some poses (R2, R35, F1, E28).
 
@@ -47,6 +49,7 @@ def design_cables(
         improve: begin with the robot's own winches and cables, and move and exchange those that are not locked; what
             travel, release, slack and spools these have is allowed.
         progress: called as the work goes on.
+        watch: called with each better network that is found on the way, not yet judged as those are that are returned.
 
     Raises:
         InputError: no pose, a pose of a marker that does not exist, counts, constraints or options that do not fit.
@@ -60,7 +63,7 @@ def design_cables(
     given.check(robot)
     if method not in METHODS:
         raise InputError(f'method = "{method}": must be one of {", ".join(METHODS)}')
-    told = progress or silent
+    told, seen = progress or silent, watch or unseen
     if method == "trees":
         options = options or TreeOptions()
         if not isinstance(options, TreeOptions):
@@ -69,7 +72,7 @@ def design_cables(
             raise InputError('method "trees" starts from nothing with a number of winches; use method "routes"')
         _check_trees(robot, given)
         return design_trees(
-            robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told
+            robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told, watch=seen
         )
     options = options or RouteOptions()
     if not isinstance(options, RouteOptions):
@@ -77,9 +80,17 @@ def design_cables(
     if not isinstance(winches, int):
         if improve:
             raise InputError('winches = "auto" starts from nothing; give a number of winches to improve a network')
-        return design_fewest(robot, poses, cables=cables, constraints=given, options=options, progress=told)
+        return design_fewest(robot, poses, cables=cables, constraints=given, options=options, progress=told, watch=seen)
     return design_routes(
-        robot, poses, winches=winches, cables=cables, constraints=given, options=options, progress=told, improve=improve
+        robot,
+        poses,
+        winches=winches,
+        cables=cables,
+        constraints=given,
+        options=options,
+        progress=told,
+        watch=seen,
+        improve=improve,
     )
 
 

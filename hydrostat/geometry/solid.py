@@ -21,6 +21,10 @@ class Solid:
 
     surface: Surface
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What another process is sent: trees cannot be, and are made again where they are asked for."""
+        return {"surface": self.surface}
+
     def winding(self, points: Points) -> Vector:
         """How often the surface goes round each point: 1 inside, 0 outside, in between near holes."""
         return self._winding_tree.winding_number(np.ascontiguousarray(points))

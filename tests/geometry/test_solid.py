@@ -1,5 +1,7 @@
 """The inside of a surface. Oracles: closed forms of a ball and a box, igl.signed_distance."""
 
+import pickle
+
 import numpy as np
 import pytest
 from solids import ball, brick, hollow, moved, two_fingers
@@ -65,3 +67,9 @@ def test_normals_point_outward_and_are_none_without_area() -> None:
     np.testing.assert_allclose(np.linalg.norm(solid.normals, axis=1), 1)
     flat = Solid(Surface(np.eye(3), np.array([[0, 1, 2], [0, 1, 1]])))
     np.testing.assert_allclose(flat.normals, [np.full(3, 3**-0.5), np.zeros(3)])
+
+
+def test_a_solid_that_was_asked_can_be_sent_to_another_process() -> None:
+    solid, points = Solid(ball(0.05)), RANDOM.normal(size=(20, 3)) * 0.04
+    expected = solid.distances(points)
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(solid)).distances(points), expected)

@@ -8,6 +8,7 @@ from hydrostat.design.network import Alternative, Network
 from hydrostat.design.progress import Progress
 from hydrostat.design.route_options import RouteOptions
 from hydrostat.design.routes.design_routes import Search
+from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Pose, Robot
 
@@ -20,6 +21,7 @@ def design_fewest(
     constraints: Constraints,
     options: RouteOptions,
     progress: Progress,
+    watch: Watch = unseen,
 ) -> Network:
     """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
 
@@ -33,11 +35,13 @@ def design_fewest(
         constraints: to keep; locked winches count.
         options: of the search, with the tolerance.
         progress: told how the work goes on.
+        watch: told each better network on the way, whatever its number of winches.
     """
     size = robot.body.mesh.size
     tolerance = _SHARE * size if options.tolerance is None else options.tolerance
     sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
     found: list[Network] = []
+    better = Better(watch)
     front: dict[tuple[int, int], Alternative] = {}
     interrupted = False
     least = max(1, _locked(robot, constraints))
@@ -49,7 +53,7 @@ def design_fewest(
         )
     for winches in range(least, cables + 1):
         most = min(cables, winches * constraints.cables_per_winch)
-        search = Search(robot, poses, winches, most, constraints, sought, progress)
+        search = Search(robot, poses, winches, most, constraints, sought, progress, watch=better)
         try:
             found.append(search.run())
         except KeyboardInterrupt:

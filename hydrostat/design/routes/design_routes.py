@@ -20,6 +20,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Pose, Robot
@@ -35,6 +36,7 @@ def design_routes(
     constraints: Constraints,
     options: RouteOptions,
     progress: Progress,
+    watch: Watch = unseen,
     improve: bool = False,
 ) -> Network:
     """Cables added where the adjoint of the pose error prices them best, and moved to where it is least.
@@ -50,7 +52,8 @@ def design_routes(
         InputError: a body too thin for the constraints.
         HydrostatError: no network can be built.
     """
-    return Search(robot, poses, winches, cables, constraints, options, progress, improve=improve).run()
+    search = Search(robot, poses, winches, cables, constraints, options, progress, watch=watch, improve=improve)
+    return search.run()
 
 
 class Search:
@@ -66,10 +69,12 @@ class Search:
         options: RouteOptions,
         progress: Progress,
         *,
+        watch: Watch = unseen,
         improve: bool = False,
     ) -> None:
         self.robot, self.poses, self.winches, self.cables = robot, poses, winches, cables
         self.constraints, self.options, self.progress, self.improve = constraints, options, progress, improve
+        self.watch = watch
         self.bench = Bench(robot, poses, constraints)
         self.stages: list[Stage] = []
         self.found: list[Trial] = []
@@ -210,9 +215,11 @@ class Search:
         size = len(trial.layout.stands), len(trial.layout.lines)
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
+        stage = Stage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error)
+        self.stages.append(stage)
         if self.best is None or trial.cost < self.best.cost:
             self.best = trial
-        self.stages.append(Stage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error))
+            self.watch(stage)
 
     def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""

@@ -25,6 +25,7 @@ from hydrostat.design.trees.judge import judge
 from hydrostat.design.trees.prune import prune
 from hydrostat.design.trees.via_points import keep_apart
 from hydrostat.design.trees.winch_tree import Tree, WinchTrees
+from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Cable, Pose, Robot, Winch
 
@@ -38,6 +39,7 @@ def design_trees(
     constraints: Constraints,
     options: TreeOptions,
     progress: Progress,
+    watch: Watch = unseen,
 ) -> Network:
     """Winch trees: the network of the thesis's method that reaches the poses best.
 
@@ -51,7 +53,7 @@ def design_trees(
         InputError: a body that is not flat or too thin.
         HydrostatError: no network can be built from the muscles that were found.
     """
-    return _Design(robot, poses, winches, cables, constraints, options, progress).run()
+    return _Design(robot, poses, winches, cables, constraints, options, progress, watch).run()
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +89,10 @@ class _Design:
         constraints: Constraints,
         options: TreeOptions,
         progress: Progress,
+        watch: Watch,
     ) -> None:
         self.robot, self.poses, self.options, self.progress = robot, poses, options, progress
-        self.constraints = constraints
+        self.constraints, self.watch = constraints, watch
         self.winches, self.cables = winches, cables
         self.mesh = robot.body.mesh
         self.region = body_region(robot.body, constraints.clearance)
@@ -106,7 +109,11 @@ class _Design:
                 "winches, lower the clearance, or choose a pose that bends the body more"
             )
         best, reached = judge(
-            [robot for _, robot in built], self.poses, tension=self.constraints.tension, progress=self.progress
+            [robot for _, robot in built],
+            self.poses,
+            tension=self.constraints.tension,
+            progress=self.progress,
+            watch=self.watch,
         )
         plan, designed = built[best]
         designed, reached = prune(

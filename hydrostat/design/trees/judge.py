@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 
 from hydrostat.design.error import rms_error
+from hydrostat.design.network import Stage
 from hydrostat.design.progress import Progress
+from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
@@ -19,7 +21,7 @@ _FEWEST = 4
 
 
 def judge(
-    robots: Sequence[Robot], poses: Sequence[Pose], *, tension: float, progress: Progress
+    robots: Sequence[Robot], poses: Sequence[Pose], *, tension: float, progress: Progress, watch: Watch = unseen
 ) -> tuple[int, tuple[ReachedPose, ...]]:
     """The index of the robot of least cost, and what it reaches of each pose.
 
@@ -30,10 +32,12 @@ def judge(
         poses: what they should reach.
         tension: what a cable should bear at most [N], see `cost`.
         progress: called as the work goes on.
+        watch: told each robot that is better than all before and keeps to the tension.
     """
     simulations = [Simulation(robot) for robot in robots]
     reached: dict[int, tuple[ReachedPose, ...]] = {}
     chosen = list(range(len(robots)))
+    better = Better(watch)
     for number, options in enumerate(_ROUNDS):
         for done, index in enumerate(chosen):
             if number == 0:
@@ -43,6 +47,9 @@ def judge(
             reached[index] = tuple(
                 solve_ik(simulations[index], pose, start=start, options=options) for pose, start in pairs
             )
+            error = rms_error(reached[index])
+            if cost(reached[index], tension) <= error:
+                better(Stage(words="a network judged", robot=robots[index], error=error))
         chosen.sort(key=lambda index: cost(reached[index], tension))
         if number < len(_ROUNDS) - 1:
             chosen = chosen[: max(_FEWEST, len(chosen) // _KEPT)]

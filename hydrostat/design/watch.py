@@ -1,0 +1,25 @@
+"""`Watch`: who is told of networks that are found on the way."""
+
+from collections.abc import Callable
+
+from hydrostat.design.network import Stage
+
+Watch = Callable[[Stage], None]
+"""Told a network on the way, each better than the ones told before."""
+
+
+def unseen(stage: Stage) -> None:
+    """Nobody watches."""
+
+
+class Better:
+    """Passes on what has a smaller error than all before."""
+
+    def __init__(self, watch: Watch) -> None:
+        self._watch, self._least = watch, float("inf")
+
+    def __call__(self, stage: Stage) -> None:
+        """Hear of a network."""
+        if stage.error < self._least:
+            self._least = stage.error
+            self._watch(stage)

@@ -1,0 +1,60 @@
+"""Networks told of on the way. Oracles: the stages that the design keeps; errors of all that were judged."""
+
+from dataclasses import replace
+
+import pytest
+from builders import strip_robot
+from test_design_routes import DOWN, SMALL, UP, bare
+from test_judge import POSES, shifted
+
+from hydrostat.design import RouteTrace, Stage, design_cables
+from hydrostat.design.trees.judge import judge
+from hydrostat.design.watch import Better
+
+
+def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) -> None:
+    told: list[Stage] = []
+    network = design_cables(bare(), [UP], winches=1, cables=2, options=SMALL, watch=told.append)
+    assert isinstance(network.trace, RouteTrace)
+    least, expected = float("inf"), []
+    for stage in network.trace.stages:
+        if stage.error < least:
+            least, expected = stage.error, [*expected, stage]
+    assert told == expected
+    assert len(told) > 1
+
+
+def test_the_fewest_tell_only_what_beats_fewer_winches(unchecked: None) -> None:
+    told: list[Stage] = []
+    options = replace(SMALL, tolerance=1e-9)
+    design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=options, watch=told.append)
+    errors = [stage.error for stage in told]
+    assert errors == sorted(set(errors), reverse=True)
+    assert {len(stage.robot.winches) for stage in told} == {1, 2}
+
+
+def test_the_watched_may_stop_the_search(unchecked: None) -> None:
+    def stop(stage: Stage) -> None:
+        raise KeyboardInterrupt
+
+    network = design_cables(bare(), [UP, DOWN], winches=2, cables=2, options=SMALL, watch=stop)
+    assert not network.complete
+
+
+@pytest.mark.parametrize("tension", [100.0, 1e-3])
+def test_judges_tell_what_is_better_and_bears_it(tension: float) -> None:
+    robots = [shifted(-0.008), strip_robot(columns=10, rows=3), shifted(0.006)]
+    told: list[Stage] = []
+    judge(robots, POSES, tension=tension, progress=lambda *_: None, watch=told.append)
+    errors = [stage.error for stage in told]
+    assert errors == sorted(set(errors), reverse=True)
+    assert bool(told) is (tension == 100.0)
+
+
+def test_better_passes_on_what_is_better() -> None:
+    told: list[Stage] = []
+    better = Better(told.append)
+    stages = [Stage(words="", robot=bare(), error=error) for error in (3.0, 4.0, 2.0, 2.0, 1.0)]
+    for stage in stages:
+        better(stage)
+    assert told == [stages[0], stages[2], stages[4]]
