@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 from shutil import rmtree
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
-
-_SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01
-"""Travels to try for a first pose, in shares of all; how near a pose is reached that is, in sizes of the body."""
 
 LONGEST = 20.0
 """No length that is asked for is longer [m]."""
@@ -204,6 +201,7 @@ def _from_bytes(
     """A robot from a surface; if that had to be healed, with its report and picture."""
     import numpy as np
 
+    from hydrostat.ik.first_pose import with_first_pose
     from hydrostat.plot import draw_healing, save_png
     from hydrostat.robot import replace_file, save_robot, sketch_surface
 
@@ -216,7 +214,7 @@ def _from_bytes(
         material=material,
         **({} if wish.nodes is None else {"nodes": wish.nodes}),
     )
-    save_robot(_within_reach(sketch.robot), folder)
+    save_robot(with_first_pose(sketch.robot), folder)
     lines = list(sketch.healing.lines())
     if not sketch.healing.clean:
         replace_file(folder / "healing.txt", ("\n".join(lines) + "\n").encode())
@@ -228,32 +226,15 @@ def _from_bytes(
 
 
 def _from_mesh(path: Path, folder: Path, wish: _Wish) -> list[str]:
+    from hydrostat.ik.first_pose import with_first_pose
     from hydrostat.robot import save_robot, sketch_mesh
 
     wish.refuse("a ready mesh has its own elements", "element_size", "nodes")
     wish.refuse("is only for drawings", "thickness", "inflate")
     material = wish.material or "flexfoam-it x"
     robot = sketch_mesh(path, name=wish.robot_name, size=wish.size, material=material)
-    save_robot(_within_reach(robot), folder)
+    save_robot(with_first_pose(robot), folder)
     return []
-
-
-def _within_reach(robot: "Robot") -> "Robot":
-    """The robot with a pose that its cable makes, the farthest of a few that inverse kinematics finds again."""
-    from hydrostat.cli.prepare import prepared
-    from hydrostat.ik import solve_ik
-    from hydrostat.robot import Pose
-
-    simulation = prepared(robot)
-    for share in _SHARES:
-        solved = simulation.solve({"pull": share * robot.winches[0].travel}, strict=False)
-        if not solved.result.converged:
-            continue
-        targets = {name: tuple(round(float(value), 4) for value in place) for name, place in solved.markers.items()}
-        pose = Pose(name="bend", targets=targets)
-        if solve_ik(simulation, pose).rms_error < _REACHED * robot.body.mesh.size:
-            return replace(robot, poses={pose.name: pose})
-    return robot
 
 
 def _draw(folder: Path) -> "Robot":
