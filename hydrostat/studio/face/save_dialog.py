@@ -13,10 +13,10 @@ def save_dialog(page: Page) -> Callable[[], None]:
     with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
         ui.label("Save the robot").classes("studio-title")
         ui.label("A folder with robot.toml and the file of the body.").classes("studio-hint")
-        folder = ui.input("Folder").classes("w-full").mark("save-folder")
+        folder = ui.input("Folder").classes("w-full")
         with ui.row().classes("w-full justify-end"):
             ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
-            ui.button("Save", on_click=lambda: save()).props("unelevated no-caps").mark("save-now")
+            ui.button("Save", on_click=lambda: save()).props("unelevated no-caps")
 
     async def save() -> None:
         name = (folder.value or "").strip()

@@ -21,11 +21,21 @@ def view_bar(page: Page) -> None:
             _button("crop_portrait", "Front (1)", lambda: view.view("front"))
             _button("flip", "Side (3)", lambda: view.view("side"))
             _button("layers", "Top (7)", lambda: view.view("top"))
-            with ui.button(icon="view_in_ar").props('flat round dense size=sm aria-label="Looks"').tooltip("Looks"):
+            with (
+                ui.button(color=None, icon="view_in_ar")
+                .props('flat round dense size=sm aria-label="Looks"')
+                .tooltip("Looks")
+            ):
                 _space_menu(page)
-        with ui.button(icon="palette").props('flat round dense size=sm aria-label="Colours"').tooltip("Colours"):
+        with (
+            ui.button(color=None, icon="palette")
+            .props('flat round dense size=sm aria-label="Colours"')
+            .tooltip("Colours")
+        ):
             _colour_menu(page)
-        mesh = ui.button(icon="grid_4x4").props('flat round dense size=sm aria-label="Mesh"').tooltip("Mesh")
+        mesh = (
+            ui.button(color=None, icon="grid_4x4").props('flat round dense size=sm aria-label="Mesh"').tooltip("Mesh")
+        )
         mesh.on_click(lambda: _toggle_mesh(page, mesh))
 
     def show() -> None:
@@ -63,6 +73,6 @@ def _toggle_mesh(page: Page, button: ui.button) -> None:
 
 
 def _button(icon: str, words: str, action: object) -> None:
-    ui.button(icon=icon, on_click=lambda: action()).props(  # type: ignore[operator]
+    ui.button(icon=icon, color=None, on_click=lambda: action()).props(  # type: ignore[operator]
         f'flat round dense size=sm aria-label="{words}"'
     ).tooltip(words)

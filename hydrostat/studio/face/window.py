@@ -83,10 +83,9 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
         ui.space()
         with ui.element("div").classes("studio-stages"):
             buttons = {
-                stage: ui.button(title, icon=icon, on_click=partial(page.go, stage))
-                .props("flat no-caps dense")
+                stage: ui.button(title, icon=icon, color=None, on_click=partial(page.go, stage))
+                .props(f'flat no-caps dense data-testid="stage-{stage}"')
                 .classes("studio-stage")
-                .mark(f"stage-{stage}")
                 for stage, (title, icon) in TITLES.items()
             }
         ui.space()
@@ -114,8 +113,8 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
 
 
 def _tool(icon: str, words: str, action: Ask) -> ui.button:
-    button = ui.button(icon=icon, on_click=lambda: action()).props(f'flat round dense aria-label="{words}"')
-    return button.tooltip(words).mark(f"tool-{icon}")
+    button = ui.button(icon=icon, color=None, on_click=lambda: action())
+    return button.props(f'flat round dense aria-label="{words}"').classes("studio-tool").tooltip(words)
 
 
 def _key(page: Page, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> None:
