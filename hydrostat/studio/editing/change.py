@@ -1,0 +1,81 @@
+"""`rename`, `change`: other names and numbers of a robot's parts."""
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import Any
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Mount, Robot
+from hydrostat.robot.gravity import gravity_along
+from hydrostat.robot.name import check_name
+from hydrostat.studio.editing.part import Kind, find_part
+
+FIELDS = {
+    Kind.PIN: ("radius", "stiffness"),
+    Kind.WINCH: ("spool_radius", "travel", "release", "mount"),
+    Kind.CABLE: ("winch", "stiffness", "slack", "friction", "sheathed", "spool_radius"),
+}
+"""What can be changed of a part."""
+
+
+def rename(robot: Robot, key: str, name: str) -> Robot:
+    """The same robot with another name of a winch or marker; its cables and poses follow.
+
+    Raises:
+        InputError: no such part, a name that is taken or that robot.toml does not allow.
+    """
+    part = find_part(robot, key)
+    check_name(name)
+    if part is not None and part.kind is Kind.WINCH:
+        before = robot.winches[part.index].name
+        winches = tuple(replace(winch, name=name) if winch.name == before else winch for winch in robot.winches)
+        _free(name, [winch.name for winch in winches])
+        cables = tuple(replace(cable, winch=name) if cable.winch == before else cable for cable in robot.cables)
+        return replace(robot, winches=winches, cables=cables)
+    if part is not None and part.kind is Kind.MARKER:
+        before = robot.markers[part.index].name
+        markers = tuple(replace(marker, name=name) if marker.name == before else marker for marker in robot.markers)
+        _free(name, [marker.name for marker in markers])
+        poses = {
+            pose.name: replace(
+                pose, targets={name if marker == before else marker: at for marker, at in pose.targets.items()}
+            )
+            for pose in robot.poses.values()
+        }
+        return replace(robot, markers=markers, poses=poses)
+    raise InputError(f"{key} has no name")
+
+
+def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
+    """The same robot with other numbers of some of its parts, in SI; see `FIELDS`.
+
+    Raises:
+        InputError: no such part, or a number that it cannot have.
+    """
+    pins, winches, cables = list(robot.pins), list(robot.winches), list(robot.cables)
+    for key in keys:
+        part = find_part(robot, key)
+        if part is None or not set(values) <= set(FIELDS.get(part.kind, ())):
+            raise InputError(f"{key} has no {' or '.join(values)}")
+        changed: list[Any] = {Kind.PIN: pins, Kind.WINCH: winches, Kind.CABLE: cables}[part.kind]
+        changed[part.index] = replace(changed[part.index], **values)
+    if values.get("mount") is Mount.WORLD:  # there its cables begin in the winch itself
+        places = {winch.name: winch.at for winch in winches if winch.mount is Mount.WORLD}
+        cables = [
+            replace(cable, points=(places.get(cable.winch, cable.points[0]), *cable.points[1:])) for cable in cables
+        ]
+    return replace(robot, pins=tuple(pins), winches=tuple(winches), cables=tuple(cables))
+
+
+def set_gravity(robot: Robot, direction: str) -> Robot:
+    """The same robot with gravity in a direction such as "-y", or without any: "".
+
+    Raises:
+        InputError: no direction of this body.
+    """
+    return replace(robot, gravity=gravity_along(direction, robot.body.mesh.dim) if direction else None)
+
+
+def _free(name: str, names: list[str]) -> None:
+    if names.count(name) > 1:
+        raise InputError(f'there is one of the name "{name}" already; names must be unique')

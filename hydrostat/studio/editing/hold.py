@@ -1,0 +1,81 @@
+"""`Hold`: what the pointer has taken hold of."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from hydrostat.robot import Mount, Point, Robot
+from hydrostat.studio.editing.add import insert_via
+from hydrostat.studio.editing.inside import inside, tidy
+from hydrostat.studio.editing.mirror import Mirror
+from hydrostat.studio.editing.part import Kind, find_part, place_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hold:
+    """A part and its twin in the hand, or a cable out of which a via point is about to be drawn.
+
+    Attributes:
+        key: of the part.
+        twin: key of its twin; "": it has none.
+        mirror: plane between the two; None: no mirror.
+        flat: whether the part stays on that plane.
+        grip: from the pointer to the middle of the part [m].
+        start: where the pointer took hold [m].
+    """
+
+    key: str
+    twin: str = ""
+    mirror: Mirror | None = None
+    flat: bool = False
+    grip: Point = ()
+    start: Point = ()
+
+    def places(self, at: Point) -> dict[str, Point]:
+        """Where the parts go when the held one goes to a place [m]."""
+        if self.mirror is not None and self.flat:
+            return {self.key: self.mirror.on_plane(at)}
+        if self.mirror is not None and self.twin:
+            return {self.key: at, self.twin: self.mirror.point(at)}
+        return {self.key: at}
+
+    def asked(self, robot: Robot, world: Point) -> Point:
+        """The place [m] that a pointer asks for; inside the body, but for pins and winches beside it."""
+        at = tuple((np.array(world) + self.grip).tolist()) if self.grip else world
+        part = find_part(robot, self.key)
+        if part is not None and part.kind is Kind.WINCH and robot.winches[part.index].mount is Mount.WORLD:
+            return tidy(at)
+        return tidy(at) if part is not None and part.kind is Kind.PIN else inside(robot.body, at)
+
+    def drawn_out(self, robot: Robot) -> tuple[Robot, Self]:
+        """A robot with the via point that is drawn out of a held cable, and the hold on that; else the same.
+
+        Raises:
+            InputError: there cannot be one.
+        """
+        part = find_part(robot, self.key)
+        if part is None or part.kind is not Kind.CABLE:
+            return robot, self
+        at = inside(robot.body, self.start)
+        robot, place = insert_via(robot, part.index, at)
+        twin = find_part(robot, self.twin)
+        key, other = f"via:{part.index}:{place}", ""
+        if twin is not None and self.mirror is not None:
+            robot, place = insert_via(robot, twin.index, inside(robot.body, self.mirror.point(at)))
+            other = f"via:{twin.index}:{place}"
+        return robot, replace(self, key=key, twin=other, grip=())
+
+
+def take_hold(robot: Robot, key: str, mirror: Mirror | None, world: Point = ()) -> Hold:
+    """Hold a part, by a place near its middle or by the middle itself."""
+    at = place_of(robot, key)
+    twin = None if mirror is None else mirror.twin(robot, key)
+    return Hold(
+        key=key,
+        twin=twin or "",
+        mirror=mirror,
+        flat=mirror is not None and mirror.holds(robot, key),
+        grip=tuple(np.subtract(at, world).tolist()) if at is not None and world else (),
+        start=world,
+    )

@@ -1,0 +1,91 @@
+"""`Part`: what a key such as "winch:left" or "via:0:2" names in a robot."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.robot import Point, Robot
+
+
+class Kind(StrEnum):
+    """What a part is."""
+
+    PIN = "pin"
+    WINCH = "winch"
+    CABLE = "cable"
+    VIA = "via"
+    MARKER = "marker"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """One part of a robot.
+
+    Attributes:
+        kind: what it is.
+        index: its number among the pins, winches, cables or markers.
+        place: number of the point of a cable, for a via point.
+    """
+
+    kind: Kind
+    index: int
+    place: int = 0
+
+
+def find_part(robot: Robot, key: str) -> Part | None:
+    """The part that a key names; None if the robot has none such."""
+    kind, _, rest = key.partition(":")
+    if kind == Kind.PIN:
+        return _numbered(Kind.PIN, rest, len(robot.pins))
+    if kind == Kind.CABLE:
+        return _numbered(Kind.CABLE, rest, len(robot.cables))
+    if kind == Kind.WINCH:
+        return _named(Kind.WINCH, rest, [winch.name for winch in robot.winches])
+    if kind == Kind.MARKER:
+        return _named(Kind.MARKER, rest, [marker.name for marker in robot.markers])
+    if kind == Kind.VIA:
+        index, _, place = rest.partition(":")
+        cable = _numbered(Kind.CABLE, index, len(robot.cables))
+        if cable is not None and place.isdecimal() and 0 < int(place) < len(robot.cables[cable.index].points):
+            return Part(kind=Kind.VIA, index=cable.index, place=int(place))
+    return None
+
+
+def place_of(robot: Robot, key: str) -> Point | None:
+    """Where a part is [m]; None for a cable, which is in many places, and for what there is not."""
+    part = find_part(robot, key)
+    if part is None or part.kind is Kind.CABLE:
+        return None
+    if part.kind is Kind.PIN:
+        pin = robot.pins[part.index]
+        return pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())
+    if part.kind is Kind.VIA:
+        return robot.cables[part.index].points[part.place]
+    return (robot.winches if part.kind is Kind.WINCH else robot.markers)[part.index].at
+
+
+def keys_of(robot: Robot) -> list[str]:
+    """The keys of all pins, winches, cables and markers, each cable after its winch."""
+    keys = [f"pin:{index}" for index in range(len(robot.pins))]
+    for winch in robot.winches:
+        keys.append(f"winch:{winch.name}")
+        keys += [f"cable:{index}" for index, cable in enumerate(robot.cables) if cable.winch == winch.name]
+    return [*keys, *(f"marker:{marker.name}" for marker in robot.markers)]
+
+
+def title_of(key: str) -> str:
+    """A part as a person would call it: "cable 1", "winch left", "point 2 of cable 1"."""
+    kind, _, rest = key.partition(":")
+    if kind == Kind.VIA:
+        index, _, place = rest.partition(":")
+        return f"point {place} of cable {int(index) + 1}"
+    return f"{kind} {int(rest) + 1}" if kind in (Kind.PIN, Kind.CABLE) else f"{kind} {rest}"
+
+
+def _numbered(kind: Kind, text: str, count: int) -> Part | None:
+    return Part(kind=kind, index=int(text)) if text.isdecimal() and int(text) < count else None
+
+
+def _named(kind: Kind, name: str, names: list[str]) -> Part | None:
+    return Part(kind=kind, index=names.index(name)) if name in names else None

@@ -1,0 +1,277 @@
+"""The stage "edit", by its pointer and its panel. The oracle is the robot of the document, and undo."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Point, Robot, gallery_folder, load_robot
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.document import Document
+from hydrostat.studio.editing.editor import QUIET, Editor
+from hydrostat.studio.editing.findings import look_over
+from hydrostat.studio.editing.tool import Tool
+from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.stage import Hit
+from hydrostat.studio.view.picture import Picture
+from hydrostat.studio.view.things import Dot, Line
+
+pytestmark = pytest.mark.filterwarnings("error")
+
+
+@pytest.fixture(scope="module")
+def starfish() -> Robot:
+    return load_robot(gallery_folder("starfish"))
+
+
+@pytest.fixture
+def document(starfish: Robot) -> Document:
+    made = Document(Bell())
+    made.open(Work(robot=starfish))
+    return made
+
+
+@pytest.fixture
+def editor(document: Document) -> Iterator[Editor]:
+    jobs = Jobs(document.bell)
+    yield Editor(document, jobs)
+    jobs.close()
+
+
+def on(at: Point, key: str = "body") -> Hit:
+    return Hit(key=key, rest=at, world=at)
+
+
+def beside(at: Point) -> Hit:
+    return Hit(world=at)
+
+
+def drag(editor: Editor, document: Document, key: str, *places: Point, start: Point) -> None:
+    """What a session does with a pointer that goes through some places."""
+    assert editor.grab(on(start, key))
+    for place in places:
+        editor.drag(on(place, key))
+    editor.release()
+    document.seal()
+
+
+def test_a_drag_is_one_step_back(editor: Editor, document: Document, starfish: Robot) -> None:
+    drag(editor, document, "marker:top", (0.012, 0.115), (0.012, 0.11), start=(0.011, 0.121))
+    assert document.robot.markers[0].at == (0.012, 0.11)
+    assert document.undo_label == "move marker top"
+    assert editor.chosen == "marker:top"
+    document.undo()
+    assert document.robot is starfish
+
+
+def test_what_is_held_by_its_edge_does_not_jump(editor: Editor, document: Document) -> None:
+    drag(editor, document, "marker:top", (0.012, 0.111), start=(0.012, 0.121))
+    assert document.robot.markers[0].at == pytest.approx((0.011, 0.111))
+
+
+def test_outside_the_body_it_stays_at_the_nearest_place_inside(editor: Editor, document: Document) -> None:
+    drag(editor, document, "marker:top", (0.011, 0.3), start=(0.011, 0.121))
+    at = document.robot.markers[0].at
+    assert not document.robot.body.distances(np.array([at])).any()
+    assert at[1] > 0.121
+
+
+def test_where_it_cannot_be_it_stays_where_it_was_last(editor: Editor, document: Document) -> None:
+    assert editor.grab(on((0.0, -0.016), "pin:0"))
+    editor.drag(on((0.0, -0.02)))
+    editor.drag(on((0.5, 0.5)))
+    assert document.robot.pins[0].at == (0.0, -0.02)
+    assert "pin" in editor.shape().notes[0]
+    editor.release()
+    assert not editor.shape().notes
+
+
+def test_a_via_point_is_drawn_out_of_a_cable_in_one_step(editor: Editor, document: Document, starfish: Robot) -> None:
+    first, second = (np.array(point) for point in starfish.cables[0].points[2:4])
+    middle = tuple(((first + second) / 2).tolist())
+    goal = (middle[0], round(middle[1] + 0.004, 4))
+    assert editor.grab(on(middle, "cable:0"))
+    assert document.robot is starfish
+    editor.drag(on((middle[0], middle[1] + 0.002)))
+    editor.drag(on(goal))
+    editor.release()
+    document.seal()
+    assert len(document.robot.cables[0].points) == len(starfish.cables[0].points) + 1
+    assert document.robot.cables[0].points[3] == pytest.approx(goal, abs=1e-4)
+    assert editor.chosen == "via:0:3"
+    document.undo()
+    assert document.robot is starfish
+
+
+@pytest.mark.parametrize(
+    ("tool", "count"),
+    [(Tool.PIN, lambda robot: len(robot.pins)), (Tool.MARKER, lambda robot: len(robot.markers)),
+     (Tool.WINCH, lambda robot: len(robot.winches))],
+)  # fmt: skip
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_tools_place_parts(editor: Editor, document: Document, starfish: Robot, tool: Tool, count, mirrored) -> None:
+    editor.mirror_about("x" if mirrored else "")
+    editor.take(tool)
+    editor.click(on((0.03, 0.015)))
+    assert count(document.robot) == count(starfish) + 1 + mirrored
+    assert document.undo_label == f"add {tool}"
+    assert editor.chosen.startswith(tool)
+    editor.click(on((0.001, 0.03)))
+    assert count(document.robot) == count(starfish) + 2 + mirrored
+    document.undo()
+    document.undo()
+    assert document.robot is starfish
+    assert editor.chosen == ""
+    with pytest.raises(InputError, match=f"place a {tool}"):
+        editor.click(beside((0.5, 0.5)))
+
+
+@pytest.mark.parametrize("end", ["enter", "escape", "done", "double click"])
+def test_a_cable_is_laid_click_by_click(editor: Editor, document: Document, starfish: Robot, end: str) -> None:
+    editor.take(Tool.CABLE)
+    editor.click(on((-0.02, -0.008), "winch:left"))
+    for at in ((-0.04, 0.002), (-0.06, 0.01)):
+        editor.click(on(at))
+    assert document.robot is starfish
+    drawn = [thing for thing in editor.things() if isinstance(thing, Line)]
+    assert drawn[-1].points == ((-0.02, -0.008), (-0.04, 0.002), (-0.06, 0.01))
+    if end == "done":
+        editor.finish()
+    elif end == "double click":
+        editor.click(on((-0.06, 0.01)))
+    else:
+        assert editor.key(end)
+    assert document.robot.cables[-1].points == drawn[-1].points
+    assert document.undo_label == "add cable"
+    assert editor.chosen == f"cable:{len(starfish.cables)}"
+    assert editor.draft is None
+    document.undo()
+    assert document.robot is starfish
+
+
+def test_delete_takes_back_the_last_point_of_a_cable_that_is_laid(editor: Editor, document: Document) -> None:
+    editor.take(Tool.CABLE)
+    editor.click(on((0.0, 0.03)))
+    editor.click(on((0.0, 0.05)))
+    assert editor.key("delete")
+    assert editor.draft is not None
+    with pytest.raises(InputError, match="stopper"):
+        editor.finish()
+    editor.key("delete")
+    assert editor.draft is None
+    assert not document.undo_label
+
+
+def test_what_was_begun_is_dropped_when_one_leaves(editor: Editor, document: Document, starfish: Robot) -> None:
+    editor.take(Tool.CABLE)
+    editor.click(on((0.0, 0.03)))
+    editor.click(on((0.0, 0.05)))
+    editor.leave()
+    assert editor.draft is None
+    assert document.robot is starfish
+
+
+def test_twins_move_and_go_together(editor: Editor, document: Document, starfish: Robot) -> None:
+    editor.mirror_about("x")
+    drag(editor, document, "via:0:3", (0.07, 0.023), start=starfish.cables[0].points[3])
+    assert document.robot.cables[0].points[3] == (0.07, 0.023)
+    assert document.robot.cables[1].points[3] == (-0.07, 0.023)
+    drag(editor, document, "winch:right", (0.022, -0.006), start=(0.02, -0.008))
+    assert document.robot.winch("left").at == (-0.022, -0.006)
+    drag(editor, document, "winch:feet", (0.01, -0.04), start=(0.0, -0.037))
+    assert document.robot.winch("feet").at == (0.0, -0.04)
+    first, second = (np.array(point) for point in starfish.cables[0].points[4:6])
+    drag(editor, document, "cable:0", (0.1, 0.03), start=tuple(((first + second) / 2).tolist()))
+    right, left = document.robot.cables[:2]
+    assert len(left.points) == len(right.points) == len(starfish.cables[0].points) + 1
+    assert np.allclose(np.array(left.points) * [-1, 1], right.points)
+    editor.choose("cable:0")
+    assert {thing.key for thing in editor.things() if isinstance(thing, Line) and thing.chosen} == {
+        "cable:0",
+        "cable:1",
+    }
+    editor.key("delete")
+    assert len(document.robot.cables) == len(starfish.cables) - 2
+    editor.set("winch:right", travel=0.05)
+    assert document.robot.winch("left").travel == 0.05
+    while document.undo():
+        pass
+    assert document.robot is starfish
+
+
+def test_a_winch_is_deleted_with_its_cables_in_one_step(editor: Editor, document: Document, starfish: Robot) -> None:
+    editor.click(on((-0.02, -0.008), "winch:left"))
+    editor.key("delete")
+    assert [cable.winch for cable in document.robot.cables] == ["right", "feet", "feet"]
+    document.undo()
+    assert document.robot is starfish
+
+
+def test_what_is_refused_changes_nothing(editor: Editor, document: Document, starfish: Robot) -> None:
+    refused = [
+        lambda: editor.place("marker:top", (0.5, 0.5)),
+        lambda: editor.rename("winch:left", "right"),
+        lambda: editor.set("winch:left", spool_radius=-1.0),
+        lambda: editor.set_gravity("-z"),
+        lambda: editor.set_body(element_size=10.0),
+        lambda: editor.set_body(material="cheese"),
+        lambda: editor.mirror_about("z"),
+    ]
+    for action in refused:
+        with pytest.raises(InputError):
+            action()
+        assert document.robot is starfish
+    editor.choose("pin:0")
+    with pytest.raises(InputError, match="last pin"):
+        editor.key("delete")
+    assert document.robot is starfish
+
+
+def test_the_panel_changes_what_it_says(editor: Editor, document: Document, starfish: Robot) -> None:
+    editor.rename("winch:left", "west")
+    assert editor.chosen == "winch:west"
+    editor.place("marker:top", (0.01, 0.12))
+    editor.set("cable:0", slack=0.003, friction=0.1)
+    editor.set_gravity("-y")
+    editor.set_body(thickness=0.03)
+    robot = document.robot
+    assert (robot.cables[1].winch, robot.markers[0].at, robot.cables[0].slack) == ("west", (0.01, 0.12), 0.003)
+    assert (robot.gravity, robot.body.thickness) == ((0.0, -9.80665), 0.03)
+    editor.set_body(element_size=0.016)
+    assert len(document.robot.body.mesh.nodes) < len(starfish.body.mesh.nodes)
+    assert document.undo_label == "change element size"
+    assert document.robot.cables == robot.cables
+
+
+def test_the_check_waits_until_the_robot_rests(editor: Editor, document: Document, starfish: Robot) -> None:
+    heard: list[Topic] = []
+    document.bell.listen(heard.append)
+    editor.step(0.0)
+    assert editor.findings is None
+    editor.step(QUIET / 2)
+    assert editor.findings is None
+    editor.step(QUIET)
+    assert editor.findings == look_over(starfish)
+    assert heard == [Topic.JOB]
+    document.change("shorter", robot=replace(starfish, cables=starfish.cables[:1]))
+    assert editor.findings is None
+    editor.step(10.0)
+    editor.step(11.0)
+    assert editor.findings is not None
+    assert editor.findings.cable_length == pytest.approx(starfish.cables[0].length)
+
+
+def test_all_that_is_shown_makes_a_picture(editor: Editor, document: Document) -> None:
+    editor.mirror_about("x")
+    editor.take(Tool.CABLE)
+    editor.click(on((0.03, 0.015)))
+    editor.click(on((0.05, 0.02)))
+    things = editor.things()
+    assert {thing.key for thing in things if isinstance(thing, Dot)} >= {"via:0:1", "winch:left", "pin:0", ""}
+    assert Picture(document.robot, things, 1).scene()
+    assert editor.key("v")
+    assert editor.tool is Tool.MOVE
+    assert not editor.key("q")
