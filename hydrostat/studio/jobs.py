@@ -1,30 +1,22 @@
 """`Jobs`: long work in a process of its own, so that dragging stays smooth and work can be stopped."""
 
-import os
-import signal
+import logging
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from threading import Lock, Thread
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.work_process import Report, run_work
 
+__all__ = ["JobState", "Jobs", "Report"]
 
-@runtime_checkable
-class Report(Protocol):
-    """How work in another process tells of itself."""
-
-    def progress(self, stage: str, done: int, total: int) -> None:
-        """How far it is."""
-        ...
-
-    def part(self, value: Any) -> None:
-        """Something found on the way."""
-        ...
+PATIENCE = 5.0
+"""A process that has told what came of its work is given so long to end [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,12 +53,28 @@ class Jobs:
         self.state: JobState | None = None
         self._bell = bell
         self._lock = Lock()
-        self._process: BaseProcess | None = None
+        self._worker: _Worker | None = None
+        self._spare: _Worker | None = None
+        self._closed = False
 
     @property
     def running(self) -> bool:
         """Whether there is work in progress."""
-        return self.state is not None and self.state.running
+        state = self.state
+        return state is not None and state.running
+
+    def warm(self, *modules: str) -> None:
+        """Start a process ahead that imports some modules, so that the next work begins at once.
+
+        Nothing happens if one is there already.
+        """
+        with self._lock:
+            if self._spare is not None and self._spare.process.is_alive():
+                return
+            if self._closed:
+                return
+            self._spare = _Worker.started()
+            self._spare.pipe.send(("import", modules))
 
     def start(
         self,
@@ -78,6 +86,8 @@ class Jobs:
         on_end: Callable[[], None] | None = None,
     ) -> None:
         """Run `function(report, *arguments)` in a process of its own.
+
+        What comes of it, and why if nothing does, is in `state`.
 
         Args:
             title: as a person would say it.
@@ -94,67 +104,89 @@ class Jobs:
             if self.running:
                 assert self.state is not None
                 raise InputError(f"{self.state.title} is still in progress; wait for it or stop it")
-            context = get_context("spawn")
-            here, there = context.Pipe(duplex=False)
-            self._process = context.Process(target=_run, args=(there, function, arguments), daemon=True)
-            self.state = JobState(title=title)
-            self._process.start()
-            there.close()
-        calls = (on_part or _nothing, on_done or _nothing, on_end)
-        Thread(target=self._listen, args=(here, *calls), name=title, daemon=True).start()
+            if self._closed:
+                raise InputError("the studio is closing")
+            spare, self._spare = self._spare, None
+            worker = spare if spare is not None and spare.process.is_alive() else _Worker.started()
+            self._worker, self.state = worker, JobState(title=title)
         self._bell.ring(Topic.JOB)
+        calls = (on_part or _nothing, on_done or _nothing, on_end)
+        Thread(target=self._follow, args=(worker, function, arguments, *calls), name=title, daemon=True).start()
 
     def stop(self) -> None:
         """Ask the work to end with what it has; asked again, it is ended at once."""
         with self._lock:
-            process, state = self._process, self.state
-            if process is None or state is None or not state.running:
+            worker, state = self._worker, self.state
+            if worker is None or state is None or not state.running:
                 return
             if state.stopping:
-                process.kill()
-            elif process.pid is not None:
-                self.state = replace(state, stopping=True)
-                os.kill(process.pid, signal.SIGINT)
+                worker.process.kill()
+                return
+            self.state = replace(state, stopping=True)
+            if worker.begun:
+                worker.say_stop()
         self._bell.ring(Topic.JOB)
 
     def close(self) -> None:
-        """End all work at once."""
-        process = self._process
-        if process is not None and process.is_alive():
-            process.kill()
-            process.join(timeout=5.0)
+        """End all work at once; there will be no more."""
+        with self._lock:
+            self._closed = True
+            if self.running and self.state is not None:
+                self.state = replace(self.state, stopping=True)
+            workers = [worker for worker in (self._worker, self._spare) if worker is not None]
+            self._spare = None
+        for worker in workers:
+            worker.end(0.0)
 
-    def _listen(
+    def _follow(
         self,
-        pipe: Connection,
+        worker: "_Worker",
+        function: Callable[..., Any],
+        arguments: tuple[Any, ...],
         on_part: Callable[[Any], None],
         on_done: Callable[[Any], None],
         on_end: Callable[[], None] | None,
     ) -> None:
-        """Hear what the process says until it ends."""
-        error = "it ended without a result"
+        """Hand the work over and hear what the process says until it ends; in a thread of its own."""
+        patience = 0.0
         try:
-            while True:
-                kind, value = pipe.recv()
-                if kind == "progress":
-                    self._note(stage=value[0], done=value[1], total=value[2])
-                elif kind == "part":
-                    on_part(value)
-                elif kind == "done":
-                    on_done(value)
-                    error = ""
-                else:
-                    error = value
-        except EOFError:
-            pass
+            worker.pipe.send(("work", function, arguments))
+            self._begun(worker)
+            error = self._hear(worker.pipe, on_part, on_done)
+            patience = PATIENCE
+        except (EOFError, OSError):
+            error = _why(worker.process)
         except HydrostatError as refused:
             error = str(refused)
-        finally:
-            pipe.close()
-            stopped = self.state is not None and self.state.stopping
-            self._note(running=False, error="stopped" if error and stopped else error)
-            if on_end is not None:
-                on_end()
+        except Exception as failed:
+            logging.getLogger("hydrostat").exception("work in another process failed")
+            error = f"{type(failed).__name__}: {failed}"
+        worker.end(patience)
+        stopped = self.state is not None and self.state.stopping
+        self._note(running=False, error="stopped" if error and stopped else error)
+        if on_end is not None:
+            on_end()
+
+    def _begun(self, worker: "_Worker") -> None:
+        """The process has its work: it can be asked to stop."""
+        with self._lock:
+            worker.begun = True
+            if self.state is not None and self.state.stopping:
+                worker.say_stop()
+
+    def _hear(self, pipe: Connection, on_part: Callable[[Any], None], on_done: Callable[[Any], None]) -> str:
+        """Hear the process until it says what came of its work; why it failed, or ""."""
+        while True:
+            kind, *rest = pipe.recv()
+            if kind == "progress":
+                self._note(stage=rest[0], done=rest[1], total=rest[2])
+            elif kind == "part":
+                on_part(rest[0])
+            elif kind == "done":
+                on_done(rest[0])
+                return ""
+            else:
+                return rest[0]
 
     def _note(self, **changes: Any) -> None:
         with self._lock:
@@ -163,31 +195,52 @@ class Jobs:
         self._bell.ring(Topic.JOB)
 
 
-class _Report:
-    """Tells the process that waits."""
+@dataclass(eq=False)
+class _Worker:
+    """A process and the pipe to it; it ends when the pipe is closed on this side, so it never outlives the studio.
 
-    def __init__(self, pipe: Connection) -> None:
-        self._pipe = pipe
+    Attributes:
+        process: that works.
+        pipe: to it.
+        begun: whether it was handed its work.
+    """
 
-    def progress(self, stage: str, done: int, total: int) -> None:
-        self._pipe.send(("progress", (stage, done, total)))
+    process: BaseProcess
+    pipe: Connection
+    begun: bool = field(default=False)
 
-    def part(self, value: Any) -> None:
-        self._pipe.send(("part", value))
+    @classmethod
+    def started(cls) -> "_Worker":
+        """A new one. Its work is sent later, through the pipe: what a process is begun with must wait for its birth."""
+        context = get_context("spawn")
+        here, there = context.Pipe()
+        process = context.Process(target=run_work, args=(there,), daemon=True)
+        process.start()
+        there.close()
+        return cls(process, here)
+
+    def say_stop(self) -> None:
+        """Ask it to end with what it has."""
+        try:
+            self.pipe.send(("stop",))
+        except OSError:
+            return  # it has just ended
+
+    def end(self, patience: float) -> None:
+        """End it, after some time to end by itself [s]."""
+        self.process.join(timeout=patience)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join(timeout=PATIENCE)
 
 
-def _run(pipe: Connection, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
-    """What the other process does."""
-    try:
-        pipe.send(("done", function(_Report(pipe), *arguments)))
-    except HydrostatError as error:
-        pipe.send(("error", str(error)))
-    except KeyboardInterrupt:
-        pipe.send(("error", "stopped"))
-    except Exception as error:  # noqa: BLE001 whatever it was, the person who waits must hear of it
-        pipe.send(("error", f"{type(error).__name__}: {error}"))
-    finally:
-        pipe.close()
+def _why(process: BaseProcess) -> str:
+    """Why a process has said nothing more."""
+    process.join(timeout=PATIENCE)
+    return (
+        f"the process that did the work has died (exit code {process.exitcode}), perhaps for want of memory; "
+        "try again with less to do"
+    )
 
 
 def _nothing(value: Any) -> None:

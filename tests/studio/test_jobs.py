@@ -1,0 +1,236 @@
+"""Work in processes of their own. Oracles: what the work is written to do, and which processes the system has."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from multiprocessing import active_children
+from pathlib import Path
+from typing import Any
+
+import job_works as works
+import pytest
+
+from hydrostat.errors import InputError
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.jobs import Jobs, JobState
+
+PATIENCE = 60.0
+
+
+class Heard:
+    """All that was told of one work."""
+
+    def __init__(self, jobs: Jobs) -> None:
+        self.jobs, self.parts, self.results = jobs, [], []
+        self.ended, self.parted = threading.Event(), threading.Event()
+
+    def begin(self, function: Callable[..., Any], *arguments: Any) -> "Heard":
+        self.jobs.start(
+            "Working", function, *arguments, on_part=self.part, on_done=self.results.append, on_end=self.ended.set
+        )
+        return self
+
+    def part(self, value: Any) -> None:
+        self.parts.append(value)
+        self.parted.set()
+
+    def end(self) -> JobState:
+        assert self.ended.wait(PATIENCE)
+        state = self.jobs.state
+        assert state is not None
+        assert not state.running
+        return state
+
+
+@pytest.fixture
+def jobs() -> Iterator[Jobs]:
+    made = Jobs(Bell())
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def heard(jobs: Jobs) -> Heard:
+    return Heard(jobs)
+
+
+def lives(pid: int) -> bool:
+    """Whether there is a process of this number."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_parts_come_in_order_then_the_result(heard: Heard) -> None:
+    state = heard.begin(works.add, 1, 2, 3).end()
+    assert heard.parts == [1, 2, 3]
+    assert heard.results == [6]
+    assert (state.error, state.stage, state.done, state.total) == ("", "Adding", 3, 3)
+
+
+def test_nothing_is_running_at_first(jobs: Jobs) -> None:
+    assert not jobs.running
+    jobs.stop()
+    assert jobs.state is None
+
+
+def test_all_who_listen_are_told() -> None:
+    bell, rung = Bell(), []
+    bell.listen(rung.append)
+    heard = Heard(Jobs(bell)).begin(works.add, 1)
+    heard.end()
+    assert set(rung) == {Topic.JOB}
+
+
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (works.refuse, "2 winches and 1 cable: ask for more"),
+        (works.stumble, "ZeroDivisionError: by nothing"),
+        (works.unpicklable, "the result cannot be handed over"),
+        (works.die, "exit code 7"),
+        (works.leave, "exit code 3"),
+    ],
+)
+def test_why_work_failed_is_told_and_the_next_is_done(heard: Heard, function: Any, words: str) -> None:
+    state = heard.begin(function).end()
+    assert words in state.error
+    assert heard.results == []
+    again = Heard(heard.jobs).begin(works.add, 4)
+    assert again.end().error == ""
+    assert again.results == [4]
+
+
+def test_arguments_that_cannot_be_sent(heard: Heard) -> None:
+    state = heard.begin(works.add, threading.Lock()).end()
+    assert "pickle" in state.error
+
+
+def test_what_goes_wrong_on_this_side_ends_the_work(heard: Heard) -> None:
+    ended = threading.Event()
+    pids = []
+
+    def refuse(pid: int) -> None:
+        pids.append(pid)
+        raise InputError("not this one")
+
+    heard.jobs.start("Waiting", works.wait, on_part=refuse, on_end=ended.set)
+    assert ended.wait(PATIENCE)
+    assert heard.jobs.state is not None
+    assert heard.jobs.state.error == "not this one"
+    assert not lives(pids[0])
+
+
+def test_one_at_a_time(heard: Heard) -> None:
+    heard.begin(works.wait)
+    with pytest.raises(InputError, match="Working is still in progress; wait for it or stop it"):
+        heard.jobs.start("Other", works.add)
+    heard.jobs.stop()
+    heard.end()
+
+
+def test_stopped_work_returns_what_it_has(heard: Heard) -> None:
+    heard.begin(works.wait)
+    assert heard.parted.wait(PATIENCE)
+    heard.jobs.stop()
+    state = heard.end()
+    assert state.stopping
+    assert state.error == ""
+    assert heard.results == ["what there was"]
+
+
+def test_stopped_before_its_process_is_born(heard: Heard) -> None:
+    heard.begin(works.wait)
+    heard.jobs.stop()
+    state = heard.end()
+    assert heard.results == ["what there was"] or state.error == "stopped"
+
+
+def test_a_stop_cuts_no_message_in_two(heard: Heard) -> None:
+    heard.begin(works.chatter)
+    assert heard.parted.wait(PATIENCE)
+    heard.jobs.stop()
+    assert heard.end().error == ""
+    assert heard.results == [pytest.approx(len(heard.parts), abs=1)]
+    assert {len(part) for part in heard.parts} == {200_000}
+
+
+def test_a_stop_when_all_is_done_loses_nothing(heard: Heard) -> None:
+    heard.begin(works.finishing, 2000)
+    assert heard.parted.wait(PATIENCE)
+    heard.jobs.stop()
+    heard.end()
+    assert heard.results == ["whole"]
+
+
+def test_stopped_twice_is_ended_at_once(heard: Heard) -> None:
+    heard.begin(works.stubborn)
+    assert heard.parted.wait(PATIENCE)
+    heard.jobs.stop()
+    assert heard.jobs.running
+    heard.jobs.stop()
+    assert heard.end().error == "stopped"
+    heard.jobs.stop()  # nothing runs: nothing happens
+
+
+def test_a_killed_process_is_told_of(heard: Heard) -> None:
+    heard.begin(works.wait)
+    assert heard.parted.wait(PATIENCE)
+    os.kill(heard.parts[0], signal.SIGKILL)
+    assert "exit code -9" in heard.end().error
+
+
+def test_closing_ends_all(heard: Heard) -> None:
+    heard.jobs.warm()
+    heard.begin(works.wait)
+    heard.jobs.warm()
+    assert heard.parted.wait(PATIENCE)
+    heard.jobs.close()
+    assert heard.end().error == "stopped"
+    assert not lives(heard.parts[0])
+    with pytest.raises(InputError, match="closing"):
+        heard.jobs.start("Other", works.add)
+    assert active_children() == []
+
+
+def test_a_process_that_was_warmed_has_its_modules(heard: Heard) -> None:
+    heard.jobs.warm("wave")
+    heard.begin(works.loaded, "wave").end()
+    assert heard.results[0][1]
+    again = Heard(heard.jobs).begin(works.loaded, "wave")
+    again.end()
+    assert not again.results[0][1]
+    assert heard.results[0][0] != again.results[0][0]
+
+
+@pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="waits for a process of another by a Linux call")
+def test_no_process_outlives_its_studio() -> None:
+    """A studio that dies without a word; oracle: the number of its worker is no longer a process that lives."""
+    code = (
+        "import sys; sys.path[:0] = sys.argv[1:]\n"
+        "class Told:\n    def part(self, value): print(value, flush=True)\n"
+        "import job_works\nif __name__ == '__main__': job_works.orphan(Told())"
+    )
+    here = str(Path(__file__).parent)
+    told = subprocess.run([sys.executable, "-c", code, here], capture_output=True, text=True, timeout=PATIENCE)
+    pid = int(told.stdout)
+    with suppress(ProcessLookupError):  # it may be gone already
+        ended = select.select([os.pidfd_open(pid)], [], [], PATIENCE)[0]
+        assert ended
+
+
+def test_ctrl_c_in_the_terminal_leaves_work_to_the_studio(heard: Heard) -> None:
+    heard.begin(works.wait)
+    assert heard.parted.wait(PATIENCE)
+    os.kill(heard.parts[0], signal.SIGINT)
+    assert lives(heard.parts[0])
+    heard.jobs.stop()
+    heard.end()
+    assert heard.results == ["what there was"]
