@@ -93,6 +93,14 @@ export class Camera {
     return this.height / (2 * Math.tan(OPENING / 2) * Math.max(-depth, 1e-6));
   }
 
+  /** How much the depth of `project` changes over a small distance, at the target. */
+  slack(distance) {
+    const { near, far } = this.now;
+    if (this.flat || this.parallel) return (2 * distance) / (far - near);
+    const away = this.now.position.distanceTo(this.target);
+    return (2 * distance * far * near) / ((far - near) * away * away);
+  }
+
   /** The ray through a pixel: where it begins and its direction of length one. */
   ray(x, y) {
     const u = (x / this.width - 0.5) * this.span * (this.width / this.height);

@@ -1,14 +1,16 @@
-// What is drawn on top in pixels: areas, dots, labels, the scale bar and the sign of the axes.
+// All that is drawn with a pen: flat bodies, lines, areas, dots, labels, the scale bar and the sign of the axes.
 
+import { drawFelt, drawGhosts, drawGrid, drawOutline } from "./felt.js";
+import { drawClouds, drawLines } from "./lines.js";
 import { mix, veil } from "./theme.js";
 
 const AXES = { x: "#c8443f", y: "#4f8a2b", z: "#2f6fc0" };
 
 export class Overlay {
-  constructor(canvas) {
+  /** @param {boolean} slow whether there is no graphics card: then the processor draws on its own, which is faster */
+  constructor(canvas, slow) {
     this.canvas = canvas;
-    // read back and cleared in every frame: kept by the processor
-    this.pen = canvas.getContext("2d", { willReadFrequently: true });
+    this.pen = canvas.getContext("2d", { willReadFrequently: slow });
   }
 
   resize(width, height, ratio) {
@@ -27,12 +29,20 @@ export class Overlay {
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, this.width, this.height);
     pen.lineJoin = pen.lineCap = "round";
+    const { flat } = view.camera;
+    if (flat) drawGrid(pen, view);
+    if (view.surface) {
+      if (flat) drawGhosts(pen, view);
+      (flat ? drawFelt : drawOutline)(pen, view);
+      drawClouds(pen, view);
+    }
     for (const area of view.areas) this.area(view, area);
     for (const dot of view.dots) if (dot.look === "pin") this.pin(view, dot);
+    drawLines(pen, view);
     for (const dot of view.dots) if (dot.look !== "pin") this.dot(view, dot);
     this.labels(view);
     this.scaleBar(view);
-    if (!view.camera.flat) this.axes(view);
+    if (!flat) this.axes(view);
   }
 
   area(view, area) {

@@ -1,6 +1,6 @@
 // What is under the pointer: dots before lines before the body.
 
-import { within } from "./seam.js";
+import { within } from "./skin.js";
 
 const DOT = 10;
 const LINE = 6;
@@ -113,9 +113,10 @@ function lineAt(view, x, y) {
   return best;
 }
 
-/** The area with a key around a pixel of a flat view, or null; seen only where there is no body or nothing else. */
+/** The area with a key around a pixel, the last drawn, or null; a brush paints over all of them. */
 function areaAt(view, x, y) {
-  return view.areas.find((area) => area.key && area.chosen && area.path && view.overlay.holds(area, x, y)) ?? null;
+  if (view.brush) return null;
+  return view.areas.findLast((area) => area.key && area.path && view.overlay.holds(area, x, y)) ?? null;
 }
 
 /** All that is under a pixel: {key, rest, world}. */

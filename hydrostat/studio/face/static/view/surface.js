@@ -1,4 +1,4 @@
-// The surface of a body: felt, or coloured by values; and the ghost of a body.
+// What WebGL draws: the surface of a body in space, ghosts of it, and a flat body that is coloured by values.
 
 import { THREE } from "nicegui-scene";
 import { rgb } from "./theme.js";
@@ -141,18 +141,7 @@ export class Surface {
     this.body = shown(this.geometry, new THREE.ShaderMaterial({
       ...own, fragmentShader: FELT, side: flat ? THREE.DoubleSide : THREE.FrontSide, depthTest: depth, depthWrite: depth,
     }), order + 1);
-    this.edges = new THREE.LineSegments(this.geometry.clone(), new THREE.ShaderMaterial({
-      vertexShader: `void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-        gl_Position.z -= 0.0006 * gl_Position.w; }`,
-      fragmentShader: "uniform vec4 tint; void main() { gl_FragColor = tint; }",
-      uniforms: { tint: { value: new THREE.Vector4(0, 0, 0, 0.4) } }, transparent: true, depthWrite: false, depthTest: depth,
-    }));
-    this.edges.geometry.setAttribute("position", this.geometry.attributes.position);
-    this.edges.geometry.setIndex(sides(faces));
-    this.edges.frustumCulled = false;
-    this.edges.renderOrder = order + 3;
-    this.edges.visible = false;
-    this.objects = [this.before, this.body, this.edges];
+    this.objects = [this.before, this.body];
     this.see(1);
   }
 
@@ -165,7 +154,6 @@ export class Surface {
     this.uniforms.light.value.set(...rgb(palette.felt_light));
     this.uniforms.seam.value.set(...rgb(palette.seam));
     this.uniforms.inside.value.set(...rgb(inside));
-    this.edges.material.uniforms.tint.value.set(...rgb(palette.mesh), 0.42);
   }
 
   move(nodes, values) {
@@ -176,6 +164,7 @@ export class Surface {
       smooth(position.array, this.faces, normal.array);
       normal.needsUpdate = true;
     }
+    this.coloured = Boolean(values);
     this.uniforms.coloured.value = values ? 1 : 0;
     if (values) {
       value.array.set(values);
@@ -201,7 +190,6 @@ export class Surface {
 
   dispose() {
     this.geometry.dispose();
-    this.edges.geometry.dispose();
     for (const object of this.objects) object.material.dispose();
   }
 }
@@ -227,43 +215,4 @@ export class Ghost {
     this.geometry.dispose();
     this.objects[0].material.dispose();
   }
-}
-
-/** Many small points. */
-export class Cloud {
-  constructor(points, colour, flat, order) {
-    this.geometry = new THREE.BufferGeometry();
-    this.geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-    this.uniforms = { tint: { value: new THREE.Vector3(...rgb(colour)) }, across: { value: 4 } };
-    const points3 = new THREE.Points(this.geometry, new THREE.ShaderMaterial({
-      vertexShader: `uniform float across;
-        void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); gl_PointSize = across; }`,
-      fragmentShader: `uniform vec3 tint;
-        void main() { if (length(gl_PointCoord - 0.5) > 0.5) discard; gl_FragColor = vec4(tint, 0.5); }`,
-      uniforms: this.uniforms, transparent: true, depthWrite: false, depthTest: !flat,
-    }));
-    points3.frustumCulled = false;
-    points3.renderOrder = order;
-    this.objects = [points3];
-  }
-
-  dispose() {
-    this.geometry.dispose();
-    this.objects[0].material.dispose();
-  }
-}
-
-/** Each edge of some triangles once. */
-function sides(faces) {
-  const seen = new Set(), index = [];
-  for (let f = 0; f < faces.length; f += 3) {
-    for (let k = 0; k < 3; k++) {
-      const a = Math.min(faces[f + k], faces[f + ((k + 1) % 3)]), b = Math.max(faces[f + k], faces[f + ((k + 1) % 3)]);
-      const key = a * 4294967 + b;
-      if (seen.has(key)) continue;
-      seen.add(key);
-      index.push(a, b);
-    }
-  }
-  return new THREE.BufferAttribute(new Uint32Array(index), 1);
 }

@@ -2,17 +2,15 @@
 
 import { THREE } from "nicegui-scene";
 import { Camera } from "./camera.js";
-import { Grid } from "./grid.js";
+import { Cover } from "./cover.js";
 import { Link } from "./link.js";
 import { Overlay } from "./overlay.js";
 import { opened, same } from "./packet.js";
-import { met, pick } from "./pick.js";
+import { pick } from "./pick.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
-import { Seam } from "./seam.js";
-import { Strokes } from "./strokes.js";
-import { cableLook, strokeLines } from "./style.js";
-import { Cloud, Ghost, Surface, rampTexture } from "./surface.js";
+import { Skin } from "./skin.js";
+import { Ghost, Surface, rampTexture } from "./surface.js";
 import { mix, theme } from "./theme.js";
 
 const BARE = 300; // a scene without a frame is shown at rest after so long [ms]
@@ -27,20 +25,18 @@ export class View {
    */
   constructor(element, canvases, options, tell) {
     Object.assign(this, { element, tell, brush: options.brush, palette: options.palette, ink: options.palette.ink });
-    this.renderer = new THREE.WebGLRenderer({ canvas: canvases[0], antialias: true, alpha: false, stencil: true, powerPreference: "high-performance" });
-    this.renderer.autoClear = true;
-    this.overlay = new Overlay(canvases[1]);
+    this.renderer = new THREE.WebGLRenderer({ canvas: canvases[0], antialias: false, alpha: false, powerPreference: "high-performance" });
+    this.slow = hasNoCard(this.renderer.getContext());
+    this.overlay = new Overlay(canvases[1], this.slow);
     this.world = new THREE.Scene();
     this.camera = new Camera();
     this.ramp = rampTexture(options.palette.tension);
     this.font = getComputedStyle(element).fontFamily || "sans-serif";
     Object.assign(this, { dots: [], lines: [], areas: [], ghosts: {}, clouds: {}, points: new Float32Array(), hover: "" });
-    Object.assign(this, { surface: null, rest: new Float32Array(), seam: null, strokes: null, cut: null, serial: -1 });
+    Object.assign(this, { surface: null, rest: new Float32Array(), skin: null, cover: null, cut: null, serial: -1 });
     this.see = null; // what the person chose; null: as fits the body
     this.dirty = new Set();
     this.pixel = new Uint8Array(4);
-    this.grid = new Grid();
-    this.world.add(this.grid.object);
     this.probe = new Probe(this);
     window.__app = this.probe;
     this.dress(options.dark);
@@ -139,7 +135,8 @@ export class View {
     const flat = head.dim === 2;
     const other = !this.surface || flat !== this.camera.flat || !same(arrays.rest, this.rest) || !same(arrays.faces, this.surface.faces);
     const elsewhere = !this.surface || flat !== this.camera.flat || head.name !== this.name || this.grown(arrays.rest);
-    Object.assign(this, { serial: head.serial, name: head.name, rest: arrays.rest, rim: arrays.rim });
+    Object.assign(this, { serial: head.serial, name: head.name, rest: arrays.rest });
+    this.camera.flat = flat;
     if (other) this.newBody(flat, arrays);
     const before = new Map(this.dots.map((dot) => [dot.key, dot]));
     this.dots = head.things.filter((thing) => thing.kind === "dot").map((dot) => ({
@@ -147,10 +144,8 @@ export class View {
     }));
     this.lines = head.things.filter((thing) => thing.kind === "line");
     this.areas = head.things.filter((thing) => thing.kind === "area").map((area) => ({ ...area, spots: [] }));
-    this.swap("ghosts", "ghost:", head, arrays, (thing, nodes) => new Ghost(nodes, this.surface.faces, flat, flat ? 1 : 8));
-    this.swap("clouds", "cloud:", head, arrays, (thing, points) => new Cloud(points, thing.colour, flat, flat ? 7 : 4));
-    this.ghostNodes = Object.fromEntries(Object.entries(this.ghosts).map(([name, { array }]) => [`ghost:${name}`, array]));
-    this.layLines();
+    this.takeGhosts(head, arrays);
+    this.clouds = named(head, arrays, "cloud");
     this.applyLook();
     if (elsewhere) {
       this.camera.begin(flat);
@@ -167,33 +162,34 @@ export class View {
   }
 
   newBody(flat, arrays) {
-    for (const old of [this.surface, this.inner]) this.drop(old);
-    this.surface = new Surface(arrays.rest, arrays.faces, flat, this.ramp, flat ? 2 : 5);
-    this.seam = flat ? new Seam(arrays.rim, arrays.rest, arrays.faces) : null;
-    this.inner = flat && this.seam.faces.length ? new Surface(this.seam.position, this.seam.faces, true, this.ramp, 3) : null;
+    this.drop(this.surface);
+    this.surface = new Surface(arrays.rest, arrays.faces, flat, this.ramp, 1);
+    this.skin = flat ? new Skin(arrays.rim, arrays.rest, arrays.faces) : null;
+    this.cover = new Cover(arrays.faces, arrays.rest.length / 3);
     this.add(this.surface);
-    if (this.inner) this.add(this.inner);
-    this.rests = arrays.rest;
   }
 
-  /** Take over ghosts or clouds that are the same, make those that are not. */
-  swap(kind, prefix, head, arrays, make) {
-    const old = this[kind], fresh = {};
-    for (const thing of head.things) {
-      const array = `${thing.kind}:` === prefix ? arrays[prefix + thing.name] : null;
-      if (!array || fresh[thing.name]) continue;
-      const kept = old[thing.name];
-      if (kept && kept.thing.colour === thing.colour && kept.faces === this.surface.faces && same(kept.array, array)) {
-        fresh[thing.name] = kept;
-        delete old[thing.name];
-      } else {
-        const object = make(thing, array);
-        this.add(object);
-        fresh[thing.name] = { thing, array, object, faces: this.surface.faces };
+  /** Keep ghosts that are the same, make those that are not; of flat bodies only the pen draws them. */
+  takeGhosts(head, arrays) {
+    const fresh = named(head, arrays, "ghost");
+    const { faces } = this.surface;
+    for (const [name, ghost] of Object.entries(fresh)) {
+      const old = this.ghosts[name];
+      if (old?.skin && old.faces === faces && same(old.array, ghost.array)) {
+        ghost.skin = old.skin;
+        delete old.skin;
+      } else if (!this.camera.flat) {
+        ghost.skin = new Ghost(ghost.array, faces, false, 3);
+        this.add(ghost.skin);
       }
+      ghost.faces = faces;
     }
-    for (const { object } of Object.values(old)) this.drop(object);
-    this[kind] = fresh;
+    for (const old of Object.values(this.ghosts)) this.drop(old.skin);
+    this.ghosts = fresh;
+  }
+
+  ghostColour(thing) {
+    return thing.colour === this.palette.ghost ? this.theme.ghost : thing.colour;
   }
 
   add(part) {
@@ -206,72 +202,32 @@ export class View {
     part.dispose();
   }
 
-  layLines() {
-    const flat = this.camera.flat = this.rim !== undefined;
-    if (this.strokes?.flat !== flat) {
-      this.drop(this.strokes);
-      this.strokes = new Strokes(flat);
-      this.strokes.mesh.renderOrder = flat ? 6 : 3;
-      this.strokes.behind.renderOrder = 9;
-      this.add(this.strokes);
-    }
-    this.laid = strokeLines(this);
-    this.strokes.lay(this.laid);
-  }
-
   /** Everything to the place of a frame. */
   move(arrays) {
     this.surface.move(arrays.nodes, arrays.values);
     this.points = arrays.points;
-    const tables = { points: arrays.points, nodes: arrays.nodes, ...this.ghostNodes };
-    if (this.seam) {
-      this.seam.move(arrays.nodes);
-      tables.seam = this.seam.position;
-      this.inner?.move(this.seam.position, null);
-      if (this.inner) this.inner.body.visible = !arrays.values;
-    }
-    let index = 0;
-    for (const line of this.lines) line.load = arrays.loads[index++] ?? 0;
-    for (const line of this.laid) {
-      if (!line.cable) continue;
-      const { width, colour } = cableLook(this, line.cable);
-      this.strokes.paint(line, line.casing ? width + 2.6 : width, line.casing ? line.colour : colour);
-    }
-    this.strokes.move(tables);
+    this.lines.forEach((line, i) => (line.load = arrays.loads[i] ?? 0));
     for (const dot of this.dots) dot.place = [0, 1, 2].map((k) => arrays.points[3 * dot.first + k]);
-    this.stale = true;
     if (this.fitting) this.fit();
   }
 
   /** Colours, and how much is seen through the body. */
   applyLook() {
-    const { surface, inner, palette } = this;
+    const { surface, palette } = this;
     if (!surface) return;
-    const flat = this.camera.flat;
     surface.colour(palette, mix(palette.seam, palette.dark, 0.12));
-    inner?.colour({ ...palette, felt: palette.felt_light }, palette.felt);
-    const cables = this.lines.some((line) => line.stroke === "cable");
-    const opacity = flat ? 1 : this.see ?? (cables ? 0.86 : 1);
-    surface.see(opacity);
-    if (inner) inner.edges.visible = false;
-    surface.edges.visible = Boolean(this.edges);
-    if (this.strokes) this.strokes.hidden.fade.value = 0.3 + 0.55 * (1 - opacity);
+    this.opacityNow = this.camera.flat ? 1 : this.see ?? 1;
+    surface.see(this.opacityNow);
     surface.section(this.cut);
-    for (const { thing, object } of Object.values(this.ghosts)) {
-      const pale = thing.colour === this.palette.ghost;
-      const fill = pale ? this.theme.ghost : thing.colour;
-      object.colour(flat ? mix(this.theme.back, fill, 0.28) : fill, flat ? 1 : pale ? 0.6 : 0.8);
+    for (const { thing, skin } of Object.values(this.ghosts)) {
+      skin?.colour(this.ghostColour(thing), thing.colour === palette.ghost ? 0.6 : 0.8);
     }
   }
 
   dress(dark) {
     this.theme = theme(dark);
     this.renderer.setClearColor(this.theme.back, 1);
-    this.grid.colour(this.theme);
-    if (this.strokes) {
-      this.layLines();
-      if (this.points.length || !this.dots.length) this.strokes.move({ points: this.points, nodes: this.surface.position, seam: this.seam?.position, ...this.ghostNodes });
-    }
+    this.element.style.background = this.theme.back;
     this.applyLook();
     this.mark("camera");
   }
@@ -291,7 +247,7 @@ export class View {
   fit() {
     if (!this.surface) return;
     this.fitting = !this.element.clientWidth;
-    this.camera.fit([this.surface.position, this.points, ...Object.values(this.ghostNodes ?? {})], MARGIN[this.camera.flat ? "flat" : "space"]);
+    this.camera.fit([this.surface.position, this.points, ...Object.values(this.ghosts).map((ghost) => ghost.array)], MARGIN[this.camera.flat ? "flat" : "space"]);
     this.mark("camera");
   }
 
@@ -314,23 +270,22 @@ export class View {
   }
 
   paint() {
-    const { camera, renderer, strokes, ratio } = this;
-    if (!ratio) return;
+    const { camera, renderer, overlay, surface } = this;
+    if (!this.ratio) return;
     camera.place();
-    this.grid.move(camera);
-    if (strokes) {
-      strokes.uniforms.size.value.set(renderer.domElement.width, renderer.domElement.height);
-      strokes.uniforms.ratio.value = ratio;
-      strokes.uniforms.metre.value = camera.metre;
+    const skins = !camera.flat || surface?.coloured;
+    if (skins !== this.skins) {
+      this.skins = skins;
+      renderer.domElement.style.visibility = skins ? "visible" : "hidden";
     }
-    for (const { object } of Object.values(this.clouds)) object.uniforms.across.value = 3.5 * ratio;
+    if (skins) renderer.render(this.world, camera.now);
+    if (surface && !camera.flat) this.cover.see(surface.position, camera, this.cut);
     this.spread();
-    renderer.render(this.world, camera.now);
-    this.overlay.draw(this);
+    overlay.draw(this);
     // reading a pixel waits until all is drawn: what is told as painted is painted
     const gl = renderer.getContext();
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
-    this.overlay.pen.getImageData(0, 0, 1, 1);
+    if (skins) gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
+    if (this.slow) overlay.pen.getImageData(0, 0, 1, 1);
   }
 
   /** Dots and areas to their pixels. */
@@ -340,7 +295,7 @@ export class View {
     for (const dot of this.dots) {
       [dot.x, dot.y] = camera.project(...dot.place, spot);
       dot.density = camera.density(dot.place);
-      if (!camera.flat && this.surface) dot.depth = this.covers(dot.place);
+      if (!camera.flat && this.surface) dot.depth = this.cover.layers(...spot);
     }
     for (const area of this.areas) {
       area.spots = Array.from({ length: points.length ? area.count : 0 }, (_, k) => {
@@ -350,15 +305,6 @@ export class View {
         return [x, y, depth, camera.density(place)];
       });
     }
-  }
-
-  /** How many layers of skin lie before a point: one if it is inside, two if it is behind the body. */
-  covers(place) {
-    const { camera, surface } = this;
-    const toward = camera.flat || camera.parallel ? camera.toward.clone()
-      : camera.now.position.clone().sub({ x: place[0], y: place[1], z: place[2] }).normalize();
-    const origin = new THREE.Vector3(...place).addScaledVector(toward, 0.004 * camera.reach);
-    return met(origin, toward, surface.position, surface.faces, this.cut, true).length;
   }
 
   // What the page may ask for.
@@ -412,8 +358,12 @@ export class View {
     const sheet = document.createElement("canvas");
     [sheet.width, sheet.height] = [this.overlay.canvas.width, this.overlay.canvas.height];
     const pen = sheet.getContext("2d");
-    this.renderer.render(this.world, this.camera.now);
-    pen.drawImage(this.renderer.domElement, 0, 0);
+    pen.fillStyle = this.theme.back;
+    pen.fillRect(0, 0, sheet.width, sheet.height);
+    if (!this.camera.flat) {
+      this.renderer.render(this.world, this.camera.now);
+      pen.drawImage(this.renderer.domElement, 0, 0);
+    }
     pen.drawImage(this.overlay.canvas, 0, 0);
     return sheet.toDataURL("image/png");
   }
@@ -425,12 +375,24 @@ export class View {
     this.watch.disconnect();
     cancelAnimationFrame(this.ticket);
     clearTimeout(this.bare);
-    for (const part of [this.surface, this.inner, this.strokes, this.grid]) this.drop(part);
-    for (const { object } of [...Object.values(this.ghosts), ...Object.values(this.clouds)]) this.drop(object);
+    this.drop(this.surface);
+    for (const { skin } of Object.values(this.ghosts)) this.drop(skin);
     this.ramp.dispose();
     this.renderer.dispose();
     if (window.__app === this.probe) delete window.__app;
   }
+}
+
+/** The things of a kind by name, each with its array. */
+function named(head, arrays, kind) {
+  const things = head.things.filter((thing) => thing.kind === kind);
+  return Object.fromEntries(things.map((thing) => [thing.name, { thing, array: arrays[`${kind}:${thing.name}`] }]));
+}
+
+/** Whether WebGL is done by the processor. */
+function hasNoCard(gl) {
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  return /swiftshader|llvmpipe|software|basic render/i.test(names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "");
 }
 
 /** Up to two letters for a disc: "index flexor" is IF, "winch_2" is W2, "left" is L. */

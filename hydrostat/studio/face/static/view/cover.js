@@ -1,0 +1,115 @@
+// What of a body in space lies before a point, and where its outline is, as the camera sees them.
+
+const CELL = 20;
+
+/** Each edge of some triangles once: [node, node, face, other face or -1]. */
+export function edgesOf(faces) {
+  const found = new Map();
+  for (let f = 0; f < faces.length; f += 3) {
+    for (let k = 0; k < 3; k++) {
+      const a = Math.min(faces[f + k], faces[f + ((k + 1) % 3)]), b = Math.max(faces[f + k], faces[f + ((k + 1) % 3)]);
+      const edge = found.get(a * 4294967 + b);
+      if (edge) edge[3] = f / 3;
+      else found.set(a * 4294967 + b, [a, b, f / 3, -1]);
+    }
+  }
+  return new Int32Array([...found.values()].flat());
+}
+
+export class Cover {
+  constructor(faces, count) {
+    this.faces = faces;
+    this.edges = edgesOf(faces);
+    this.spots = new Float32Array(3 * count); // pixels and depth of each node
+    this.front = new Int8Array(faces.length / 3); // 1: faces the camera, -1: does not
+    this.cells = [];
+  }
+
+  /** Look at the nodes anew. */
+  see(nodes, camera, cut) {
+    const { spots, faces, front } = this;
+    Object.assign(this, { nodes, cut });
+    const out = [0, 0, 0];
+    for (let i = 0; i < nodes.length; i += 3) {
+      camera.project(nodes[i], nodes[i + 1], nodes[i + 2], out);
+      spots[i] = out[0]; spots[i + 1] = out[1]; spots[i + 2] = out[2];
+    }
+    this.across = Math.ceil(camera.width / CELL);
+    this.down = Math.ceil(camera.height / CELL);
+    const count = this.across * this.down;
+    while (this.cells.length < count) this.cells.push([]);
+    for (const cell of this.cells) cell.length = 0;
+    for (let f = 0; f < faces.length; f += 3) {
+      const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
+      const turn = (spots[b] - spots[a]) * (spots[c + 1] - spots[a + 1]) - (spots[b + 1] - spots[a + 1]) * (spots[c] - spots[a]);
+      front[f / 3] = turn < 0 ? 1 : -1; // pixels count downwards
+      const left = Math.max(Math.floor(Math.min(spots[a], spots[b], spots[c]) / CELL), 0);
+      const right = Math.min(Math.floor(Math.max(spots[a], spots[b], spots[c]) / CELL), this.across - 1);
+      const top = Math.max(Math.floor(Math.min(spots[a + 1], spots[b + 1], spots[c + 1]) / CELL), 0);
+      const bottom = Math.min(Math.floor(Math.max(spots[a + 1], spots[b + 1], spots[c + 1]) / CELL), this.down - 1);
+      for (let y = top; y <= bottom; y++) for (let x = left; x <= right; x++) this.cells[y * this.across + x].push(f);
+    }
+    this.slack = camera.slack(0.006 * camera.reach);
+  }
+
+  /** How many layers of skin lie before a place: one if it is inside the body, two or more if it is behind. */
+  layers(x, y, depth) {
+    const { spots, faces, nodes, cut } = this;
+    const column = Math.floor(x / CELL), row = Math.floor(y / CELL);
+    if (column < 0 || row < 0 || column >= this.across || row >= this.down) return 0;
+    let count = 0;
+    for (const f of this.cells[row * this.across + column]) {
+      const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
+      const ux = spots[b] - spots[a], uy = spots[b + 1] - spots[a + 1], vx = spots[c] - spots[a], vy = spots[c + 1] - spots[a + 1];
+      const whole = ux * vy - uy * vx;
+      const s = ((x - spots[a]) * vy - (y - spots[a + 1]) * vx) / whole;
+      const t = (ux * (y - spots[a + 1]) - uy * (x - spots[a])) / whole;
+      if (!(s >= 0 && t >= 0 && s + t <= 1)) continue;
+      const r = 1 - s - t;
+      if (r * spots[a + 2] + s * spots[b + 2] + t * spots[c + 2] > depth - this.slack) continue;
+      if (cut) {
+        let beyond = -cut[3];
+        for (let k = 0; k < 3; k++) beyond += cut[k] * (r * nodes[a + k] + s * nodes[b + k] + t * nodes[c + k]);
+        if (beyond > 0) continue;
+      }
+      count += 1;
+    }
+    return count;
+  }
+
+  /** Calls `draw` with the ends in pixels of each edge that is wanted and seen. */
+  edgesSeen(wanted, draw) {
+    const { edges, spots, front, nodes, cut } = this;
+    for (let e = 0; e < edges.length; e += 4) {
+      if (!wanted(front[edges[e + 2]], edges[e + 3] < 0 ? 0 : front[edges[e + 3]])) continue;
+      const a = 3 * edges[e], b = 3 * edges[e + 1];
+      if (cut && cut[0] * (nodes[a] + nodes[b]) + cut[1] * (nodes[a + 1] + nodes[b + 1]) + cut[2] * (nodes[a + 2] + nodes[b + 2]) > 2 * cut[3]) continue;
+      const x = (spots[a] + spots[b]) / 2, y = (spots[a + 1] + spots[b + 1]) / 2, depth = (spots[a + 2] + spots[b + 2]) / 2;
+      if (this.layers(x, y, depth) === 0) draw(spots[a], spots[a + 1], spots[b], spots[b + 1]);
+    }
+  }
+
+  /** Calls `draw` with the ends in pixels of each piece of the section's rim. */
+  section(camera, draw) {
+    const { faces, nodes, cut } = this;
+    const ends = [[0, 0, 0], [0, 0, 0]];
+    const side = (n) => cut[0] * nodes[3 * n] + cut[1] * nodes[3 * n + 1] + cut[2] * nodes[3 * n + 2] - cut[3];
+    for (let f = 0; f < faces.length; f += 3) {
+      let found = 0;
+      for (let k = 0; k < 3 && found < 2; k++) {
+        const a = faces[f + k], b = faces[f + ((k + 1) % 3)], p = side(a), q = side(b);
+        if (p > 0 === q > 0) continue;
+        const share = p / (p - q);
+        const at = (i) => nodes[3 * a + i] + share * (nodes[3 * b + i] - nodes[3 * a + i]);
+        camera.project(at(0), at(1), at(2), ends[found++]);
+      }
+      if (found === 2) draw(ends[0][0], ends[0][1], ends[1][0], ends[1][1]);
+    }
+  }
+}
+
+/** Whether an edge belongs to the outline: one of its faces is turned to the camera, the other away. */
+export const isOutline = (one, other) => one !== other;
+
+/** Whether an edge belongs to the near side. */
+export const isNear = (one, other) => one > 0 || other > 0;

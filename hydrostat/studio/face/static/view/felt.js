@@ -1,0 +1,132 @@
+// A flat body as felt with a stitched seam, and the outline of a body in space.
+
+import { isNear, isOutline } from "./cover.js";
+import { mix, veil } from "./theme.js";
+
+/** A closed path through rings of places of a flat body. */
+function ringPath(rings, camera) {
+  const path = new Path2D(), spot = [0, 0, 0];
+  for (const ring of rings) {
+    for (let i = 0; i < ring.length; i += 2) {
+      camera.project(ring[i], ring[i + 1], 0, spot);
+      if (i) path.lineTo(spot[0], spot[1]);
+      else path.moveTo(spot[0], spot[1]);
+    }
+    path.closePath();
+  }
+  return path;
+}
+
+/** Faint squares, a round number of millimetres wide. */
+export function drawGrid(pen, view) {
+  const { camera, theme } = view;
+  const rough = 70 / camera.metre;
+  const nice = Math.pow(10, Math.floor(Math.log10(rough)));
+  const step = [1, 2, 5, 10].map((k) => k * nice).find((value) => value >= rough);
+  const tall = camera.span / 2, wide = tall * (camera.width / camera.height);
+  const { x, y } = camera.target;
+  pen.beginPath();
+  for (let k = Math.ceil((x - wide) / step); k * step < x + wide; k++) {
+    const at = Math.round((k * step - x + wide) * camera.metre) + 0.5;
+    pen.moveTo(at, 0);
+    pen.lineTo(at, camera.height);
+  }
+  for (let k = Math.ceil((y - tall) / step); k * step < y + tall; k++) {
+    const at = Math.round((y + tall - k * step) * camera.metre) + 0.5;
+    pen.moveTo(0, at);
+    pen.lineTo(camera.width, at);
+  }
+  pen.strokeStyle = theme.grid;
+  pen.lineWidth = 1;
+  pen.stroke();
+}
+
+/** Other shapes of a flat body, behind it. */
+export function drawGhosts(pen, view) {
+  for (const { thing, array } of Object.values(view.ghosts)) {
+    const colour = view.ghostColour(thing);
+    const path = ringPath(view.skin.rim.at(array), view.camera);
+    pen.fillStyle = veil(colour, 0.2);
+    pen.fill(path, "evenodd");
+    pen.strokeStyle = veil(colour, 0.8);
+    pen.lineWidth = 1.4;
+    pen.stroke(path);
+  }
+}
+
+/** A flat body. */
+export function drawFelt(pen, view) {
+  const { camera, palette, skin, surface } = view;
+  const nodes = surface.position;
+  const rim = ringPath(skin.rim.at(nodes), camera);
+  const seam = ringPath(skin.seam.at(nodes), camera);
+  pen.fillStyle = palette.felt;
+  pen.fill(rim, "evenodd");
+  if (surface.coloured) {
+    pen.save();
+    pen.clip(rim, "evenodd");
+    pen.drawImage(view.renderer.domElement, 0, 0, camera.width, camera.height);
+    pen.restore();
+  } else {
+    pen.fillStyle = palette.felt_light;
+    pen.fill(seam, "evenodd");
+  }
+  if (view.edges) {
+    const { edges, spots } = view.cover;
+    view.cover.see(nodes, camera, null);
+    pen.beginPath();
+    for (let e = 0; e < edges.length; e += 4) {
+      pen.moveTo(spots[3 * edges[e]], spots[3 * edges[e] + 1]);
+      pen.lineTo(spots[3 * edges[e + 1]], spots[3 * edges[e + 1] + 1]);
+    }
+    pen.strokeStyle = veil(palette.mesh, 0.45);
+    pen.lineWidth = 0.8;
+    pen.stroke();
+  }
+  pen.setLineDash([5, 4]);
+  pen.lineCap = "butt";
+  pen.strokeStyle = surface.coloured ? "rgba(255,255,255,0.75)" : palette.stitch;
+  pen.lineWidth = 1.8;
+  pen.stroke(seam);
+  pen.setLineDash([]);
+  pen.lineCap = "round";
+  pen.strokeStyle = surface.coloured ? mix(palette.dark, palette.seam, 0.4) : palette.seam;
+  pen.lineWidth = 2;
+  pen.stroke(rim);
+  // what is sought stays to be seen through the body
+  for (const { thing, array } of Object.values(view.ghosts)) {
+    if (thing.colour === palette.ghost) continue;
+    pen.strokeStyle = veil(view.ghostColour(thing), 0.55);
+    pen.lineWidth = 1.2;
+    pen.setLineDash([4, 3]);
+    pen.stroke(ringPath(skin.rim.at(array), camera));
+    pen.setLineDash([]);
+  }
+}
+
+/** What of a body in space is drawn with a pen: its outline, its mesh, the rim of its section. */
+export function drawOutline(pen, view) {
+  const { cover, palette, camera } = view;
+  const add = (ax, ay, bx, by) => {
+    pen.moveTo(ax, ay);
+    pen.lineTo(bx, by);
+  };
+  if (view.edges) {
+    pen.beginPath();
+    cover.edgesSeen(isNear, add);
+    pen.strokeStyle = veil(palette.mesh, 0.45);
+    pen.lineWidth = 0.8;
+    pen.stroke();
+  }
+  pen.beginPath();
+  cover.edgesSeen(isOutline, add);
+  pen.strokeStyle = palette.seam;
+  pen.lineWidth = 1.6;
+  pen.stroke();
+  if (!view.cut) return;
+  pen.beginPath();
+  cover.section(camera, add);
+  pen.strokeStyle = mix(palette.seam, palette.dark, 0.35);
+  pen.lineWidth = 1.6;
+  pen.stroke();
+}
