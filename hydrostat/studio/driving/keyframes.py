@@ -1,0 +1,145 @@
+"""`Keyframes`: the timeline of the open robot, edited by hand."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import isfinite
+
+from hydrostat.errors import InputError
+from hydrostat.studio.document import Document
+from hydrostat.studio.records.timeline import LONGEST, Key, Timeline
+
+APART = 0.5
+"""A copy of a key is put so much later [s]."""
+
+
+class Keyframes:
+    """Adds, moves, copies and removes keys; every change can be undone, and a drag is one change."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._chosen: float | None = None
+        self._held: tuple[int, Timeline] | None = None
+
+    @property
+    def timeline(self) -> Timeline:
+        """As it is now."""
+        return self._document.work.timeline
+
+    @property
+    def chosen(self) -> int | None:
+        """Number of the key that is selected; it follows the knobs."""
+        return None if self._chosen is None else self.timeline.index_at(self._chosen)
+
+    def choose(self, index: int | None) -> None:
+        """Select a key, or none.
+
+        Raises:
+            InputError: there is no such key.
+        """
+        self._chosen = None if index is None else self._key(index).time
+
+    def put(self, time: float, contractions: Mapping[str, float]) -> None:
+        """Add a key and select it; one that is at the same time is replaced.
+
+        Raises:
+            InputError: the time is out of range.
+        """
+        timeline = self.timeline.with_key(Key(time=time, contractions=dict(contractions)))
+        self._document.change(f"add keyframe at {time:.2f} s", timeline=timeline)
+        self._chosen = time
+
+    def adjust(self, contractions: Mapping[str, float]) -> None:
+        """Let the key that is selected have other contractions; changes in a row are one."""
+        if (index := self.chosen) is not None:
+            key = replace(self._key(index), contractions=dict(contractions))
+            self._document.change(
+                f"change keyframe at {key.time:.2f} s",
+                timeline=self.timeline.with_key(key),
+                merge=f"adjust key {key.time:.6f}",
+            )
+
+    def move(self, index: int, time: float) -> float:
+        """Drag a key to a time [s], within the timeline; returns where it went. It ends with `drop`.
+
+        A key that it comes upon is replaced, but stays if the drag goes on.
+
+        Raises:
+            InputError: there is no such key, or no such time.
+        """
+        if not isfinite(time):
+            raise InputError("the time of a keyframe must be a number of seconds")
+        if self._held is None or self._held[0] != index:
+            self._key(index)
+            self._document.seal()
+            self._held = (index, self.timeline)
+        before = self._held[1]
+        time = min(max(time, 0.0), before.seconds)
+        timeline = before.moved(index, time)
+        self._document.change(
+            f"move keyframe to {time:.2f} s", timeline=replace(timeline, length=before.seconds), merge="move key"
+        )
+        self._chosen = time
+        return time
+
+    def drop(self) -> None:
+        """A drag is over."""
+        self._held = None
+        self._document.seal()
+
+    def duplicate(self) -> float:
+        """Copy the key that is selected to the next place that is free, and select that; returns its time [s].
+
+        Raises:
+            InputError: none is selected, or there is no place.
+        """
+        key = self._key(self.chosen)
+        time = key.time + APART
+        while self.timeline.index_at(time) is not None:
+            time += APART
+        if time > LONGEST:
+            raise InputError(f"there is no room for another keyframe before {LONGEST:g} s; move some first")
+        self._document.change("duplicate keyframe", timeline=self.timeline.with_key(replace(key, time=time)))
+        self._chosen = time
+        return time
+
+    def delete(self) -> None:
+        """Remove the key that is selected.
+
+        Raises:
+            InputError: none is.
+        """
+        key = self._key(self.chosen)
+        assert self.chosen is not None
+        self._document.change(f"delete keyframe at {key.time:.2f} s", timeline=self.timeline.without(self.chosen))
+        self._chosen = None
+
+    def replace_all(self, timeline: Timeline, label: str) -> None:
+        """Put another timeline in place of this one."""
+        self._chosen = self._held = None
+        self._document.change(label, timeline=timeline)
+
+    def set_smooth(self, smooth: bool) -> None:
+        """Go gently from key to key, or along a line."""
+        if smooth != self.timeline.smooth:
+            label = "interpolate smoothly" if smooth else "interpolate along lines"
+            self._document.change(label, timeline=replace(self.timeline, smooth=smooth))
+
+    def set_length(self, seconds: float) -> None:
+        """Make the timeline longer or shorter; no key is lost by it.
+
+        Raises:
+            InputError: it is too short, too long, or shorter than its keys.
+        """
+        last = self.timeline.keys[-1].time if self.timeline.keys else 0.0
+        if seconds < last:
+            raise InputError(f"the last keyframe is at {last:.2f} s; move or delete it before it is cut off")
+        if seconds != self.timeline.length:
+            timeline = replace(self.timeline, length=seconds)
+            self._document.change(f"set length to {seconds:g} s", timeline=timeline, merge="set length")
+
+    def _key(self, index: int | None) -> Key:
+        if index is None:
+            raise InputError("choose a keyframe first: click on its diamond")
+        if not 0 <= index < len(self.timeline.keys):
+            raise InputError(f"there is no keyframe {index + 1}; there are {len(self.timeline.keys)}")
+        return self.timeline.keys[index]

@@ -1,0 +1,98 @@
+"""`record_film`: a timeline as a film, in a process of its own."""
+
+from collections.abc import Callable
+from enum import StrEnum
+from math import ceil
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hydrostat.errors import InputError
+from hydrostat.plot import find_ffmpeg, save_gif, save_glb, save_mp4
+from hydrostat.plot.frame import Frame
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation
+from hydrostat.studio.driving.follower import upright
+from hydrostat.studio.jobs import Report
+from hydrostat.studio.records.timeline import Timeline
+
+LONGEST_FILM = 60.0
+"""No film is longer [s]."""
+
+WIDTH = 640
+"""Of its pictures [pixels]."""
+
+
+class FilmKind(StrEnum):
+    """What a film can be written as."""
+
+    GIF = "gif"
+    MP4 = "mp4"
+    GLB = "glb"
+
+
+STEPS = {FilmKind.GIF: 0.05, FilmKind.MP4: 0.04, FilmKind.GLB: 0.05}
+"""Time of a frame [s]; a GIF counts in hundredths of a second."""
+
+
+def check_film(timeline: Timeline, kind: FilmKind) -> None:
+    """Before long work begins: it can be filmed.
+
+    Raises:
+        InputError: there are no keyframes, it is too long, or an MP4 is asked for and there is no ffmpeg.
+    """
+    if not timeline.keys:
+        raise InputError("there are no keyframes to film; turn the knobs and press Add")
+    if timeline.seconds > LONGEST_FILM:
+        raise InputError(f"a film may be {LONGEST_FILM:g} s long, not {timeline.seconds:.1f} s; make it shorter")
+    if kind is FilmKind.MP4:
+        find_ffmpeg()
+
+
+def record_film(report: Report, robot: Robot, timeline: Timeline, kind: FilmKind) -> bytes:
+    """The film, as the bytes of its file.
+
+    Args:
+        report: told how far it is.
+        robot: that moves.
+        timeline: how.
+        kind: of file.
+
+    Raises:
+        InputError: as for `check_film`.
+    """
+    check_film(timeline, kind)
+    step = STEPS[kind]
+    frames = film_frames(robot, timeline, step, report.progress)
+    report.progress("drawing", 0, len(frames))
+    with TemporaryDirectory(prefix="hydrostat-") as folder:
+        path = Path(folder) / f"film.{kind}"
+        if kind is FilmKind.GLB:
+            save_glb(robot, frames, path, step=step)
+        elif kind is FilmKind.GIF:
+            save_gif(robot, frames, path, step=step, width=WIDTH, tell=report.progress)
+        else:
+            save_mp4(robot, frames, path, step=step, width=WIDTH, tell=report.progress)
+        return path.read_bytes()
+
+
+def film_frames(robot: Robot, timeline: Timeline, step: float, tell: Callable[[str, int, int], None]) -> list[Frame]:
+    """The robot at equal times, each frame an equilibrium; one that has none shows the one before.
+
+    Args:
+        robot: that moves.
+        timeline: how.
+        step: time of a frame [s].
+        tell: told the stage, how much is done, and of how much.
+    """
+    simulation, profile = Simulation(robot), timeline.profile([winch.name for winch in robot.winches])
+    count = max(2, ceil(timeline.seconds / step - 1e-9) + 1)
+    last, frames = None, []
+    for number in range(count):
+        pose = simulation.solve(profile.at(min(number * step, timeline.seconds)), start=last, strict=False)
+        if pose.result.converged and upright(robot, pose):
+            last = pose
+        elif last is None:
+            raise InputError("no shape was found for the start of the timeline; let it begin nearer to rest")
+        frames.append(Frame.of(last))
+        tell("solving", number + 1, count)
+    return frames
