@@ -31,7 +31,7 @@ def draw_picture(robot: Robot) -> bytes:
     sheet = Image.new("RGBA", (WIDE, HIGH), (0, 0, 0, 0))
     sheet.paste(image, ((WIDE - image.width) // 2, (HIGH - image.height) // 2))
     result = io.BytesIO()
-    sheet.save(result, format="WEBP", quality=76, method=6)
+    sheet.save(result, format="WEBP", quality=70, method=6)
     return result.getvalue()
 
 

@@ -1,20 +1,65 @@
 """`Starter`: the stage "start"."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from threading import RLock
+from typing import Any
 
+from hydrostat.errors import InputError
+from hydrostat.robot import find_material, load_robot
+from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Stage
+from hydrostat.studio.starting.autosave import Autosave
+from hydrostat.studio.starting.draft import Draft, new_draft
+from hydrostat.studio.starting.outlining import Outlining
+from hydrostat.studio.starting.recent import Recent
+from hydrostat.studio.starting.shelf import Card, card_of, robots_in
+from hydrostat.studio.starting.sketch import Sketch, make_sketch
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.shape import Shape, rest_shape
 from hydrostat.studio.view.things import Thing
+from hydrostat.studio.work_folder import open_work
+
+TITLE = "Meshing"
+
+_LIGHT = {"name", "material"}
+"""What can be changed without a new mesh."""
 
 
 class Starter(Stage):
-    """To be written."""
+    """How work begins: a robot of the gallery, a folder, a file that is brought, an outline drawn by hand.
 
-    def __init__(self, document: Document, jobs: Jobs) -> None:
+    Attributes:
+        autosave: keeps the work of the session.
+        draft: what is to become a robot; None: nothing was brought.
+        sketch: what was made of a draft, perhaps one before the present; None: nothing yet.
+        problem: why nothing can be made of the draft; "" if something can.
+        outlining: the outline that is drawn; None: none.
+    """
+
+    def __init__(self, document: Document, jobs: Jobs, state: Path | None = None) -> None:
+        """Begin.
+
+        Args:
+            document: to open robots in.
+            jobs: for meshing.
+            state: folder to remember in, over runs; None: nothing is remembered.
+        """
         self._document, self._jobs = document, jobs
+        self.autosave = Autosave(document, None if state is None else state / "work")
+        self.draft: Draft | None = None
+        self.sketch: Sketch | None = None
+        self.problem = ""
+        self.outlining: Outlining | None = None
+        self._recent = Recent(None if state is None else state / "recent.json")
+        self._known: Path | None = None
+        self._working: Draft | None = None
+        self._lock = RLock()
+        document.bell.listen(self._hear)
 
     def shape(self) -> Shape:
         """The rest shape."""
@@ -23,3 +68,175 @@ class Starter(Stage):
     def things(self) -> Sequence[Thing]:
         """All parts of the robot."""
         return robot_things(self._document.robot)
+
+    def open_gallery(self, folder: Path) -> None:
+        """Open a copy of a gallery robot, which Save asks a folder for."""
+        self._document.open(Work(robot=load_robot(folder)))
+
+    def open_folder(self, text: str) -> None:
+        """Open the robot in a folder.
+
+        Raises:
+            InputError: there is none, or it is wrong.
+        """
+        if not text.strip():
+            raise InputError("name the folder of a robot")
+        try:
+            folder = Path(text.strip()).expanduser()
+            work = open_work(folder)
+        except (OSError, ValueError, RuntimeError) as error:
+            raise InputError(f"this folder cannot be read ({error})") from None
+        self._document.open(work, folder=folder.parent if folder.suffix == ".toml" else folder)
+
+    def recent(self) -> list[Card]:
+        """Robots that were open lately, then those of the working folder."""
+        recent = [card_of(folder) for folder in self._recent.folders()]
+        known = {card.folder for card in recent}
+        return recent + [card for card in robots_in(Path.cwd()) if card.folder.resolve() not in known]
+
+    @property
+    def meshing(self) -> bool:
+        """Whether a sketch is being made."""
+        return self._working is not None
+
+    @property
+    def is_current(self) -> bool:
+        """Whether the sketch is what the draft asks for."""
+        return self.sketch is not None and self.sketch.draft is self.draft and not self.problem
+
+    def bring(self, name: str, content: bytes) -> None:
+        """Begin with a file that a person brings; it is meshed in a process of its own.
+
+        Raises:
+            InputError: empty, too large, of a kind that is not read, or another job runs.
+        """
+        draft = new_draft(name, content)
+        with self._lock:
+            self.sketch = None
+            self._take(draft)
+
+    def revise(self, **changes: Any) -> None:
+        """Ask for other numbers; see `Draft`. What needs no new mesh is done at once.
+
+        Raises:
+            InputError: a number out of its range.
+        """
+        with self._lock:
+            if self.draft is None:
+                return
+            draft = replace(self.draft, **changes)
+            if self.sketch is not None and self.is_current and not self.meshing and set(changes) <= _LIGHT:
+                self.draft, self.sketch = draft, _with_light(self.sketch, draft)
+                self._document.bell.ring(Topic.JOB)
+            elif draft != self.draft or self.problem:
+                self._take(draft)
+
+    def make(self) -> None:
+        """Open the robot that was sketched.
+
+        Raises:
+            InputError: there is none, or it is not what was asked for last.
+        """
+        with self._lock:
+            sketch = self.sketch
+            if sketch is None or not self.is_current or self.meshing:
+                raise InputError(self.problem or "the robot is still being meshed; wait a moment")
+            self._document.open(Work(robot=sketch.robot), saved=False)
+            self.drop()
+
+    def drop(self) -> None:
+        """Begin with nothing again."""
+        with self._lock:
+            self.draft = self.sketch = self.outlining = None
+            self.problem = ""
+            self._end()
+        self._document.bell.ring(Topic.JOB)
+
+    def outline_new(self) -> None:
+        """Begin to draw an outline."""
+        self.outlining = Outlining()
+        self._document.bell.ring(Topic.JOB)
+
+    def outline_open(self) -> None:
+        """Begin to edit the outline of the open robot.
+
+        Raises:
+            InputError: it was not drawn.
+        """
+        self.outlining = Outlining.of(self._document.robot)
+        self._document.bell.ring(Topic.JOB)
+
+    def outline_done(self) -> None:
+        """Make a draft of the outline that was drawn.
+
+        Raises:
+            InputError: it is no body.
+        """
+        if self.outlining is None:
+            return
+        self.bring("outline.svg", self.outlining.drawing())
+        self.outlining = None
+        self._document.bell.ring(Topic.JOB)
+
+    def outline_apply(self) -> None:
+        """Give the open robot the outline that was drawn; one change, which can be undone.
+
+        Raises:
+            InputError: it is no body, or holds no pin any more.
+        """
+        if self.outlining is None:
+            return
+        work = self.outlining.applied(self._document.work).work
+        self._document.change("edit outline", robot=work.robot, timeline=work.timeline, wishes=work.wishes)
+        self.outlining = None
+        self._document.bell.ring(Topic.JOB)
+
+    def _take(self, draft: Draft) -> None:
+        """Make a sketch of a draft as soon as the one before is out of the way."""
+        self.draft, self.problem = draft, ""
+        if self._working is None:
+            self._begin(draft)
+        else:
+            self._end()
+        self._document.bell.ring(Topic.JOB)
+
+    def _begin(self, draft: Draft) -> None:
+        self._working = draft
+        try:
+            self._jobs.start(TITLE, make_sketch, draft, on_part=self._found, on_done=self._found, on_end=self._ended)
+        except InputError as error:
+            self._working, self.problem = None, str(error)
+
+    def _end(self) -> None:
+        """Stop the sketch that is being made."""
+        if self._working is not None:
+            self._jobs.stop()
+            self._jobs.stop()  # asked twice, it is ended at once
+
+    def _found(self, sketch: Sketch) -> None:
+        with self._lock:
+            if self.draft is not None and sketch.draft == self.draft:
+                self.sketch = replace(sketch, draft=self.draft)  # what came from the process is a copy
+
+    def _ended(self) -> None:
+        with self._lock:
+            done, self._working = self._working, None
+            if self.draft is not None and self.draft is not done:
+                self._begin(self.draft)
+            elif self.draft is not None:
+                state = self._jobs.state
+                self.problem = "" if state is None else state.error
+        self._document.bell.ring(Topic.JOB)
+
+    def _hear(self, topic: Topic) -> None:
+        """Remember the folder of the robot."""
+        folder = self._document.folder
+        if topic is Topic.ROBOT and folder is not None and folder != self._known:
+            self._known = folder
+            self._recent.add(folder)
+
+
+def _with_light(sketch: Sketch, draft: Draft) -> Sketch:
+    """The same sketch of another name and material."""
+    body = replace(sketch.robot.body, material=find_material(draft.material))
+    return replace(sketch, draft=draft, robot=replace(sketch.robot, name=draft.name, body=body))

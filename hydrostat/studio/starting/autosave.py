@@ -1,0 +1,187 @@
+"""`Autosave`: keeps work that is not saved, so that a crash loses two seconds of it at most."""
+
+import json
+import logging
+import os
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from shutil import rmtree
+from threading import Lock, Thread
+
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.studio.document import Document
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.starting.held_folder import HeldFolder, is_held
+from hydrostat.studio.work_folder import open_work, save_work
+
+PATIENCE = 2.0
+"""Work is kept when nothing has changed for so long [s]."""
+
+LONGEST = 20.0
+"""And at least so often while changes go on [s]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Left:
+    """Work that was not saved when its studio ended.
+
+    Attributes:
+        folder: where it is kept.
+        name: of the robot.
+        time: when it was kept.
+        origin: where the robot had been saved before; None: nowhere.
+    """
+
+    folder: Path
+    name: str
+    time: datetime
+    origin: Path | None
+
+    @property
+    def words(self) -> str:
+        """Such as "14:32: starfish"; with the day if it was not today."""
+        today = self.time.date() == datetime.now(self.time.tzinfo).date()
+        return f"{self.time:%H:%M}: {self.name}" if today else f"{self.time:%d %b %H:%M}: {self.name}"
+
+
+class Autosave:
+    """Keeps the work of a document in a folder of its own while it is not saved.
+
+    A studio has a folder ID/ with a lock, and in it ID/N/ with meta.json and work/, N counting. A new one is written
+    beside the last under another name and renamed when it is whole, then the last is removed: at any moment one whole
+    copy is there.
+    """
+
+    def __init__(self, document: Document, folder: Path | None) -> None:
+        """Keep what is changed.
+
+        Args:
+            document: with the work.
+            folder: that all studios of this person share; None: nothing is kept.
+        """
+        self._document, self._folder = document, folder
+        self._held: HeldFolder | None = None
+        self._seen = self._kept = (0, True)
+        self._changed = self._asked = 0.0
+        self._count = 0
+        self._writer: Thread | None = None
+        self._lock = Lock()
+
+    def step(self, now: float) -> None:
+        """Keep the work if it is time to. Returns at once: another thread writes.
+
+        Args:
+            now: time [s] of a clock that only runs forward.
+        """
+        state = self._state()
+        if state != self._seen:
+            if self._seen == self._kept:
+                self._asked = now
+            self._seen, self._changed = state, now
+        if self._folder is None or state == self._kept or (self._writer is not None and self._writer.is_alive()):
+            return
+        if state[1] or now - self._changed >= PATIENCE or now - self._asked >= LONGEST:
+            self._writer = Thread(target=self._keep, name="autosave", daemon=True)
+            self._writer.start()
+
+    def close(self) -> None:
+        """The studio ends: what is saved is kept no longer, what is not is there next time."""
+        self._keep()
+        with self._lock:
+            if self._held is not None:
+                self._held.let_go()
+                self._held = None
+
+    def left(self) -> list[Left]:
+        """What studios that live no more have left, the newest first."""
+        if self._folder is None or not self._folder.is_dir():
+            return []
+        found = [_left_in(folder) for folder in self._folder.iterdir() if folder.is_dir() and not is_held(folder)]
+        return sorted((left for left in found if left is not None), key=lambda left: left.time, reverse=True)
+
+    def restore(self, left: Left) -> None:
+        """Open what was left; it is kept on as work of this studio.
+
+        Raises:
+            InputError: it cannot be read any more.
+        """
+        work = open_work(left.folder / "work")
+        self._document.open(work, folder=left.origin, saved=False)
+        if self._keep():
+            self.forget(left)
+
+    def forget(self, left: Left) -> None:
+        """Remove what was left."""
+        rmtree(left.folder.parent, ignore_errors=True)
+
+    def _state(self) -> tuple[int, bool]:
+        return (self._document.serial, self._document.saved)
+
+    def _keep(self) -> bool:
+        """Write the work as it is now, or remove what was kept if it is saved; whether that could be done."""
+        if self._folder is None:
+            return False
+        with self._lock:
+            state = self._state()
+            if state == self._kept:
+                return True
+            try:
+                if state[1]:
+                    self._remove()
+                else:
+                    self._write(self._folder, self._document.work)
+            except (OSError, HydrostatError):
+                logging.getLogger("hydrostat").exception("the work cannot be kept for restoring")
+                return False
+            finally:
+                self._kept = state  # tried again after the next change, not four times a second
+        return True
+
+    def _write(self, folder: Path, work: Work) -> None:
+        if self._held is None:
+            self._held = HeldFolder(folder)
+        self._count += 1
+        home = self._held.path
+        part, whole = home / f"{self._count}.part", home / str(self._count)
+        save_work(work, part / "work")
+        origin = self._document.folder
+        meta = {
+            "name": work.robot.name,
+            "time": datetime.now().astimezone().isoformat(),
+            "origin": None if origin is None else str(origin.resolve()),
+            "process": os.getpid(),
+        }
+        (part / "meta.json").write_text(json.dumps(meta), encoding="utf-8")
+        part.rename(whole)
+        rmtree(home / str(self._count - 1), ignore_errors=True)
+
+    def _remove(self) -> None:
+        if self._held is not None:
+            self._held.remove()
+            self._held = None
+
+
+def _left_in(folder: Path) -> Left | None:
+    """The newest whole copy in the folder of a studio that is gone; one without any is removed."""
+    numbers = sorted((path for path in folder.iterdir() if path.name.isdecimal()), key=lambda path: int(path.name))
+    for path in reversed(numbers):
+        try:
+            return _read(path)
+        except (OSError, ValueError, KeyError, TypeError, InputError):
+            continue
+    rmtree(folder, ignore_errors=True)
+    return None
+
+
+def _read(path: Path) -> Left:
+    meta = json.loads((path / "meta.json").read_text(encoding="utf-8"))
+    if not (path / "work" / "robot.toml").is_file():
+        raise InputError(f"{path}: there is no robot in it")
+    origin = meta["origin"]
+    return Left(
+        folder=path,
+        name=str(meta["name"])[:60],
+        time=datetime.fromisoformat(meta["time"]),
+        origin=None if origin is None else Path(origin),
+    )

@@ -1,0 +1,119 @@
+"""`Draft`: what a robot is to be made of, and with which numbers."""
+
+import re
+from dataclasses import dataclass
+from pathlib import PurePath
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
+from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
+from hydrostat.robot import find_material
+from hydrostat.robot.name import check_name
+from hydrostat.units import quote
+
+UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)
+"""Endings of files that may be brought."""
+
+MOST_BYTES = 200_000_000
+"""No file that is brought is larger."""
+
+LONGEST, SHORTEST = 20.0, 1e-4
+"""Lengths that a person may ask for [m]."""
+
+NODES = (20, 20_000)
+"""So few and so many nodes may be asked for."""
+
+PICTURE_SIZE = 0.2
+"""Of a body from a picture, which says no size, until another is asked for [m]."""
+
+_LONGEST_STEM = 40
+_CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Draft:
+    """A drawing or a surface, and what is asked of the robot made of it; None where nothing is asked.
+
+    Attributes:
+        file: name of the file, made safe by `safe_name`.
+        content: its bytes.
+        name: of the robot.
+        material: a name of the table.
+        size: longest side [m].
+        element_size: length of a mesh edge [m].
+        nodes: about so many; not used with an element size.
+        thickness: of a flat body [m].
+        inflate: thickness to blow a drawing up to [m].
+
+    Raises:
+        InputError: a number out of its range, or an unknown material.
+    """
+
+    file: str
+    content: bytes
+    name: str
+    material: str
+    size: float | None = None
+    element_size: float | None = None
+    nodes: int | None = None
+    thickness: float | None = None
+    inflate: float | None = None
+
+    def __post_init__(self) -> None:
+        find_material(self.material)
+        check_name(self.name)
+        for key in ("size", "element_size", "thickness", "inflate"):
+            value = getattr(self, key)
+            if value is not None and not SHORTEST <= value <= LONGEST:
+                raise InputError(
+                    f"{key.replace('_', ' ')}: must be from {1e3 * SHORTEST:g} mm to {LONGEST:g} m, "
+                    f"not {1e3 * value:g} mm"
+                )
+        if self.nodes is not None and not NODES[0] <= self.nodes <= NODES[1]:
+            raise InputError(f"nodes: must be from {NODES[0]} to {NODES[1]}, not {self.nodes}")
+
+    @property
+    def is_drawing(self) -> bool:
+        """Whether the file is a drawing or picture, not a surface in space."""
+        return self.file.endswith(OUTLINE_SUFFIXES)
+
+
+def new_draft(name: str, content: bytes) -> Draft:
+    """A draft of a file that a person brings, with nothing asked yet but the size of a picture.
+
+    Raises:
+        InputError: empty, too large, or of a kind that is not read.
+    """
+    file = safe_name(name)
+    if not content:
+        raise InputError(f"{file}: the file is empty; export it again")
+    if len(content) > MOST_BYTES:
+        raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
+    material = "polyester fibre" if file.endswith(OUTLINE_SUFFIXES) else "flexfoam-it x"
+    size = PICTURE_SIZE if file.endswith((".png", ".jpg", ".jpeg")) else None
+    return Draft(file=file, content=content, name=_robot_name(PurePath(file).stem), material=material, size=size)
+
+
+def safe_name(name: str) -> str:
+    """A plain file name of whatever a browser says a file is called: no folder, no strange letters, not too long.
+
+    Raises:
+        InputError: it does not end as a file that is read.
+    """
+    plain = re.split(r"[/\\]", name)[-1]
+    stem, dot, ending = plain.rpartition(".")
+    suffix = (dot + ending).lower()
+    if suffix not in UPLOAD_SUFFIXES:
+        shown = quote(plain if len(plain) <= 60 else plain[:28] + "..." + plain[-28:])
+        if suffix in _CAD:
+            raise InputError(f"{shown}: CAD files are not read; export it as STL or 3MF")
+        raise InputError(f"{shown}: cannot be read; bring a file that ends in {', '.join(UPLOAD_SUFFIXES)}")
+    stem = re.sub(r"[^\w-]+", "_", stem)[:_LONGEST_STEM].strip("_-")
+    return (stem or "body") + suffix
+
+
+def _robot_name(stem: str) -> str:
+    try:
+        return check_name(stem)
+    except InputError:
+        return "robot"

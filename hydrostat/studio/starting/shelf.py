@@ -1,0 +1,91 @@
+"""`Card`, `gallery_cards`, `robots_in`: robots to choose from, told without reading their bodies."""
+
+import tomllib
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+from hydrostat.robot import gallery_folder, gallery_names
+from hydrostat.studio.starting.draw_gallery import PICTURES
+from hydrostat.units import counted
+
+MOST_SEEN, MOST_SHOWN = 500, 24
+"""So many entries of a folder are looked at, so many robots in it are shown."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Card:
+    """A robot to choose.
+
+    Attributes:
+        name: of the robot.
+        folder: where it is.
+        words: what it is, such as "flat, 4 winches, 8 cables".
+        picture: WebP file of it; None: there is none.
+    """
+
+    name: str
+    folder: Path
+    words: str
+    picture: Path | None = None
+
+
+def gallery_cards() -> list[Card]:
+    """All robots that come with hydrostat, flat ones first."""
+    cards = [
+        Card(name=name, folder=gallery_folder(name), words=_words(gallery_folder(name)), picture=_picture(name))
+        for name in gallery_names()
+    ]
+    return sorted(cards, key=lambda card: (not card.words.startswith("flat"), card.name))
+
+
+def robots_in(folder: Path) -> list[Card]:
+    """Robots in the folders of a folder, or the robot that it is; none if it cannot be read."""
+    if is_robot(folder):
+        return [card_of(folder)]
+    found: list[Path] = []
+    with suppress(OSError):
+        found = sorted(path for path in islice(folder.iterdir(), MOST_SEEN) if is_robot(path))
+    return [card_of(path) for path in found[:MOST_SHOWN]]
+
+
+def suggestions(text: str) -> list[str]:
+    """Folders that a path which is being typed may mean: those with a robot, and those on the way."""
+    path = Path(text).expanduser() if text.strip() else Path.cwd()
+    parent, start = (path, "") if text.endswith(("/", "\\")) or not text.strip() else (path.parent, path.name)
+    found: list[Path] = []
+    with suppress(OSError, ValueError):
+        entries = (entry for entry in islice(parent.iterdir(), MOST_SEEN) if not entry.name.startswith("."))
+        found = [entry for entry in entries if entry.name.startswith(start) and entry.is_dir()]
+    found.sort(key=lambda entry: (not is_robot(entry), entry.name))
+    return [str(entry) for entry in found[:MOST_SHOWN]]
+
+
+def is_robot(folder: Path) -> bool:
+    """Whether a folder holds a robot."""
+    try:
+        return (folder / "robot.toml").is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def card_of(folder: Path) -> Card:
+    """What a folder holds."""
+    return Card(name=folder.name, folder=folder, words=_words(folder))
+
+
+def _picture(name: str) -> Path | None:
+    path = PICTURES / f"{name}.webp"
+    return path if path.is_file() else None
+
+
+def _words(folder: Path) -> str:
+    """What robot.toml says at a glance; "" if it says nothing that is understood."""
+    try:
+        table = tomllib.loads((folder / "robot.toml").read_text(encoding="utf-8"))
+        kind = "flat" if "outline" in table["body"] else "in space"
+        parts = [counted(len(table.get(key, [])), key) for key in ("winch", "cable")]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return ""
+    return ", ".join([kind, *(part for part in parts if not part.startswith("0 "))])

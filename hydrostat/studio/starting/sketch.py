@@ -1,0 +1,141 @@
+"""`make_sketch`: a robot of a draft, with its pictures. Runs in a process of its own."""
+
+from dataclasses import dataclass, replace
+from pathlib import PurePath
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot, SurfaceSketch, sketch_robot, sketch_surface
+from hydrostat.studio.jobs import Report
+from hydrostat.studio.starting.draft import Draft
+
+MOST_MEMORY = 6 * 2**30
+"""The process may have so much memory [bytes]; a file that needs more is refused."""
+
+WIDTH = 6.4
+"""Of pictures [inch]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sketch:
+    """A first robot, and what there is to know of it.
+
+    Attributes:
+        draft: what it is made of.
+        robot: that would be begun with.
+        lines: what was found and done in reading, healing and meshing.
+        clean: whether nothing had to be mended.
+        picture: of the robot, as SVG that follows the colours of the page.
+        repair: of what was mended, likewise; "" if nothing was.
+    """
+
+    draft: Draft
+    robot: Robot
+    lines: tuple[str, ...]
+    clean: bool
+    picture: str
+    repair: str = ""
+
+
+def make_sketch(report: Report, draft: Draft) -> Sketch:
+    """Read, heal, mesh and draw.
+
+    Raises:
+        InputError: no body can be made of it; one line says why.
+    """
+    _limit_memory()
+    try:
+        return _sketch(report, draft)
+    except MemoryError:
+        raise InputError(f"{draft.file}: needs more than {MOST_MEMORY >> 30} GB of memory; simplify it") from None
+    except RecursionError:
+        raise InputError(f"{draft.file}: is nested too deep; export it again") from None
+
+
+def _sketch(report: Report, draft: Draft) -> Sketch:
+    report.progress("reading and meshing", 0, 3)
+    if draft.is_drawing and draft.inflate is None:
+        robot, lines = _flat(draft)
+        return _drawn(report, draft, robot, lines, None)
+    file, content, size, lines = draft.file, draft.content, draft.size, ()
+    if draft.is_drawing:
+        content, lines = _inflated(draft)
+        file, size = f"{PurePath(draft.file).stem}.ply", None
+    nodes = {} if draft.nodes is None else {"nodes": draft.nodes}
+    sketch = sketch_surface(
+        content,
+        file=file,
+        name=draft.name,
+        size=size,
+        element_size=draft.element_size,
+        material=draft.material,
+        **nodes,
+    )
+    made = _drawn(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
+    report.part(made)
+    report.progress("finding a first pose", 2, 3)
+    return replace(made, robot=_posed(sketch.robot))
+
+
+def _flat(draft: Draft) -> tuple[Robot, tuple[str, ...]]:
+    from hydrostat.geometry.files.outline_file import read_drawing
+
+    notes = read_drawing(draft.content, name=draft.file, size=draft.size).notes
+    robot = sketch_robot(
+        draft.content,
+        file=draft.file,
+        name=draft.name,
+        size=draft.size,
+        element_size=draft.element_size,
+        thickness=draft.thickness,
+        nodes=draft.nodes,
+        material=draft.material,
+    )
+    return robot, notes
+
+
+def _inflated(draft: Draft) -> tuple[bytes, tuple[str, ...]]:
+    from hydrostat.geometry.files.outline_file import read_drawing
+    from hydrostat.geometry.files.surface_file import write_ply
+    from hydrostat.geometry.inflate import inflate
+
+    assert draft.inflate is not None
+    drawing = read_drawing(draft.content, name=draft.file, size=draft.size)
+    return write_ply(inflate(drawing.outline, draft.inflate, spacing=drawing.outline.size / 80)), drawing.notes
+
+
+def _posed(robot: Robot) -> Robot:
+    from hydrostat.ik.first_pose import with_first_pose
+
+    return with_first_pose(robot)
+
+
+def _drawn(report: Report, draft: Draft, robot: Robot, lines: tuple[str, ...], sketch: SurfaceSketch | None) -> Sketch:
+    """With its pictures."""
+    from hydrostat.plot import draw_healing, draw_rest, inline_svg
+
+    report.progress("drawing", 1, 3)
+    picture = inline_svg(draw_rest(robot, title="", width=WIDTH), name="sketch", label=f"{draft.name} at rest")
+    repair = ""
+    if sketch is not None and not sketch.healing.clean:
+        places = np.array([piece.place for piece in sketch.healing.removed]).reshape(-1, 3)
+        figure = draw_healing(sketch.before, sketch.healing.surface, places=places, width=WIDTH)
+        repair = inline_svg(figure, name="repair", label=f"{draft.file} as it came, and healed")
+    clean = not lines if sketch is None else sketch.healing.clean
+    return Sketch(draft=draft, robot=robot, lines=tuple(lines), clean=clean, picture=picture, repair=repair)
+
+
+def _limit_memory() -> None:
+    """Where the system can: a file must not take the whole machine."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return
+    from multiprocessing import parent_process
+
+    if parent_process() is None:
+        return  # only a process of its own; tests call this in theirs
+    hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+    most = MOST_MEMORY if hard == resource.RLIM_INFINITY else min(MOST_MEMORY, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (most, hard))
