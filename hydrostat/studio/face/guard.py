@@ -1,105 +1,200 @@
 """`Guard`: who may talk to the studio."""
 
-from http.cookies import SimpleCookie
+from ipaddress import ip_address
 from secrets import compare_digest
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
 
-from starlette.responses import PlainTextResponse, RedirectResponse
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 """Names of this machine that a page may have."""
 
 COOKIE = "hydrostat_token"
+"""Followed by the port: cookies do not know ports, and two studios may run on one machine."""
 
 LARGEST = 200_000_000
 """No request has more bytes."""
+
+SAFE_HEADERS = {
+    "content-security-policy": (
+        "default-src 'self' data: blob: 'unsafe-inline' 'unsafe-eval'; object-src 'none'; base-uri 'none'; "
+        "form-action 'self'; frame-ancestors 'none'"
+    ),
+    "cross-origin-resource-policy": "same-origin",
+    "referrer-policy": "same-origin",
+    "x-content-type-options": "nosniff",
+    "x-frame-options": "DENY",
+}
+"""No other page may frame this one or read of it, and it loads nothing from elsewhere. The page needs scripts within
+it and evaluation of templates. A policy of no referrer at all would make browsers hide the origin of our own forms."""
+
+WELCOME = '<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/"><title>hydrostat</title>'
+"""Goes on to the page. A redirection would not do: after a link of another page it goes without the strict cookie."""
 
 
 class Guard:
     """Stands before every request: other pages in the same browser, other names of this machine and strangers stay out.
 
     A page of another site can send requests to 127.0.0.1, or give its own name that address (DNS rebinding): so the
-    name asked for (`Host`) and the page that asks (`Origin`) must be ours. Where the studio can be reached from other
-    machines, the token must come along: in the address at first, then as a cookie.
+    name asked for (`Host`) must be ours, and the page that asks (`Origin`, `Sec-Fetch-Site`) this one. Where the studio
+    can be reached from other machines, the token must come along: in the address at first, then as a cookie.
     """
 
-    def __init__(self, app: ASGIApp, *, port: int, names: tuple[str, ...] = LOOPBACK, token: str | None = None) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        port: int,
+        names: tuple[str, ...] = LOOPBACK,
+        token: str | None = None,
+        largest: int = LARGEST,
+    ) -> None:
         """Guard an app.
 
         Args:
             app: that is guarded.
             port: that it is reached at.
             names: of this machine, as in the address of the page.
-            token: that requests must bring; None: none.
+            token: that requests must bring; None: none. With one, any numeric address will do as a name: only what
+                has letters can be made to mean another machine.
+            largest: no request has more bytes.
         """
-        self._app, self._token = app, token
-        self._hosts = {f"{name}:{port}" for name in names} | ({*names} if port == 80 else set())
+        self._app, self._token, self._port, self._largest = app, token, port, largest
+        self._cookie = f"{COOKIE}_{port}"
+        self._names = {name.lower() for name in names}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on what is allowed."""
-        if scope["type"] not in ("http", "websocket"):
+        if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        headers = {key.decode("latin-1").lower(): value.decode("latin-1") for key, value in scope["headers"]}
-        reason = self._refusal(scope, headers)
+        headers = Headers(scope=scope)
+        reason = "that is no way to talk to a studio" if scope["type"] not in ("http", "websocket") else ""
+        reason = reason or self._refusal(scope, headers)
         if reason:
             await _refuse(scope, receive, send, reason)
-            return
-        if self._token is not None and scope["type"] == "http" and "token" in _query(scope):
-            response = RedirectResponse(scope["path"], status_code=303)
-            response.set_cookie(COOKIE, self._token, httponly=True, samesite="strict")
-            await response(scope, receive, send)
-            return
-        await self._app(scope, _counted(receive), send)
+        elif scope["type"] == "websocket":
+            await self._app(scope, receive, send)
+        elif self._token is not None and "token" in _query(scope):
+            await self._welcome()(scope, receive, _dressed(send))
+        else:
+            body = _Body(receive, _dressed(send), self._largest)
+            await body.serve(self._app, scope)
 
-    def _refusal(self, scope: Scope, headers: dict[str, str]) -> str:
+    def _refusal(self, scope: Scope, headers: Headers) -> str:
         """Why a request is not passed on; "" if it is."""
-        if headers.get("host", "").lower() not in self._hosts:
+        hosts, origins = headers.getlist("host"), headers.getlist("origin")
+        if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
             return "this studio is not reached by that name"
-        origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc.lower() not in self._hosts:
+        if origins not in ([], [f"http://{hosts[0].lower()}"]) or not _is_near(scope, headers):
             return "another page may not use this studio"
-        if headers.get("content-length", "0").isdigit() and int(headers.get("content-length", "0")) > LARGEST:
+        lengths = headers.getlist("content-length")
+        if len(lengths) > 1 or any(not _is_count(text) or int(text) > self._largest for text in lengths):
             return "that is too much to send"
         if self._token is not None and not self._brings_token(scope, headers):
             return "open the address that the studio printed: it has a token"
         return ""
 
-    def _brings_token(self, scope: Scope, headers: dict[str, str]) -> bool:
-        cookie: SimpleCookie = SimpleCookie()
-        try:
-            cookie.load(headers.get("cookie", ""))
-        except Exception:  # noqa: BLE001 a cookie of whatever kind is no token
-            return False
-        given = [cookie[COOKIE].value] if COOKIE in cookie else []
+    def _is_ours(self, host: str) -> bool:
+        """Whether a host, such as "localhost:8000", is this studio."""
+        name, port = host, "80"
+        if not host.endswith("]") and ":" in host:
+            name, _, port = host.rpartition(":")
+        known = name in self._names or (self._token is not None and _is_number(name))
+        return known and port == str(self._port)
+
+    def _brings_token(self, scope: Scope, headers: Headers) -> bool:
+        cookies = [part.strip() for text in headers.getlist("cookie") for part in text.split(";")]
+        given = [part.partition("=")[2] for part in cookies if part.partition("=")[0] == self._cookie]
         given += _query(scope).get("token", [])
-        return any(compare_digest(text.encode(), (self._token or "").encode()) for text in given)
+        wanted = (self._token or "").encode()
+        return any(compare_digest(text.encode(errors="replace"), wanted) for text in given)
+
+    def _welcome(self) -> Response:
+        """Keeps the token as a cookie and goes to the page, so that it does not stay in the address."""
+        response = HTMLResponse(WELCOME, headers={"cache-control": "no-store"})
+        response.set_cookie(self._cookie, self._token or "", httponly=True, samesite="strict")
+        return response
+
+
+class _Body:
+    """A request whose body is counted: one that never ends is cut off."""
+
+    def __init__(self, receive: Receive, send: Send, largest: int) -> None:
+        self._receive, self._send, self._left = receive, send, largest
+        self._began, self._cut = False, False
+
+    async def serve(self, app: ASGIApp, scope: Scope) -> None:
+        """Answer it."""
+        try:
+            await app(scope, self._read, self._answer)
+        except Exception:
+            if not self._cut:
+                raise
+
+    async def _read(self) -> Message:
+        if self._cut:
+            return {"type": "http.disconnect"}
+        message = await self._receive()
+        self._left -= len(message.get("body", b""))
+        if self._left >= 0:
+            return message
+        self._cut = True
+        if not self._began:
+            start = {"type": "http.response.start", "status": 413, "headers": [(b"connection", b"close")]}
+            await self._send(start)
+            await self._send({"type": "http.response.body", "body": b"hydrostat: that is too much to send\n"})
+        return {"type": "http.disconnect"}
+
+    async def _answer(self, message: Message) -> None:
+        self._began = True
+        if not self._cut:
+            await self._send(message)
+
+
+def _is_near(scope: Scope, headers: Headers) -> bool:
+    """Whether a browser says that our own page asks, or nobody does, or that a person follows a link to the page."""
+    sites = headers.getlist("sec-fetch-site")
+    follows = scope["type"] == "http" and scope["method"] == "GET" and headers.get("sec-fetch-dest") == "document"
+    return all(site in ("same-origin", "none") for site in sites) or (follows and "origin" not in headers)
+
+
+def _is_count(text: str) -> bool:
+    return text.isascii() and text.isdecimal() and len(text) < 16
+
+
+def _is_number(name: str) -> bool:
+    """Whether a name of a machine is an address in numbers."""
+    try:
+        ip_address(name[1:-1] if name.startswith("[") and name.endswith("]") else name)
+    except ValueError:
+        return False
+    return True
 
 
 def _query(scope: Scope) -> dict[str, list[str]]:
-    return parse_qs(scope.get("query_string", b"").decode("latin-1"))
+    return parse_qs(scope.get("query_string", b"").decode("latin-1"), errors="replace")
 
 
-def _counted(receive: Receive) -> Receive:
-    """The same, but a body that never ends is cut off."""
-    count = 0
+def _dressed(send: Send) -> Send:
+    """The same, with headers that keep other pages out."""
 
-    async def counted() -> Message:
-        nonlocal count
-        message = await receive()
-        if message["type"] == "http.request":
-            count += len(message.get("body", b""))
-            if count > LARGEST:
-                return {"type": "http.disconnect"}
-        return message
+    async def dressed(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(raw=list(message.get("headers", [])))
+            for name, value in SAFE_HEADERS.items():
+                headers[name] = value
+            message = {**message, "headers": headers.raw}
+        await send(message)
 
-    return counted
+    return dressed
 
 
 async def _refuse(scope: Scope, receive: Receive, send: Send, reason: str) -> None:
     if scope["type"] == "websocket":
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": reason})
-        return
-    await PlainTextResponse(f"hydrostat: {reason}\n", status_code=403)(scope, receive, send)
+    elif scope["type"] == "http":
+        await PlainTextResponse(f"hydrostat: {reason}\n", status_code=403)(scope, receive, _dressed(send))

@@ -29,7 +29,7 @@ class Pointer(_Message):
     rest: Place | None = None
     world: Place
     shift: bool = False
-    stamp: Annotated[float, Field(ge=0, le=1e15)] = 0.0
+    stamp: Annotated[float, Field(ge=0, le=1e15, allow_inf_nan=False)] = 0.0
 
 
 class Release(_Message):

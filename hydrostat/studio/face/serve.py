@@ -94,6 +94,7 @@ def _listener(host: str, port: int) -> socket.socket:
         listener = socket.socket(family)
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind((host, port))
+        listener.listen()  # who follows the printed address at once must wait, not be refused
     except OSError as error:
         raise InputError(
             f"--host {host} --port {port}: cannot be listened at ({error.strerror}); try another"

@@ -2,6 +2,7 @@
 
 import asyncio
 import itertools
+import logging
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -76,6 +77,10 @@ class Stream:
                 self._heed(name, screen, received.get("text") or "")
             except InputError:
                 mistakes += 1
+            except Exception:
+                logging.getLogger("hydrostat").exception("the studio stumbled over a message")
+                mistakes += 1
+            await asyncio.sleep(0)  # messages that wait in a row must not keep other screens waiting
         await screen.socket.close(1008)
 
     def _heed(self, name: str, screen: "_Screen", text: str) -> None:

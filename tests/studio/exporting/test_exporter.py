@@ -41,6 +41,9 @@ class Told:
     def part(self, value: object) -> None:
         """Nothing is handed over on the way."""
 
+    def finish(self) -> None:
+        """The work is done."""
+
 
 @pytest.fixture(scope="module")
 def starfish() -> Robot:

@@ -1,0 +1,53 @@
+"""A program: a studio whose stages are toys, so that its tests wait for no solver. Prints its address."""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hydrostat.robot import gallery_folder
+from hydrostat.studio.face.serve import serve
+from hydrostat.studio.session import Session
+from hydrostat.studio.stage import Hit, Stage, StageName
+from hydrostat.studio.view.robot_things import robot_things
+from hydrostat.studio.view.shape import Shape, rest_shape
+from hydrostat.studio.view.things import Thing
+
+
+class Toy(Stage):
+    """The body goes wherever the pointer is; the key "stumble" is a mistake of the program."""
+
+    def __init__(self, session: Session) -> None:
+        self.session, self.place = session, (0.0, 0.0)
+
+    def shape(self) -> Shape:
+        shape = rest_shape(self.session.document.robot)
+        return replace(shape, nodes=shape.nodes + self.place)
+
+    def things(self) -> Sequence[Thing]:
+        return robot_things(self.session.document.robot)
+
+    def grab(self, hit: Hit) -> bool:
+        if hit.key == "stumble":
+            raise KeyError(hit.key)
+        return True
+
+    def drag(self, hit: Hit) -> None:
+        self.place = hit.world
+
+
+def main(host: str) -> None:
+    """Serve until the program is ended."""
+    session = Session()
+    session.open_folder(gallery_folder("starfish"))
+    session.stages = {**session.stages, StageName.POSE: Toy(session)}
+    serve(session, host=host, show=False, announce=announce)
+
+
+def announce(address: str) -> None:
+    """Tell who started this program."""
+    sys.stdout.write(f"{address}\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
