@@ -29,8 +29,9 @@ def studio(
             raise
         raise InputError('the studio needs the extra `studio`: pip install "hydrostat[studio]"') from None
     from hydrostat.studio.session import Session
+    from hydrostat.studio.starting.state_folder import state_folder
 
-    session = Session()
+    session = Session(state_folder())
     if robot is not None:
         session.open_folder(robot)
     serve(session, host=host, port=port, show=browser, announce=_announce)

@@ -67,11 +67,16 @@ class Session:
         notes: the last ones, for the person.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, state: Path | None = None) -> None:
+        """An empty studio.
+
+        Args:
+            state: folder to remember in, over runs and crashes; None: nothing is remembered.
+        """
         self.bell = Bell()
         self.document = Document(self.bell)
         self.jobs = Jobs(self.bell)
-        self.starter = Starter(self.document, self.jobs)
+        self.starter = Starter(self.document, self.jobs, state)
         self.editor = Editor(self.document, self.jobs)
         self.poser = Poser(self.document, self.jobs)
         self.designer = Designer(self.document, self.jobs)
@@ -213,6 +218,7 @@ class Session:
         Args:
             now: time [s] of a clock that only runs forward.
         """
+        self.starter.autosave.step(now)
         if not self.document.is_open:
             return False
         asked, more, complaint = self._stamp, False, ""
@@ -241,8 +247,9 @@ class Session:
         self.release(screen)
 
     def close(self) -> None:
-        """End all work."""
+        """End all work; what is not saved is there next time."""
         self.jobs.close()
+        self.starter.autosave.close()
 
     def _let_go(self) -> None:
         if self._holder is not None:
