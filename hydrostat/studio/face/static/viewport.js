@@ -25,13 +25,7 @@ export default {
   mounted() {
     const { root, body, over } = this.$refs;
     const options = { stream: this.stream, palette: this.palette, dark: this.isDark(), brush: this.brush };
-    try {
-      this.view_ = new View(root, [body, over], options, (name, value) => this.hear(name, value));
-    } catch (error) {
-      console.error(error);
-      this.failure = "This browser shows no WebGL, which the view is drawn with. Switch it on, or use another browser.";
-      return;
-    }
+    this.view_ = new View(root, [body, over], options, (name, value) => this.hear(name, value));
     this.slow = setTimeout(() => (this.connected = this.connected && this.met), 1500);
     this.page = new MutationObserver(() => this.view_.dress(this.isDark()));
     this.page.observe(document.body, { attributes: true, attributeFilter: ["class"] });
@@ -60,6 +54,8 @@ export default {
       if (name === "connected") {
         this.connected = value;
         this.met = this.met || value;
+      } else if (name === "failure") {
+        this.failure = value;
       } else {
         this.$emit(name, value);
       }

@@ -77,16 +77,47 @@ export class Cover {
     return count;
   }
 
-  /** Calls `draw` with the ends in pixels of each edge that is wanted and seen. */
-  edgesSeen(wanted, draw) {
-    const { edges, spots, front, nodes, cut } = this;
+  /** Calls `draw` with the ends in pixels of all that is seen of the edges between the near and the far side. */
+  outline(draw) {
+    const { edges, front } = this;
     for (let e = 0; e < edges.length; e += 4) {
-      if (!wanted(front[edges[e + 2]], edges[e + 3] < 0 ? 0 : front[edges[e + 3]])) continue;
-      const a = 3 * edges[e], b = 3 * edges[e + 1];
-      if (cut && cut[0] * (nodes[a] + nodes[b]) + cut[1] * (nodes[a + 1] + nodes[b + 1]) + cut[2] * (nodes[a + 2] + nodes[b + 2]) > 2 * cut[3]) continue;
-      const x = (spots[a] + spots[b]) / 2, y = (spots[a + 1] + spots[b + 1]) / 2, depth = (spots[a + 2] + spots[b + 2]) / 2;
-      if (this.layers(x, y, depth) === 0) draw(spots[a], spots[a + 1], spots[b], spots[b + 1]);
+      const one = edges[e + 2], other = edges[e + 3];
+      if (other >= 0 && (front[one] === front[other] || !this.isRidge(e))) continue;
+      this.pieces(e, 3, draw);
     }
+  }
+
+  /** Calls `draw` with the ends in pixels of all that is seen of the mesh. */
+  mesh(draw) {
+    const { edges, front } = this;
+    for (let e = 0; e < edges.length; e += 4) {
+      if (front[edges[e + 2]] > 0 || (edges[e + 3] >= 0 && front[edges[e + 3]] > 0)) this.pieces(e, 1, draw);
+    }
+  }
+
+  /** What is seen of an edge, in some pieces. */
+  pieces(e, count, draw) {
+    const { edges, spots, nodes, cut } = this;
+    const a = 3 * edges[e], b = 3 * edges[e + 1];
+    if (cut && cut[0] * (nodes[a] + nodes[b]) + cut[1] * (nodes[a + 1] + nodes[b + 1]) + cut[2] * (nodes[a + 2] + nodes[b + 2]) > 2 * cut[3]) return;
+    const at = (share, k) => spots[a + k] + share * (spots[b + k] - spots[a + k]);
+    for (let i = 0; i < count; i++) {
+      const middle = (i + 0.5) / count, from = i / count, to = (i + 1) / count;
+      if (this.layers(at(middle, 0), at(middle, 1), at(middle, 2)) === 0) draw(at(from, 0), at(from, 1), at(to, 0), at(to, 1));
+    }
+  }
+
+  /** Whether an edge is a ridge; one in a fold is never part of an outline. */
+  isRidge(e) {
+    const { edges, faces, nodes } = this;
+    const [one, other] = [3 * edges[e + 2], 3 * edges[e + 3]];
+    const [a, b, c] = [3 * faces[one], 3 * faces[one + 1], 3 * faces[one + 2]];
+    let tip = faces[other];
+    for (let k = 1; k < 3 && (tip === edges[e] || tip === edges[e + 1]); k++) tip = faces[other + k];
+    const ux = nodes[b] - nodes[a], uy = nodes[b + 1] - nodes[a + 1], uz = nodes[b + 2] - nodes[a + 2];
+    const vx = nodes[c] - nodes[a], vy = nodes[c + 1] - nodes[a + 1], vz = nodes[c + 2] - nodes[a + 2];
+    const wx = nodes[3 * tip] - nodes[a], wy = nodes[3 * tip + 1] - nodes[a + 1], wz = nodes[3 * tip + 2] - nodes[a + 2];
+    return (uy * vz - uz * vy) * wx + (uz * vx - ux * vz) * wy + (ux * vy - uy * vx) * wz < 0;
   }
 
   /** Calls `draw` with the ends in pixels of each piece of the section's rim. */
@@ -107,9 +138,3 @@ export class Cover {
     }
   }
 }
-
-/** Whether an edge belongs to the outline: one of its faces is turned to the camera, the other away. */
-export const isOutline = (one, other) => one !== other;
-
-/** Whether an edge belongs to the near side. */
-export const isNear = (one, other) => one > 0 || other > 0;

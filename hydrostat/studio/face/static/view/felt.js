@@ -1,6 +1,5 @@
 // A flat body as felt with a stitched seam, and the outline of a body in space.
 
-import { isNear, isOutline } from "./cover.js";
 import { mix, veil } from "./theme.js";
 
 /** A closed path through rings of places of a flat body. */
@@ -56,16 +55,15 @@ export function drawGhosts(pen, view) {
 
 /** A flat body. */
 export function drawFelt(pen, view) {
-  const { camera, palette, skin, surface } = view;
-  const nodes = surface.position;
+  const { camera, palette, skin, nodes, values } = view;
   const rim = ringPath(skin.rim.at(nodes), camera);
   const seam = ringPath(skin.seam.at(nodes), camera);
   pen.fillStyle = palette.felt;
   pen.fill(rim, "evenodd");
-  if (surface.coloured) {
+  if (values) {
     pen.save();
     pen.clip(rim, "evenodd");
-    pen.drawImage(view.renderer.domElement, 0, 0, camera.width, camera.height);
+    view.field.draw(pen, view);
     pen.restore();
   } else {
     pen.fillStyle = palette.felt_light;
@@ -85,12 +83,12 @@ export function drawFelt(pen, view) {
   }
   pen.setLineDash([5, 4]);
   pen.lineCap = "butt";
-  pen.strokeStyle = surface.coloured ? "rgba(255,255,255,0.75)" : palette.stitch;
+  pen.strokeStyle = values ? "rgba(255,255,255,0.75)" : palette.stitch;
   pen.lineWidth = 1.8;
   pen.stroke(seam);
   pen.setLineDash([]);
   pen.lineCap = "round";
-  pen.strokeStyle = surface.coloured ? mix(palette.dark, palette.seam, 0.4) : palette.seam;
+  pen.strokeStyle = values ? mix(palette.dark, palette.seam, 0.4) : palette.seam;
   pen.lineWidth = 2;
   pen.stroke(rim);
   // what is sought stays to be seen through the body
@@ -113,13 +111,13 @@ export function drawOutline(pen, view) {
   };
   if (view.edges) {
     pen.beginPath();
-    cover.edgesSeen(isNear, add);
+    cover.mesh(add);
     pen.strokeStyle = veil(palette.mesh, 0.45);
     pen.lineWidth = 0.8;
     pen.stroke();
   }
   pen.beginPath();
-  cover.edgesSeen(isOutline, add);
+  cover.outline(add);
   pen.strokeStyle = palette.seam;
   pen.lineWidth = 1.6;
   pen.stroke();

@@ -4,8 +4,6 @@ import { drawFelt, drawGhosts, drawGrid, drawOutline } from "./felt.js";
 import { drawClouds, drawLines } from "./lines.js";
 import { mix, veil } from "./theme.js";
 
-const AXES = { x: "#c8443f", y: "#4f8a2b", z: "#2f6fc0" };
-
 export class Overlay {
   /** @param {boolean} slow whether there is no graphics card: then the processor draws on its own, which is faster */
   constructor(canvas, slow) {
@@ -31,7 +29,7 @@ export class Overlay {
     pen.lineJoin = pen.lineCap = "round";
     const { flat } = view.camera;
     if (flat) drawGrid(pen, view);
-    if (view.surface) {
+    if (view.serial >= 0) {
       if (flat) drawGhosts(pen, view);
       (flat ? drawFelt : drawOutline)(pen, view);
       drawClouds(pen, view);
@@ -245,14 +243,14 @@ export class Overlay {
     const y = area.spots.reduce((sum, spot) => sum + spot[1], 0) / area.spots.length;
     pen.font = `600 13px ${view.font}`;
     pen.textAlign = "center";
-    this.words(view, area.label, x, y, mix(area.colour, view.theme.ink, 0.35));
+    this.words(view, area.label, x, y, mix(area.colour, view.ink, 0.45), view.palette.light);
     pen.textAlign = "left";
   }
 
   /** Words with a rim of paper, so that they are read on felt as on the page. */
-  words(view, text, x, y, ink) {
+  words(view, text, x, y, ink, rim = view.theme.back) {
     const { pen } = this;
-    pen.strokeStyle = veil(view.theme.back, 0.9);
+    pen.strokeStyle = veil(rim, 0.9);
     pen.lineWidth = 3.5;
     pen.strokeText(text, x, y);
     pen.fillStyle = ink;
@@ -294,13 +292,13 @@ export class Overlay {
     pen.textBaseline = "middle";
     for (const { name, u, v, w } of arms) {
       pen.globalAlpha = w < -0.3 ? 0.55 : 1;
-      pen.strokeStyle = AXES[name];
+      pen.strokeStyle = view.theme.axes[name];
       pen.lineWidth = 2.2;
       pen.beginPath();
       pen.moveTo(x, y);
       pen.lineTo(x + 22 * u, y - 22 * v);
       pen.stroke();
-      if (Math.hypot(u, v) > 0.25) this.words(view, name, x + 32 * u, y - 32 * v, AXES[name]);
+      if (Math.hypot(u, v) > 0.25) this.words(view, name, x + 32 * u, y - 32 * v, view.theme.axes[name]);
     }
     pen.globalAlpha = 1;
   }

@@ -5,10 +5,9 @@ import { within } from "./skin.js";
 const DOT = 10;
 const LINE = 6;
 
-/** Where a ray meets triangles: each as {face, shares, away}, sorted by how far away; `all` false: only the nearest. */
-export function met(origin, direction, nodes, faces, cut, all) {
-  const hits = [];
-  let nearest = Infinity;
+/** Where a ray first meets triangles: {face, shares, away, inner}, or null. */
+function met(origin, direction, nodes, faces, cut) {
+  let nearest = null;
   const { x: dx, y: dy, z: dz } = direction;
   for (let f = 0; f < faces.length; f += 3) {
     const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
@@ -25,16 +24,14 @@ export function met(origin, direction, nodes, faces, cut, all) {
     const t = (dx * qx + dy * qy + dz * qz) / whole;
     if (t < 0 || s + t > 1) continue;
     const away = (vx * qx + vy * qy + vz * qz) / whole;
-    if (away <= 0 || (!all && away >= nearest)) continue;
+    if (away <= 0 || (nearest && away >= nearest.away)) continue;
     if (cut) {
       const x = origin.x + away * dx, y = origin.y + away * dy, z = origin.z + away * dz;
       if (x * cut[0] + y * cut[1] + z * cut[2] > cut[3]) continue;
     }
-    nearest = away;
-    hits.push({ face: f, shares: [1 - s - t, s, t], away, inner: whole < 0 });
+    nearest = { face: f, shares: [1 - s - t, s, t], away, inner: whole < 0 };
   }
-  hits.sort((first, second) => first.away - second.away);
-  return hits;
+  return nearest;
 }
 
 /** The place in the rest shape of a point near the body, by how the nodes around it have moved. */
@@ -53,16 +50,14 @@ export function restOf(point, nodes, rest) {
 
 /** The body under a pixel: {world, rest}, or null. */
 export function bodyAt(view, x, y) {
-  const { camera, surface, rest } = view;
-  if (!surface) return null;
-  const nodes = surface.position, faces = surface.faces;
+  const { camera, nodes, faces, rest } = view;
   if (camera.flat) {
     const world = camera.facing(x, y, [0, 0, 0]);
     const home = within(world[0], world[1], nodes, faces);
     return home && { world, rest: blend(rest, faces, home) };
   }
   const { origin, direction } = camera.ray(x, y);
-  const [hit] = met(origin, direction, nodes, faces, view.cut, false);
+  const hit = met(origin, direction, nodes, faces, view.cut);
   if (!hit) return null;
   const world = origin.clone().addScaledVector(direction, hit.away).toArray();
   if (!view.cut || !hit.inner) return { world, rest: blend(rest, faces, hit) };
@@ -126,7 +121,7 @@ export function pick(view, x, y) {
   if (thing) {
     const world = thing.world ?? thing.place;
     const flat = view.camera.flat;
-    const rest = view.surface ? (flat ? body && body.rest : restOf(world, view.surface.position, view.rest)) : null;
+    const rest = flat ? body && body.rest : restOf(world, view.nodes, view.rest);
     return { key: thing.key, rest, world };
   }
   const area = areaAt(view, x, y);

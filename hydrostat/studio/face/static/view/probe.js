@@ -16,13 +16,13 @@ export class Probe {
 
   /** Where the node nearest to a place in the rest shape is, in pixels of the window. */
   body(x, y, z = 0) {
-    const { rest, surface, camera, element } = this.view;
+    const { rest, nodes, camera, element } = this.view;
     let best = 0, least = Infinity;
     for (let i = 0; i < rest.length; i += 3) {
       const far = (rest[i] - x) ** 2 + (rest[i + 1] - y) ** 2 + (rest[i + 2] - z) ** 2;
       if (far < least) [best, least] = [i, far];
     }
-    const nodes = surface.position, box = element.getBoundingClientRect();
+    const box = element.getBoundingClientRect();
     const [u, v] = camera.project(nodes[best], nodes[best + 1], nodes[best + 2], [0, 0, 0]);
     return { x: box.left + u, y: box.top + v };
   }

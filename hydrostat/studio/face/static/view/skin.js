@@ -99,8 +99,8 @@ class Rings {
 
 export class Skin {
   constructor(rim, rest, faces) {
-    const closed = loops(rim, rest);
-    this.rim = new Rings(closed.map((loop) => smooth(loop, rest)), 4);
+    this.loops = loops(rim, rest);
+    this.rim = new Rings(this.loops.map((loop) => smooth(loop, rest)), 4);
     const rings = this.rim.at(rest).map(pairs);
     const flat = rings.flat();
     const extent = [0, 1].map((k) => flat.reduce((most, p) => Math.max(most, p[k]), -1e9) - flat.reduce((least, p) => Math.min(least, p[k]), 1e9));

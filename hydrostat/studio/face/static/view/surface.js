@@ -1,4 +1,4 @@
-// What WebGL draws: the surface of a body in space, ghosts of it, and a flat body that is coloured by values.
+// What WebGL draws: the surface of a body in space, of felt or coloured by values, and ghosts of it.
 
 import { THREE } from "nicegui-scene";
 import { rgb } from "./theme.js";
@@ -31,7 +31,6 @@ uniform vec3 felt;
 uniform vec3 light;
 uniform vec3 seam;
 uniform vec3 inside;
-uniform float lit;
 uniform float coloured;
 uniform float opacity;
 uniform sampler2D ramp;
@@ -39,10 +38,6 @@ ${CUT}
 void main() {
   if (dot(world, cut.xyz) > cut.w) discard;
   vec3 base = texture2D(ramp, vec2(clamp(share, 0.0, 1.0) * 0.996 + 0.002, 0.5)).rgb;
-  if (lit < 0.5) {
-    gl_FragColor = vec4(mix(felt, base, coloured), opacity);
-    return;
-  }
   vec3 n = normalize(facing);
   vec3 eye = normalize(toward);
   float edge = 1.0 - abs(dot(n, eye));
@@ -68,11 +63,10 @@ const GHOST = `
 varying vec3 facing;
 varying vec3 toward;
 uniform vec3 tint;
-uniform float lit;
 uniform float opacity;
 void main() {
   float edge = 1.0 - abs(dot(normalize(facing), normalize(toward)));
-  gl_FragColor = vec4(tint, lit < 0.5 ? opacity : opacity * (0.16 + 0.7 * edge * edge));
+  gl_FragColor = vec4(tint, opacity * (0.16 + 0.7 * edge * edge));
 }`;
 
 function smooth(position, faces, normal) {
@@ -109,44 +103,23 @@ function shown(geometry, material, order) {
   return mesh;
 }
 
-/** A row of colours as a texture of 256. */
-export function rampTexture(colours) {
-  const data = new Uint8Array(4 * 256);
-  for (let i = 0; i < 256; i++) {
-    const place = (i / 255) * (colours.length - 1);
-    const first = Math.min(Math.floor(place), colours.length - 2);
-    const [a, b] = [rgb(colours[first]), rgb(colours[first + 1])];
-    for (let k = 0; k < 3; k++) data[4 * i + k] = Math.round(255 * (a[k] + (place - first) * (b[k] - a[k])));
-    data[4 * i + 3] = 255;
-  }
-  const texture = new THREE.DataTexture(data, 256, 1);
-  texture.magFilter = texture.minFilter = THREE.LinearFilter;
-  texture.needsUpdate = true;
-  return texture;
-}
-
 export class Surface {
-  constructor(rest, faces, flat, ramp, order) {
-    this.flat = flat;
+  constructor(rest, faces, ramp, order) {
     this.faces = faces;
     this.geometry = surface(rest, faces, true);
+    const texture = new THREE.DataTexture(ramp, 256, 1);
+    texture.magFilter = texture.minFilter = THREE.LinearFilter;
+    texture.needsUpdate = true;
     this.uniforms = {
       felt: { value: new THREE.Vector3() }, light: { value: new THREE.Vector3() }, seam: { value: new THREE.Vector3() },
-      inside: { value: new THREE.Vector3() }, lit: { value: flat ? 0 : 1 }, coloured: { value: 0 }, opacity: { value: 1 },
-      ramp: { value: ramp }, cut: { value: new THREE.Vector4(0, 0, 0, 1) },
+      inside: { value: new THREE.Vector3() }, coloured: { value: 0 }, opacity: { value: 1 }, ramp: { value: texture },
+      cut: { value: new THREE.Vector4(0, 0, 0, 1) },
     };
     const own = { vertexShader: VERTEX, uniforms: this.uniforms, transparent: true };
-    const depth = !flat;
     this.before = shown(this.geometry, new THREE.ShaderMaterial({ ...own, fragmentShader: DEPTH, colorWrite: false }), order);
-    this.body = shown(this.geometry, new THREE.ShaderMaterial({
-      ...own, fragmentShader: FELT, side: flat ? THREE.DoubleSide : THREE.FrontSide, depthTest: depth, depthWrite: depth,
-    }), order + 1);
+    this.body = shown(this.geometry, new THREE.ShaderMaterial({ ...own, fragmentShader: FELT }), order + 1);
     this.objects = [this.before, this.body];
     this.see(1);
-  }
-
-  get position() {
-    return this.geometry.attributes.position.array;
   }
 
   colour(palette, inside) {
@@ -159,12 +132,8 @@ export class Surface {
   move(nodes, values) {
     const { position, normal, value } = this.geometry.attributes;
     position.array.set(nodes);
-    position.needsUpdate = true;
-    if (!this.flat) {
-      smooth(position.array, this.faces, normal.array);
-      normal.needsUpdate = true;
-    }
-    this.coloured = Boolean(values);
+    smooth(nodes, this.faces, normal.array);
+    position.needsUpdate = normal.needsUpdate = true;
     this.uniforms.coloured.value = values ? 1 : 0;
     if (values) {
       value.array.set(values);
@@ -175,13 +144,13 @@ export class Surface {
   /** See through the body, from 0 to 1 (not at all). */
   see(opacity) {
     this.uniforms.opacity.value = opacity;
-    this.before.visible = !this.flat && opacity < 1;
+    this.before.visible = opacity < 1;
   }
 
   /** Show only one side of a plane: [x, y, z, share]; null for all. */
   section(plane) {
     this.uniforms.cut.value.set(...(plane ?? [0, 0, 0, 1]));
-    const side = plane || this.flat ? THREE.DoubleSide : THREE.FrontSide;
+    const side = plane ? THREE.DoubleSide : THREE.FrontSide;
     for (const mesh of [this.before, this.body]) {
       if (mesh.material.side !== side) mesh.material.needsUpdate = true;
       mesh.material.side = side;
@@ -189,20 +158,20 @@ export class Surface {
   }
 
   dispose() {
+    this.uniforms.ramp.value.dispose();
     this.geometry.dispose();
     for (const object of this.objects) object.material.dispose();
   }
 }
 
-/** The body in another shape: a pale field in the plane, a skin of glass in space. */
+/** A body in space in another shape: a skin of glass. Where it is the same as the body it lies behind it. */
 export class Ghost {
-  constructor(nodes, faces, flat, order) {
-    this.flat = flat;
+  constructor(nodes, faces, order) {
     this.geometry = surface(nodes, faces, false);
-    this.uniforms = { tint: { value: new THREE.Vector3() }, lit: { value: flat ? 0 : 1 }, opacity: { value: 1 } };
+    this.uniforms = { tint: { value: new THREE.Vector3() }, opacity: { value: 1 } };
     this.objects = [shown(this.geometry, new THREE.ShaderMaterial({
-      vertexShader: VERTEX, fragmentShader: GHOST, uniforms: this.uniforms, transparent: true, depthWrite: false,
-      depthTest: !flat, side: flat ? THREE.DoubleSide : THREE.FrontSide,
+      vertexShader: VERTEX.replace("projectionMatrix * seen;", "projectionMatrix * seen; gl_Position.z += 0.004 * gl_Position.w;"),
+      fragmentShader: GHOST, uniforms: this.uniforms, transparent: true, depthWrite: false,
     }), order)];
   }
 

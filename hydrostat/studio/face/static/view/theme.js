@@ -1,12 +1,14 @@
 // Colours that follow the page. The colours of felt and cables come from palette.py, as a prop.
 
 const LIGHT = {
-  back: "#faf8f6", grid: "#efebed", axis: "#e0dbe0", ink: "#2b2833", muted: "#6d6876", paper: "#ffffff",
-  ghost: "#b4afbc", ghostFill: "#efecf1", ghostFade: 1.0, accent: "#0b5fa5",
+  back: "#faf8f6", grid: "#efebed", ink: "#2b2833", muted: "#6d6876", paper: "#ffffff",
+  ghost: "#b4afbc", accent: "#0b5fa5",
+  axes: { x: "#c8443f", y: "#4f8a2b", z: "#2f6fc0" },
 };
 const DARK = {
-  back: "#1a1820", grid: "#24212b", axis: "#332f3b", ink: "#efecf2", muted: "#a7a1af", paper: "#221f29",
-  ghost: "#8b8498", ghostFill: "#2c2834", ghostFade: 1.0, accent: "#6db3ec",
+  back: "#1a1820", grid: "#24212b", ink: "#efecf2", muted: "#a7a1af", paper: "#221f29",
+  ghost: "#8b8498", accent: "#6db3ec",
+  axes: { x: "#f08078", y: "#93cf6b", z: "#7db4f5" },
 };
 
 export function theme(dark) {

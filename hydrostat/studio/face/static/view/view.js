@@ -3,6 +3,7 @@
 import { THREE } from "nicegui-scene";
 import { Camera } from "./camera.js";
 import { Cover } from "./cover.js";
+import { Field, ramp256 } from "./field.js";
 import { Link } from "./link.js";
 import { Overlay } from "./overlay.js";
 import { opened, same } from "./packet.js";
@@ -10,7 +11,7 @@ import { pick } from "./pick.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
 import { Skin } from "./skin.js";
-import { Ghost, Surface, rampTexture } from "./surface.js";
+import { Ghost, Surface } from "./surface.js";
 import { mix, theme } from "./theme.js";
 
 const BARE = 300; // a scene without a frame is shown at rest after so long [ms]
@@ -25,15 +26,19 @@ export class View {
    */
   constructor(element, canvases, options, tell) {
     Object.assign(this, { element, tell, brush: options.brush, palette: options.palette, ink: options.palette.ink });
-    this.renderer = new THREE.WebGLRenderer({ canvas: canvases[0], antialias: false, alpha: false, powerPreference: "high-performance" });
-    this.slow = hasNoCard(this.renderer.getContext());
+    this.sheet = canvases[0];
+    this.renderer = null; // made for the first body in space: flat ones need no WebGL
+    this.slow = hasNoCard();
     this.overlay = new Overlay(canvases[1], this.slow);
     this.world = new THREE.Scene();
     this.camera = new Camera();
-    this.ramp = rampTexture(options.palette.tension);
+    this.ramp = ramp256(options.palette.tension);
+    this.field = new Field(this.ramp);
     this.font = getComputedStyle(element).fontFamily || "sans-serif";
     Object.assign(this, { dots: [], lines: [], areas: [], ghosts: {}, clouds: {}, points: new Float32Array(), hover: "" });
-    Object.assign(this, { surface: null, rest: new Float32Array(), skin: null, cover: null, cut: null, serial: -1 });
+    const none = new Float32Array();
+    Object.assign(this, { rest: none, nodes: none, faces: new Uint32Array(), values: null }); // the body
+    Object.assign(this, { surface: null, skin: null, cover: null, cut: null, serial: -1, opacityNow: 1 });
     this.see = null; // what the person chose; null: as fits the body
     this.dirty = new Set();
     this.pixel = new Uint8Array(4);
@@ -133,8 +138,8 @@ export class View {
   /** Show another scene; what is the same in it is kept. */
   build(head, arrays) {
     const flat = head.dim === 2;
-    const other = !this.surface || flat !== this.camera.flat || !same(arrays.rest, this.rest) || !same(arrays.faces, this.surface.faces);
-    const elsewhere = !this.surface || flat !== this.camera.flat || head.name !== this.name || this.grown(arrays.rest);
+    const other = flat !== this.camera.flat || !same(arrays.rest, this.rest) || !same(arrays.faces, this.faces);
+    const elsewhere = this.serial < 0 || flat !== this.camera.flat || head.name !== this.name || this.grown(arrays.rest);
     Object.assign(this, { serial: head.serial, name: head.name, rest: arrays.rest });
     this.camera.flat = flat;
     if (other) this.newBody(flat, arrays);
@@ -163,23 +168,38 @@ export class View {
 
   newBody(flat, arrays) {
     this.drop(this.surface);
-    this.surface = new Surface(arrays.rest, arrays.faces, flat, this.ramp, 1);
+    Object.assign(this, { nodes: arrays.rest, faces: arrays.faces, values: null, surface: null });
     this.skin = flat ? new Skin(arrays.rim, arrays.rest, arrays.faces) : null;
     this.cover = new Cover(arrays.faces, arrays.rest.length / 3);
+    if (flat) return;
+    this.openRenderer();
+    this.surface = new Surface(arrays.rest, arrays.faces, this.ramp, 1);
     this.add(this.surface);
+  }
+
+  openRenderer() {
+    if (this.renderer) return;
+    try {
+      this.renderer = new THREE.WebGLRenderer({ canvas: this.sheet, antialias: false, alpha: false, powerPreference: "high-performance" });
+    } catch (error) {
+      this.tell("failure", "Bodies in space are drawn with WebGL, which this browser does not have. Switch it on, or use another.");
+      throw error;
+    }
+    this.renderer.setClearColor(this.theme.back, 1);
+    this.resize();
   }
 
   /** Keep ghosts that are the same, make those that are not; of flat bodies only the pen draws them. */
   takeGhosts(head, arrays) {
     const fresh = named(head, arrays, "ghost");
-    const { faces } = this.surface;
+    const { faces } = this;
     for (const [name, ghost] of Object.entries(fresh)) {
       const old = this.ghosts[name];
       if (old?.skin && old.faces === faces && same(old.array, ghost.array)) {
         ghost.skin = old.skin;
         delete old.skin;
       } else if (!this.camera.flat) {
-        ghost.skin = new Ghost(ghost.array, faces, false, 3);
+        ghost.skin = new Ghost(ghost.array, faces, 3);
         this.add(ghost.skin);
       }
       ghost.faces = faces;
@@ -204,7 +224,8 @@ export class View {
 
   /** Everything to the place of a frame. */
   move(arrays) {
-    this.surface.move(arrays.nodes, arrays.values);
+    Object.assign(this, { nodes: arrays.nodes, values: arrays.values ?? null });
+    this.surface?.move(arrays.nodes, arrays.values);
     this.points = arrays.points;
     this.lines.forEach((line, i) => (line.load = arrays.loads[i] ?? 0));
     for (const dot of this.dots) dot.place = [0, 1, 2].map((k) => arrays.points[3 * dot.first + k]);
@@ -214,9 +235,9 @@ export class View {
   /** Colours, and how much is seen through the body. */
   applyLook() {
     const { surface, palette } = this;
+    this.opacityNow = this.camera.flat ? 1 : this.see ?? 1;
     if (!surface) return;
     surface.colour(palette, mix(palette.seam, palette.dark, 0.12));
-    this.opacityNow = this.camera.flat ? 1 : this.see ?? 1;
     surface.see(this.opacityNow);
     surface.section(this.cut);
     for (const { thing, skin } of Object.values(this.ghosts)) {
@@ -226,7 +247,7 @@ export class View {
 
   dress(dark) {
     this.theme = theme(dark);
-    this.renderer.setClearColor(this.theme.back, 1);
+    this.renderer?.setClearColor(this.theme.back, 1);
     this.element.style.background = this.theme.back;
     this.applyLook();
     this.mark("camera");
@@ -236,18 +257,18 @@ export class View {
     const { clientWidth, clientHeight } = this.element;
     if (!clientWidth || !clientHeight) return;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.renderer?.setPixelRatio(ratio);
+    this.renderer?.setSize(clientWidth, clientHeight, false);
     this.overlay.resize(clientWidth, clientHeight, ratio);
     this.camera.resize(clientWidth, clientHeight);
     this.ratio = ratio;
-    if (!this.camera.moved && this.surface) this.fit();
+    if (!this.camera.moved) this.fit();
   }
 
   fit() {
-    if (!this.surface) return;
+    if (this.serial < 0) return;
     this.fitting = !this.element.clientWidth;
-    this.camera.fit([this.surface.position, this.points, ...Object.values(this.ghosts).map((ghost) => ghost.array)], MARGIN[this.camera.flat ? "flat" : "space"]);
+    this.camera.fit([this.nodes, this.points, ...Object.values(this.ghosts).map((ghost) => ghost.array)], MARGIN[this.camera.flat ? "flat" : "space"]);
     this.mark("camera");
   }
 
@@ -261,7 +282,7 @@ export class View {
       this.hover = press.hit?.key ?? "";
       cursor = press.mode === "still" ? element.style.cursor : press.mode === "orbit" ? "move" : "grabbing";
     } else {
-      const hit = at && this.surface ? pick(this, ...at) : { key: "" };
+      const hit = at && this.serial >= 0 ? pick(this, ...at) : { key: "" };
       this.hover = hit.key;
       if (!this.brush && hit.key) cursor = hit.key === "body" ? "grab" : "pointer";
     }
@@ -270,21 +291,21 @@ export class View {
   }
 
   paint() {
-    const { camera, renderer, overlay, surface } = this;
+    const { camera, overlay, surface, renderer } = this;
     if (!this.ratio) return;
     camera.place();
-    const skins = !camera.flat || surface?.coloured;
-    if (skins !== this.skins) {
-      this.skins = skins;
-      renderer.domElement.style.visibility = skins ? "visible" : "hidden";
+    this.sheet.style.visibility = surface ? "visible" : "hidden";
+    if (surface) {
+      renderer.render(this.world, camera.now);
+      this.cover.see(this.nodes, camera, this.cut);
     }
-    if (skins) renderer.render(this.world, camera.now);
-    if (surface && !camera.flat) this.cover.see(surface.position, camera, this.cut);
     this.spread();
     overlay.draw(this);
     // reading a pixel waits until all is drawn: what is told as painted is painted
-    const gl = renderer.getContext();
-    if (skins) gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
+    if (surface) {
+      const gl = renderer.getContext();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
+    }
     if (this.slow) overlay.pen.getImageData(0, 0, 1, 1);
   }
 
@@ -295,7 +316,7 @@ export class View {
     for (const dot of this.dots) {
       [dot.x, dot.y] = camera.project(...dot.place, spot);
       dot.density = camera.density(dot.place);
-      if (!camera.flat && this.surface) dot.depth = this.cover.layers(...spot);
+      if (this.surface) dot.depth = this.cover.layers(...spot);
     }
     for (const area of this.areas) {
       area.spots = Array.from({ length: points.length ? area.count : 0 }, (_, k) => {
@@ -334,7 +355,7 @@ export class View {
   /** Cut the body across an axis at a share of its extent; the side that faces the viewer goes away. */
   section(axis, share) {
     const k = ["x", "y", "z"].indexOf(axis);
-    if (k < 0 || this.camera.flat || !this.surface) {
+    if (k < 0 || !this.surface) {
       [this.cut, this.cutAxis] = [null, null];
     } else {
       if (this.cutAxis !== axis) this.cutSide = this.camera.toward[axis] < 0 ? -1 : 1;
@@ -360,7 +381,7 @@ export class View {
     const pen = sheet.getContext("2d");
     pen.fillStyle = this.theme.back;
     pen.fillRect(0, 0, sheet.width, sheet.height);
-    if (!this.camera.flat) {
+    if (this.surface) {
       this.renderer.render(this.world, this.camera.now);
       pen.drawImage(this.renderer.domElement, 0, 0);
     }
@@ -377,8 +398,7 @@ export class View {
     clearTimeout(this.bare);
     this.drop(this.surface);
     for (const { skin } of Object.values(this.ghosts)) this.drop(skin);
-    this.ramp.dispose();
-    this.renderer.dispose();
+    this.renderer?.dispose();
     if (window.__app === this.probe) delete window.__app;
   }
 }
@@ -389,10 +409,14 @@ function named(head, arrays, kind) {
   return Object.fromEntries(things.map((thing) => [thing.name, { thing, array: arrays[`${kind}:${thing.name}`] }]));
 }
 
-/** Whether WebGL is done by the processor. */
-function hasNoCard(gl) {
+/** Whether WebGL is missing or done by the processor. */
+function hasNoCard() {
+  const gl = document.createElement("canvas").getContext("webgl");
+  if (!gl) return true;
   const names = gl.getExtension("WEBGL_debug_renderer_info");
-  return /swiftshader|llvmpipe|software|basic render/i.test(names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "");
+  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
 /** Up to two letters for a disc: "index flexor" is IF, "winch_2" is W2, "left" is L. */
