@@ -5,9 +5,13 @@ from contextlib import suppress
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.driving.link import Link
-from hydrostat.studio.driving.simulated_link import SimulatedLink
+from hydrostat.studio.driving.simulated_link import FASTEST, SimulatedLink
+
+SPEEDS = (1e-3, 1.0)
+"""Slowest and fastest that simulated motors may be [m/s]."""
 
 NEAR = 1e-7
 """Contractions this close [m] are the same."""
@@ -20,12 +24,14 @@ class Motors:
         names: of the winches.
         command: what each shall take in [m].
         places: what each had taken in when it was last read [m].
+        fastest: largest speed of their cables, while they are simulated [m/s].
         link: that turns them.
     """
 
     def __init__(self) -> None:
         self.names: tuple[str, ...] = ()
         self.command = self.places = np.zeros(0)
+        self.fastest = FASTEST
         self.link: Link = SimulatedLink(self.places)
         self._robot: Robot | None = None
         self._low = self._high = np.zeros(0)
@@ -49,9 +55,22 @@ class Motors:
             self.link.close()
             self.names = names
             self.places = self._within(np.array([known.get(name, 0.0) for name in names], dtype=float))
-            self.link = SimulatedLink(self.places)
+            self.link = SimulatedLink(self.places, speed=self.fastest)
         self.command = self._within(np.array([wanted.get(name, 0.0) for name in names], dtype=float))
         return True
+
+    def set_fastest(self, speed: float) -> None:
+        """Let simulated motors be so fast [m/s].
+
+        Raises:
+            InputError: that is too slow or too fast.
+        """
+        if not SPEEDS[0] <= speed <= SPEEDS[1]:
+            low, high = 1e3 * SPEEDS[0], 1e3 * SPEEDS[1]
+            raise InputError(f"motors may turn from {low:g} to {high:g} mm/s, not {1e3 * speed:g}")
+        self.fastest = speed
+        if isinstance(self.link, SimulatedLink):
+            self.link.speed = speed
 
     def ask(self, contractions: Vector) -> str:
         """Command as much of these contractions [m] as the winches can; says which cannot, "" if all can."""

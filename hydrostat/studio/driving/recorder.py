@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.record_work import FilmKind, check_film, record_film
-from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.jobs import Jobs, JobState
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,6 +31,18 @@ class Recorder:
     def __init__(self, document: Document, jobs: Jobs) -> None:
         self.latest: Recording | None = None
         self._document, self._jobs = document, jobs
+        self._title = ""
+
+    @property
+    def state(self) -> JobState | None:
+        """How far the film is that was asked for last; None if other work has begun since."""
+        state = self._jobs.state
+        return state if state is not None and state.title == self._title else None
+
+    def stop(self) -> None:
+        """Give up a film that is being made."""
+        if self.state is not None and self.state.running:
+            self._jobs.stop()
 
     def start(self, kind: FilmKind) -> None:
         """Begin with a film of the timeline as it is now.
@@ -46,5 +58,5 @@ class Recorder:
             self.latest = Recording(name=name, content=content)
             self._document.bell.ring(Topic.DRIVE)
 
-        title = f"Filming {work.robot.name}"
-        self._jobs.start(title, record_film, work.robot, work.timeline, kind, on_done=done)
+        self._title = f"Filming {work.robot.name} ({kind})"
+        self._jobs.start(self._title, record_film, work.robot, work.timeline, kind, on_done=done)

@@ -1,10 +1,145 @@
-"""The panel of the stage "drive"."""
+"""The panel of the stage "drive": a knob and a number box for each winch (R58)."""
 
-from nicegui import ui
+from nicegui import events, ui
 
+from hydrostat.plot.palette import ERROR, winch_colours
+from hydrostat.robot import Robot, Winch
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.knob import Knob
 from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.panels.drive_strip import drive_strip
+from hydrostat.studio.face.sent_number import sent_number
+from hydrostat.studio.stage import StageName
+
+STEP = 0.5
+"""Of a knob's wheel and arrow keys [mm]."""
 
 
 def drive_panel(page: Page) -> None:
-    """Build the panel."""
-    ui.label("drive")
+    """Build the panel, and the timeline below the view."""
+    session = page.session
+    if not session.document.robot.cables:
+        _no_cables(page)
+        return
+    driver = session.driver
+    with ui.element("div").classes("studio-row"):
+        ui.label("Drive").classes("studio-title")
+        ui.space()
+        ui.button("Rest", icon="restart_alt", on_click=page.doing(driver.rest)).props("flat dense no-caps").tooltip(
+            "Let all cable out (R)"
+        ).mark("drive-rest")
+    ui.label("Turn a knob, type a length, or pull a winch in the view downwards.").classes("studio-hint")
+    notes = ui.label().classes("studio-hint").style(f"color: {ERROR}; white-space: pre-line").mark("drive-notes")
+    box = ui.column().classes("w-full").style("gap: 8px")
+    cards: list[_Card] = []
+    shown: list[Robot] = []
+
+    def show_robot() -> None:
+        robot = session.document.robot
+        if shown and shown[0].winches == robot.winches:
+            return
+        shown[:] = [robot]
+        box.clear()
+        colours = winch_colours(robot)
+        with box:
+            cards[:] = [_Card(page, winch, colours[winch.name]) for winch in robot.winches]
+        show_drive()
+
+    def show_drive() -> None:
+        commands, places, tensions = driver.commands(), driver.places(), driver.tensions()
+        for card in cards:
+            if card.name in commands:
+                card.show(commands[card.name], places[card.name], tensions[card.name], driver.strongest)
+        words = "\n".join(driver.shape().notes)
+        if words != notes.text:
+            notes.set_text(words)
+        notes.set_visibility(bool(words))
+
+    page.on(Topic.ROBOT, show_robot)
+    page.on(Topic.DRIVE, show_drive)
+    _motors(page)
+    with page.bottom:
+        drive_strip(page)
+
+
+class _Card:
+    """A winch: its knob, its box, the tension of its cables."""
+
+    def __init__(self, page: Page, winch: Winch, colour: str) -> None:
+        self.name = winch.name
+        self._page, self._typing = page, False
+        driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
+        with ui.element("div").classes("studio-card").style("display: flex; align-items: center; padding: 8px 12px"):
+            self._knob = Knob(least=least, most=most, step=STEP, colour=colour, label=winch.name)
+            self._knob.style("width: 62px; height: 62px; flex: none").mark(f"knob-{winch.name}")
+            with ui.element("div").style("flex: 1; min-width: 0; display: flex; flex-direction: column; gap: 5px"):
+                name = ui.label(winch.name).style(
+                    "font-weight: 600; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
+                )
+                name.tooltip(f"{winch.name}: {least:g} to {most:g} mm")
+                with ui.element("div").style("height: 5px; border-radius: 3px; background: var(--line); width: 100%"):
+                    self._bar = ui.element("div").style("height: 5px; border-radius: 3px; width: 0%")
+                self._pull = ui.label("0.0 N").classes("studio-hint studio-figure").style("line-height: 1")
+                self._pull.tooltip("Largest tension of its cables")
+            self._box = ui.number(min=least, max=most, step=STEP, format="%.1f", suffix="mm", value=0.0)
+            self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').style("width: 98px; flex: none")
+            self._box.mark(f"box-{winch.name}")
+        self._colour = colour
+        self._knob.on_turn(
+            lambda millimetres: page.act(driver.turn, winch.name, 1e-3 * millimetres), page.doing(driver.let_go)
+        )
+        self._box.on("update:model-value", self._typed)  # only what a person types comes this way
+        self._box.on("focus", lambda: self._type(True))
+        self._box.on("blur", lambda: self._type(False))
+
+    def show(self, command: float, place: float, tension: float, most: float) -> None:
+        """What the winch shall take in and has taken in [m], and what its cables bear [N], of so much."""
+        self._knob.show(1e3 * command, 1e3 * place)
+        shown = round(1e3 * command, 1) + 0.0
+        if not self._typing and self._box.value != shown:
+            self._box.set_value(shown)
+        words = f"{tension:.1f} N"
+        if words != self._pull.text:
+            self._pull.set_text(words)
+            colour = ERROR if tension > most else self._colour
+            self._bar.style(f"width: {100 * min(tension / most, 1.0):.0f}%; background: {colour}")
+
+    def _typed(self, event: events.GenericEventArguments) -> None:
+        number = sent_number(event.args)
+        if self._typing and number is not None:
+            driver = self._page.session.driver
+            self._page.act(driver.turn, self.name, 1e-3 * number)
+
+    def _type(self, typing: bool) -> None:
+        """Nothing is written into a box that a person writes in."""
+        self._typing = typing
+        if not typing:
+            driver = self._page.session.driver
+            driver.let_go()
+            self._box.set_value(round(1e3 * driver.commands().get(self.name, 0.0), 1))
+
+
+def _motors(page: Page) -> None:
+    """How fast the simulated motors are."""
+    motors = page.session.driver.motors
+    with ui.element("div").classes("studio-row").style("margin-top: 6px"):
+        ui.label("Motors: simulated, at most").classes("studio-hint")
+        ui.space()
+        speed = ui.number(min=1, max=1000, step=10, value=1e3 * motors.fastest, format="%.0f", suffix="mm/s")
+        speed.props('dense outlined debounce=400 aria-label="Largest speed of the motors"').style("width: 120px")
+    speed.on_value_change(
+        lambda event: page.act(motors.set_fastest, 1e-3 * event.value) if event.value is not None else None
+    )
+
+
+def _no_cables(page: Page) -> None:
+    """What to do first."""
+    ui.label("Drive").classes("studio-title")
+    with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px"):
+        ui.label("This robot has no cables yet, so nothing can pull it.")
+        ui.label("Let hydrostat find winches and cables for its poses, or place them by hand.").classes("studio-hint")
+        with ui.element("div").classes("studio-row"):
+            ui.button("Design", icon="auto_awesome", on_click=lambda: page.go(StageName.DESIGN)).props(
+                "unelevated no-caps"
+            ).mark("drive-design")
+            ui.button("Edit", icon="edit", on_click=lambda: page.go(StageName.EDIT)).props("flat no-caps")
