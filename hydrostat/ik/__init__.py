@@ -7,6 +7,7 @@ from hydrostat.ik.objectives.drawn_pose import drawn_pose
 from hydrostat.ik.objectives.effort import Effort, EffortKind
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term
+from hydrostat.ik.objectives.point_goal import PointGoal
 from hydrostat.ik.objectives.postures import moves_at, posture_at
 from hydrostat.ik.objectives.shape_goal import ShapeGoal
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
@@ -34,6 +35,7 @@ __all__ = [
     "Moves",
     "Objective",
     "PathKind",
+    "PointGoal",
     "Posture",
     "ReachedPose",
     "ShapeGoal",

@@ -45,12 +45,15 @@ class Tracker:
         self._state = None
         self.pose = start or simulation.rest
 
-    def update(self, targets: Targets | None = None, *, seconds: float) -> ReachedPose:
+    def update(
+        self, targets: Targets | None = None, *, seconds: float, objectives: Sequence[Objective] = ()
+    ) -> ReachedPose:
         """One step towards where the targets are now.
 
         Args:
             targets: where markers should go [m].
             seconds: since the last update; what a limit on the rate allows follows from it.
+            objectives: what is wished for just now, beside what was given at the start.
 
         Raises:
             InputError: as for `solve_ik`, or seconds not above 0.
@@ -59,7 +62,7 @@ class Tracker:
         if not seconds > 0:
             raise InputError(f"seconds since the last update must be above 0, not {seconds:g}")
         target = as_pose(targets)
-        search = self._search(target, seconds)
+        search = self._search(target, seconds, objectives)
         state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
         weight = search.weight(state)
         reason = InverseReason.ITERATION_LIMIT
@@ -99,11 +102,11 @@ class Tracker:
             return trial.excess < state.excess
         return trial.excess <= _FAR and search.objective(trial, weight) < search.objective(state, weight)
 
-    def _search(self, target: Pose | None, seconds: float) -> Search:
+    def _search(self, target: Pose | None, seconds: float, objectives: Sequence[Objective]) -> Search:
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)
         allowed = allowed.near(allowed.channel(self.pose.contractions))
-        terms = [wish.on(self._simulation) for wish in wishes(target, self._objectives)]
+        terms = [wish.on(self._simulation) for wish in wishes(target, [*self._objectives, *objectives])]
         return Search(self._simulation, terms, allowed, self._options, ready=True)
 
 

@@ -136,30 +136,40 @@ class _Activation:
         return float(0.5 * (miss**2).sum() + 0.5 * rho * tensions @ tensions)
 
 
-def least_effort(jacobian: Float[np.ndarray, "rows fibres"], wanted: Float[np.ndarray, " rows"], rho: float) -> Vector:
-    """Minimiser t >= 0 of 1/2 |J t - b|^2 + rho/2 |t|^2.
+def least_effort(
+    jacobian: Float[np.ndarray, "rows fibres"],
+    wanted: Float[np.ndarray, " rows"],
+    rho: float,
+    *,
+    most: float | Vector = np.inf,
+) -> Vector:
+    """Minimiser 0 <= t <= most of 1/2 |J t - b|^2 + rho/2 |t|^2.
 
-    There are few rows and many fibres, so the dual is solved: t = max(0, J^T y) / rho with y = b - J t, by semismooth
-    Newton with a line search on the dual's value, which is smooth and concave.
+    There are few rows and many fibres, so the dual is solved: t = J^T y / rho within its bounds with y = b - J t, by
+    semismooth Newton with a line search on the dual's value, which is smooth and concave.
     """
     y = np.zeros_like(wanted)
-    value = _dual(jacobian, wanted, rho, y)
+    full = rho * most
+    value = _dual(jacobian, wanted, rho, full, y)
     for _ in range(200):
-        pull = np.maximum(jacobian.T @ y, 0.0)
-        active = jacobian[:, pull > 0]
+        asked = jacobian.T @ y
+        pull = np.clip(asked, 0.0, full)
+        active = jacobian[:, (asked > 0) & (asked < full)]
         slope = wanted - y - jacobian @ pull / rho
-        if np.abs(slope).max() <= 1e-12 * np.abs(wanted).max():
+        if np.abs(slope).max(initial=0.0) <= 1e-12 * np.abs(wanted).max(initial=0.0):
             break
         step = np.linalg.solve(np.eye(len(y)) + active @ active.T / rho, slope)
         length = 1.0
-        while (trial := _dual(jacobian, wanted, rho, y + length * step)) < value + 1e-4 * length * slope @ step:
+        while (trial := _dual(jacobian, wanted, rho, full, y + length * step)) < value + 1e-4 * length * slope @ step:
             length *= 0.5
             if length < 1e-8:
                 return pull / rho
         y, value = y + length * step, trial
-    return np.maximum(jacobian.T @ y, 0.0) / rho
+    return np.clip(jacobian.T @ y, 0.0, full) / rho
 
 
-def _dual(jacobian: np.ndarray, wanted: np.ndarray, rho: float, y: np.ndarray) -> float:
-    pull = np.maximum(jacobian.T @ y, 0.0)
-    return float(wanted @ y - 0.5 * y @ y - 0.5 * pull @ pull / rho)
+def _dual(jacobian: np.ndarray, wanted: np.ndarray, rho: float, full: float | Vector, y: np.ndarray) -> float:
+    """The dual's value; a fibre at its bound adds what its tension is worth there."""
+    asked = np.maximum(jacobian.T @ y, 0.0)
+    pull = np.minimum(asked, full)
+    return float(wanted @ y - 0.5 * y @ y - (pull @ (asked - 0.5 * pull)) / rho)

@@ -55,7 +55,7 @@ class MarkerGoal(Objective):
         goals = np.array(
             [place(f"target {name}", targets[name], mesh, held=axes) for name, axes in zip(names, held, strict=True)]
         )
-        return _Markers(names, anchors, goals, scales, held)
+        return MarkerTerm(names, anchors, goals, scales, held)
 
 
 def named_targets(given: object) -> Mapping[str, Point]:
@@ -74,8 +74,8 @@ def named_targets(given: object) -> Mapping[str, Point]:
     return found
 
 
-class _Markers(Term):
-    """Marker goals on one robot."""
+class MarkerTerm(Term):
+    """Points of the body that have goals."""
 
     def __init__(
         self,
@@ -91,9 +91,11 @@ class _Markers(Term):
         self._counts = weights > 0
 
     def residual(self, posture: Posture) -> Rows:
+        """How far each point is from its goal, along each axis that counts [m]."""
         return (self._scales * self._offsets(posture)).ravel()
 
     def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        """How the points move with the contractions."""
         moved: Float[np.ndarray, "markers dim winches"] = np.einsum(
             "pc,pcdw->pdw", self.anchors.weights, moves.nodes[self.anchors.stencils]
         )

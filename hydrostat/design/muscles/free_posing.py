@@ -1,0 +1,208 @@
+"""`FreePosing`: a body that follows points held by hand as if full of muscles, fit for dragging (R36 to R38)."""
+
+import numpy as np
+from jaxtyping import Float
+from scipy.sparse import csc_array
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.design.muscles.activation import least_effort
+from hydrostat.design.muscles.fibres import Fibres, edge_fibres
+from hydrostat.geometry.anchors import Anchors
+from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, minimise
+from hydrostat.robot import Robot
+from hydrostat.simulation import body_energies, round_off
+from hydrostat.simulation.build import warp
+
+
+class FreePosing:
+    """Any-time activation of muscle fibres: each update is one step nearer to where points are held.
+
+    It minimises what `activate` does, 1/2 |points - goals|^2 + rho/2 |t|^2, over tensions 0 <= t <= strength, but goes
+    on from where it is. An update linearises equilibrium and goal together (sequential quadratic programming): one
+    solve for each coordinate held, the dual of least effort, and a step or two of Newton whose last Hessian begins the
+    next update. The bound on tensions keeps a goal out of reach from crushing the body.
+
+    Attributes:
+        robot: whose body it is.
+        fibres: the muscles.
+        strength: the most that a fibre pulls [N].
+        nodes: where the body is [m].
+        tensions: of each fibre [N].
+    """
+
+    def __init__(
+        self, robot: Robot, fibres: Fibres | None = None, *, effort: float = 1e-4, strength: float = 1.5
+    ) -> None:
+        """Begin at rest.
+
+        Args:
+            robot: whose body it is; its cables do not matter.
+            fibres: the muscles; on all edges of the mesh if left out.
+            effort: weight of squared tensions, as for `activate`.
+            strength: the most that muscles pull, as the pressure of all of them together in Young's moduli.
+        """
+        mesh = robot.body.mesh
+        self.robot = robot
+        self.fibres = fibres or edge_fibres(mesh)
+        body, pins, *others = body_energies(robot)
+        self._energy = self.fibres.energy()
+        self._lengths = self._energy.lengths(mesh.nodes)
+        self._assembly = Assembly([body, pins, *others, self._energy], rest=mesh.nodes, control_count=len(self.fibres))
+        self._warp, self._noise = warp(robot, body, pins), round_off(robot)
+        self._effort, self._size = effort, mesh.size
+        volume = float(mesh.volumes.sum()) * (robot.body.thickness or 1.0)
+        self.strength = strength * robot.body.material.young * mesh.dim * volume / float(self._lengths.sum())
+        self._resting = self._begin()
+        self.nodes = mesh.nodes
+        self.rest()
+        self._resting_stiffness, self._resting_pulls = self._stiffness, self._pulls(self.nodes, self.tensions)
+        self._able = self._largest_move()
+
+    def rest(self) -> None:
+        """Let go of everything at once: no muscle pulls."""
+        self._radius = _LARGEST
+        self._settle(self._resting, np.zeros(len(self.fibres)))
+
+    def update(self, held: Anchors, goals: Points) -> bool:
+        """One step towards where points of the body should be; whether there is more to gain.
+
+        Args:
+            held: the points; without any the body goes back to rest.
+            goals: where they should go [m].
+        """
+        wanted, rho = self._wanted(held, goals)
+        change = wanted - self.tensions
+        farthest = self._farthest(change)
+        before = self._objective(self.nodes, self.tensions, held, goals, rho)
+        for _ in range(_TRIES):
+            length = min(1.0, self._radius / farthest) if farthest > 0 else 1.0
+            tensions = self.tensions + length * change
+            found = self._relaxed(tensions, _ITERATIONS)
+            if self._objective(found.nodes, tensions, held, goals, rho) <= before:
+                self._radius = min(2.0 * self._radius, _LARGEST)
+                return self._settle(found, tensions)
+            self._radius = max(0.25 * length * farthest, _SMALLEST)
+        # The body may be so far from rest that nothing can be foretold: first let it settle as it is pulled now.
+        return self._settle(self._relaxed(self.tensions, _PATIENT), self.tensions)
+
+    def _begin(self) -> NewtonResult:
+        """Where the body rests: all of its weight at once, or what Newton makes of that."""
+        none = np.zeros(len(self.fibres))
+        return minimise(
+            self._assembly,
+            self.robot.body.mesh.nodes,
+            none,
+            force_scale=lambda _: 0.0,
+            round_off=self._noise,
+            options=NewtonOptions(),
+            warp=self._warp,
+        )
+
+    def _settle(self, found: NewtonResult, tensions: Vector) -> bool:
+        """Be where Newton came to, with a Hessian that is lifted until it is definite; whether that is elsewhere."""
+        moved = float(np.abs(found.nodes - self.nodes).max())
+        self.nodes, self.tensions = found.nodes, tensions
+        stiffness = found.stiffness
+        if stiffness is None or not stiffness.definite:
+            stiffness = self._assembly.stiffness(found.nodes, tensions, lift=1.0)
+        if not stiffness.definite:
+            stiffness = self._assembly.stiffness(found.nodes, tensions, lift=1.0, shift=_SHIFT)
+        self._stiffness = stiffness
+        return moved > _STILL * self._size
+
+    def _wanted(self, held: Anchors, goals: Points) -> tuple[Vector, float]:
+        """Tensions that the linearised problem asks for, and the weight of their squares [m^2/N^2]."""
+        rows = self._rows(held)
+        adjoint = self._stiffness.solve(rows)
+        jacobian = -(self._pulls(self.nodes, self.tensions).T @ adjoint).T
+        gradient = self._assembly.gradient(self.nodes, self.tensions)
+        resting = held.positions(self.nodes).ravel() - adjoint.T @ gradient
+        rho = self._weight(rows)
+        goal = goals.ravel() - resting + jacobian @ self.tensions
+        return least_effort(jacobian, goal, rho, most=self._most()), rho
+
+    def _most(self) -> Vector:
+        """What each fibre can pull at its present length: all at rest, nothing when it is as short as it gets."""
+        shares = self._energy.lengths(self.nodes) / self._lengths
+        return self.strength * np.clip((shares - _SHORTEST) / (1.0 - _SHORTEST), 0.0, 1.0)
+
+    def _rows(self, held: Anchors) -> Float[np.ndarray, "dofs rows"]:
+        """D places of the held points / d nodes, a column for each of their coordinates."""
+        points, dim = len(held.stencils), self.nodes.shape[1]
+        rows = np.zeros((self.nodes.size, points * dim))
+        for point in range(points):
+            for axis in range(dim):
+                rows[held.stencils[point] * dim + axis, point * dim + axis] = held.weights[point]
+        return rows
+
+    def _weight(self, rows: Float[np.ndarray, "dofs rows"]) -> float:
+        """Rho, by what the strongest fibre can do to these points at rest; not less for points that are pinned."""
+        moves = self._resting_pulls.T @ self._resting_stiffness.solve(rows)
+        able = float((moves**2).sum(axis=1).max(initial=0.0))
+        return self._effort * max(able, _LEAST_ABLE * self._able)
+
+    def _farthest(self, change: Vector) -> float:
+        """How far a change of the tensions moves some node, to first order, in sizes of the body."""
+        forces = self._pulls(self.nodes, self.tensions) @ change
+        return float(np.abs(self._stiffness.solve(forces)).max()) / self._size
+
+    def _pulls(self, nodes: Nodes, tensions: Vector) -> csc_array:
+        return self._assembly.control_derivative(nodes, tensions)
+
+    def _relaxed(self, tensions: Vector, iterations: int) -> NewtonResult:
+        """A few steps of Newton at these tensions; the first costs no factorisation."""
+        return minimise(
+            self._assembly,
+            self.nodes,
+            tensions,
+            force_scale=lambda _: float(tensions.max(initial=0.0)),
+            round_off=self._noise,
+            options=NewtonOptions(tolerance=_LOOSE, iterations=iterations),
+            warp=self._warp,
+            stiffness=self._stiffness,
+        )
+
+    def _objective(self, nodes: Nodes, tensions: Vector, held: Anchors, goals: Points, rho: float) -> float:
+        miss = held.positions(nodes) - goals
+        return float(0.5 * (miss**2).sum() + 0.5 * rho * tensions @ tensions)
+
+    def _largest_move(self) -> float:
+        """The square of how far the strongest fibre moves a node along an axis at rest [m^2/N^2], of some nodes."""
+        nodes = np.linspace(0, len(self.nodes) - 1, _SAMPLES).astype(int)
+        rows = np.zeros((self.nodes.size, len(nodes)))
+        rows[nodes * self.nodes.shape[1], np.arange(len(nodes))] = 1.0
+        return float(((self._resting_pulls.T @ self._resting_stiffness.solve(rows)) ** 2).max())
+
+
+_SHORTEST = 0.4
+"""A muscle that is so short, as a share of its length at rest, cannot pull: the force falls with the length."""
+
+_LARGEST = 0.15
+"""No update moves a node farther, in sizes of the body."""
+
+_SMALLEST = 1e-4
+"""Steps become no shorter; a goal that moves on asks for longer ones again."""
+
+_STILL = 2e-5
+"""A step that moves no node farther counts as none, in sizes of the body."""
+
+_TRIES = 3
+"""Steps tried in one update before the body stays where it is."""
+
+_ITERATIONS = 1
+"""Steps of Newton in an update: what they leave over, the next one takes in."""
+
+_PATIENT = 4
+"""Steps of Newton where a body is far from rest."""
+
+_LOOSE = 1e-5
+"""Force left over that counts as none, as a share of the largest tension."""
+
+_LEAST_ABLE = 1e-2
+"""Points that hardly move are not pulled at harder than if they moved a tenth as far as the freest."""
+
+_SAMPLES = 24
+"""Nodes by which that is measured."""
+
+_SHIFT = 1e-6
+"""Added to the diagonal of a Hessian that cannot be solved with, as a share of its largest entry."""

@@ -1,0 +1,104 @@
+"""`CableMover`: inverse kinematics on the robot's own cables follows what is held."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from hydrostat.errors import HydrostatError
+from hydrostat.ik import InverseReason, Limits, PointGoal, Tracker
+from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.studio.posing.held import Held
+from hydrostat.studio.posing.mover import Anchored, Mover
+from hydrostat.studio.view.shape import Shape
+
+PATIENCE = 300
+"""So many updates are made towards targets that stay where they are."""
+
+STILL = 5e-5
+"""An update that moves no node farther brings it hardly nearer, in sizes of the body."""
+
+STILLS = 4
+"""After so many of them in a row nobody waits for more."""
+
+MISSED = 0.01
+"""From this distance on a target counts as out of reach, in sizes of the body."""
+
+TICK = 1 / 30
+"""Seconds that an update stands for; nothing here limits the rate."""
+
+ENDS = {InverseReason.REACHED, InverseReason.OPTIMAL}
+
+
+class CableMover(Mover):
+    """Live inverse kinematics by `hs.Tracker`: each shape is an equilibrium within the limits."""
+
+    def __init__(
+        self, simulation: Simulation, *, tension: float, start: SolvedPose | None = None, notes: tuple[str, ...] = ()
+    ) -> None:
+        """Begin in a pose.
+
+        Args:
+            simulation: physics of the robot.
+            tension: the most that a cable bears [N].
+            start: where to begin; at rest if left out.
+            notes: what to mind all the time.
+        """
+        self.robot, self.tension, self._notes = simulation.robot, tension, notes
+        self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
+        self._begin(start or simulation.rest)
+
+    @property
+    def pose(self) -> SolvedPose:
+        """Where the robot is."""
+        return self._pose
+
+    def limited(self, tension: float) -> "CableMover":
+        """The same in the same pose with another limit on the tension [N]."""
+        return CableMover(self._simulation, tension=tension, start=self._pose, notes=self._notes)
+
+    def rest(self) -> Shape:
+        """Back to rest at once."""
+        self._begin(self._simulation.rest)
+        return self._shape({}, ())
+
+    def update(self, held: Mapping[str, Held]) -> tuple[Shape, bool]:
+        """One step of the tracker; without targets the winches stay as they are."""
+        if not held:
+            return self._shape({}, ()), False
+        if held is not self._held:
+            self._held, self._updates, self._still = held, 0, 0
+        self._updates += 1
+        goal = PointGoal(
+            points={name: point.at for name, point in held.items()},
+            targets={name: point.target for name, point in held.items()},
+        )
+        try:
+            reached = self._tracker.update(seconds=TICK, objectives=[goal])
+        except HydrostatError as error:
+            self._begin(self._pose)
+            return self._shape(self._anchored.errors(held, self._pose.nodes), (str(error),)), False
+        moved = float(np.abs(reached.pose.nodes - self._pose.nodes).max()) / self.robot.body.mesh.size
+        self._pose = reached.pose
+        self._still = self._still + 1 if moved < STILL else 0
+        more = reached.reason not in ENDS and self._still < STILLS and self._updates < PATIENCE
+        notes = reached.held
+        if reached.reason not in (*ENDS, InverseReason.ITERATION_LIMIT):
+            notes = (*notes, str(reached.reason))
+        far = max(reached.errors.values()) > MISSED * self.robot.body.mesh.size
+        if not more and far and not notes:
+            notes = (str(InverseReason.OPTIMAL),)
+        return self._shape(dict(reached.errors), notes), more
+
+    def _begin(self, pose: SolvedPose) -> None:
+        self._pose, self._held, self._updates, self._still = pose, {}, 0, 0
+        self._tracker = Tracker(self._simulation, limits=Limits(tension=self.tension), start=pose)
+
+    def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> Shape:
+        pose = self._pose
+        return Shape(
+            nodes=pose.nodes,
+            tensions=pose.tensions,
+            contractions=pose.contractions,
+            errors=errors,
+            notes=(*self._notes, *notes),
+        )

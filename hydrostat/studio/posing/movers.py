@@ -1,0 +1,94 @@
+"""`Movers`: the mover that fits the robot as it is, made when it is first needed."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.studio.document import Document
+from hydrostat.studio.posing.cable_mover import CableMover
+from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing.mover import Mover
+from hydrostat.studio.posing.muscle_mover import MuscleMover
+
+
+RUBBING = "posed without friction: with it the pose depends on the way there"
+
+
+class Movers:
+    """Keeps movers for as long as the physics of the robot stay the same. It works in one thread."""
+
+    def __init__(self, document: Document) -> None:
+        """Movers for the robot of this document."""
+        self._document = document
+        self._muscles: MuscleMover | None = None
+        self._cables: CableMover | None = None
+
+    def ready(self, robot: Robot, mode: Mode) -> bool:
+        """Whether there is a mover that fits, so that none has to be made."""
+        found = self._muscles if mode is Mode.MUSCLES else self._cables
+        return found is not None and _same_physics(found.robot, robot, mode)
+
+    def mover(self, robot: Robot, mode: Mode, tension: float) -> Mover:
+        """The mover of this robot; made if need be, which can take a while.
+
+        Args:
+            robot: as it is now.
+            mode: what moves it.
+            tension: the most that a cable bears [N].
+
+        Raises:
+            NotConvergedError: the robot has no rest.
+        """
+        if mode is Mode.MUSCLES:
+            if self._muscles is None or not self.ready(robot, mode):
+                self._muscles = MuscleMover(robot)
+            return self._muscles
+        before = self._cables
+        if before is None or not self.ready(robot, mode):
+            simulation = self._simulation(robot)
+            notes = (RUBBING,) if _rubs(robot) else ()
+            self._cables = CableMover(simulation, tension=tension, start=_resumed(simulation, before), notes=notes)
+        elif before.tension != tension:
+            self._cables = before.limited(tension)
+        assert self._cables is not None
+        return self._cables
+
+    def _simulation(self, robot: Robot) -> Simulation:
+        """Physics of the robot; without friction, for with it no contractions belong to a pose."""
+        if _rubs(robot):
+            return Simulation(replace(robot, cables=tuple(replace(cable, friction=0.0) for cable in robot.cables)))
+        return self._document.simulation if self._document.robot is robot else Simulation(robot)
+
+
+def same_body(first: Robot, second: Robot) -> bool:
+    """Whether two robots have the same nodes."""
+    return first.body.mesh is second.body.mesh
+
+
+def _rubs(robot: Robot) -> bool:
+    return any(cable.friction for cable in robot.cables)
+
+
+def _same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
+    """Whether what moves one moves the other in the same way; markers and poses do not matter."""
+    if first is second:
+        return True
+    if not (same_body(first, second) and first.body == second.body):
+        return False
+    if (first.pins, first.gravity) != (second.pins, second.gravity):
+        return False
+    rubless = tuple(replace(cable, friction=0.0) for cable in second.cables)
+    return mode is Mode.MUSCLES or (first.winches == second.winches and first.cables in (second.cables, rubless))
+
+
+def _resumed(simulation: Simulation, before: CableMover | None) -> SolvedPose | None:
+    """The pose that a robot was in before it was changed, if it still is one."""
+    robot = simulation.robot
+    if before is None or not same_body(before.robot, robot):
+        return None
+    taken = dict(zip((winch.name for winch in before.robot.winches), before.pose.contractions, strict=True))
+    wanted = np.array([np.clip(taken.get(winch.name, 0.0), -winch.release, winch.travel) for winch in robot.winches])
+    pose = simulation.solve(wanted, strict=False)
+    return pose if pose.result.converged and pose.result.stable else None

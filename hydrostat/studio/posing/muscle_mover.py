@@ -1,0 +1,54 @@
+"""`MuscleMover`: the body follows as if it were full of muscles."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from hydrostat.design.muscles.free_posing import FreePosing
+from hydrostat.robot import Robot
+from hydrostat.studio.posing.held import Held
+from hydrostat.studio.posing.mover import Anchored, Mover
+from hydrostat.studio.view.shape import Shape
+
+PATIENCE = 120
+"""So many updates are made towards targets that stay where they are."""
+
+MISSED = 0.01
+"""From this distance on a target counts as out of reach, in sizes of the body."""
+
+
+class MuscleMover(Mover):
+    """Free posing on muscle fibres: no cable pulls (R36 to R38)."""
+
+    def __init__(self, robot: Robot) -> None:
+        """Begin at rest; the sparse pattern is made here."""
+        self.robot = robot
+        self._posing, self._anchored = FreePosing(robot), Anchored(robot.body.mesh)
+        self._held: Mapping[str, Held] = {}
+        self._updates = 0
+
+    def rest(self) -> Shape:
+        """Back to rest at once."""
+        self._posing.rest()
+        return self._shape({}, False)
+
+    def update(self, held: Mapping[str, Held]) -> tuple[Shape, bool]:
+        """One step of the muscles; without targets they let go, a step at a time."""
+        if held is not self._held:
+            self._held, self._updates = held, 0
+        self._updates += 1
+        more = self._posing.update(self._anchored.anchors(held), self._anchored.goals(held))
+        more = more and self._updates < PATIENCE
+        return self._shape(held, more), more
+
+    def _shape(self, held: Mapping[str, Held], more: bool) -> Shape:
+        nodes, robot = self._posing.nodes, self.robot
+        errors = self._anchored.errors(held, nodes)
+        far = not more and max(errors.values(), default=0.0) > MISSED * robot.body.mesh.size
+        return Shape(
+            nodes=nodes,
+            tensions=np.zeros(len(robot.cables)),
+            contractions=np.zeros(len(robot.winches)),
+            errors=errors,
+            notes=("as far as muscles bring this body",) if far else (),
+        )

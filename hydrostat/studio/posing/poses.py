@@ -1,0 +1,85 @@
+"""`with_pose`, `renamed_pose`, `without_pose`, `held_of`: the poses of a robot, changed."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from itertools import count
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Marker, Pose, Robot
+from hydrostat.studio.posing.held import Held
+
+LONGEST = 60
+"""No name has more letters."""
+
+
+def with_pose(robot: Robot, name: str, held: Mapping[str, Held]) -> Robot:
+    """A robot with one more pose, in place of one of the same name; held points without a marker get one.
+
+    Args:
+        robot: whose pose it is.
+        name: of the pose.
+        held: points by name, with their targets.
+
+    Raises:
+        InputError: no name, or nothing is held.
+    """
+    name = checked_name(name)
+    if not held:
+        raise InputError("nothing is held yet; drag a point of the body, then store the pose")
+    known = {marker.name for marker in robot.markers}
+    new = tuple(Marker(name=own, at=point.at) for own, point in held.items() if own not in known)
+    pose = Pose(name=name, targets={own: point.target for own, point in held.items()})
+    return replace(robot, markers=(*robot.markers, *new), poses={**robot.poses, name: pose})
+
+
+def renamed_pose(robot: Robot, old: str, new: str) -> Robot:
+    """A robot with another name for a pose, in its old place.
+
+    Raises:
+        InputError: no such pose, no name, or one that is taken.
+    """
+    pose, new = robot.pose(old), checked_name(new)
+    if new != old and new in robot.poses:
+        raise InputError(f'there is a pose "{new}" already; choose another name')
+    poses = {new if name == old else name: own for name, own in robot.poses.items()}
+    return replace(robot, poses={**poses, new: replace(pose, name=new)})
+
+
+def without_pose(robot: Robot, name: str) -> Robot:
+    """A robot without a pose.
+
+    Raises:
+        InputError: no such pose.
+    """
+    robot.pose(name)
+    return replace(robot, poses={own: pose for own, pose in robot.poses.items() if own != name})
+
+
+def held_of(robot: Robot, name: str) -> dict[str, Held]:
+    """The targets of a pose, as points that are held.
+
+    Raises:
+        InputError: no such pose.
+    """
+    places = {marker.name: marker.at for marker in robot.markers}
+    return {own: Held(at=places[own], target=target) for own, target in robot.pose(name).targets.items()}
+
+
+def free_name(taken: Iterable[str], word: str) -> str:
+    """The first of word_1, word_2 ... that is not taken."""
+    names = set(taken)
+    return next(name for number in count(1) if (name := f"{word}_{number}") not in names)
+
+
+def checked_name(given: str) -> str:
+    """A name without spaces at its ends.
+
+    Raises:
+        InputError: it is empty, too long or has letters that cannot be printed.
+    """
+    name = given.strip()
+    if not name:
+        raise InputError("a pose needs a name, such as wave")
+    if len(name) > LONGEST or not name.isprintable():
+        raise InputError(f"a name has at most {LONGEST} letters that can be printed")
+    return name
