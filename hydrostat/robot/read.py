@@ -40,17 +40,22 @@ def load_robot(path: str | Path) -> Robot:
     file = path if path.suffix == ".toml" and not os.path.isdir(path) else path / FILE
     if os.path.isfile(path) and file != path:
         raise InputError(f"{path}: is neither the folder of a robot nor a robot.toml; begin a robot with hydrostat new")
-    return _Reader(file, read_text(file)).robot()
+    return RobotReader(file, read_text(file)).robot()
 
 
-class _Reader(TablesFile):
-    """Turns the text of a robot.toml into records."""
+class RobotReader(TablesFile):
+    """Turns the text of a robot.toml into records.
+
+    Attributes:
+        unit: of its coordinates.
+    """
 
     def __init__(self, file: Path, text: str) -> None:
         super().__init__(file, text)
         self.unit = self.table.length_unit
 
     def form(self) -> "type[Table]":
+        """The tables of robot.toml."""
         from hydrostat.robot.schema import RobotTable
 
         return RobotTable
@@ -110,7 +115,7 @@ class _Reader(TablesFile):
             self.fail("body", "give one of outline (a drawing), surface (a scan or CAD model) or mesh (a ready mesh)")
         source = sources[0]
         file = self._file(f"body.{source}", getattr(entry, source))
-        material = self.at("body.material", lambda: _material(entry.material))
+        material = self.at("body.material", lambda: read_material(entry.material))
         unit = units.scale_up(Decimal(1), self.unit, units.LENGTH)
         if source is Source.MESH:
             if entry.element_size is not None:
@@ -149,7 +154,12 @@ class _Reader(TablesFile):
         return file
 
 
-def _material(entry: Any) -> Material:
+def read_material(entry: Any) -> Material:
+    """A material by its name, or by its numbers.
+
+    Raises:
+        InputError: an unknown name, or a number out of its range.
+    """
     if isinstance(entry, str):
         return find_material(entry)
     viscous = _given(entry, "viscosity")

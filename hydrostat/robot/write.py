@@ -22,11 +22,16 @@ from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Mount
 
 
-def save_robot(robot: Robot, folder: str | Path) -> Path:
+def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> Path:
     """Write robot.toml and the body's file into a folder, made if need be; returns the path of robot.toml.
 
     Each file is written under a temporary name and renamed, so that a reader never sees half of it. Comments of a
-    robot.toml that was there are lost.
+    robot.toml that was there are lost, but for a `text` that has them.
+
+    Args:
+        robot: to save.
+        folder: of the robot.
+        text: of robot.toml, such as `merged_text` makes it; `robot_text` if left out.
 
     Raises:
         InputError: a name that robot.toml does not allow, or a folder that cannot be written.
@@ -39,7 +44,7 @@ def save_robot(robot: Robot, folder: str | Path) -> Path:
     except OSError as error:
         raise InputError(f"{folder}: cannot be made a folder ({error.strerror})") from None
     replace_file(folder / robot.body.file, robot.body.content)
-    return replace_file(folder / "robot.toml", robot_text(robot).encode())
+    return replace_file(folder / "robot.toml", (text or robot_text(robot)).encode())
 
 
 def with_element_size(text: str, element_size: float) -> str:

@@ -1,20 +1,119 @@
 """`save_work`, `open_work`: a robot's folder, as the studio keeps it."""
 
+import hashlib
 from pathlib import Path
 
-from hydrostat.robot import load_robot, save_robot
+from hydrostat.errors import InputError
+from hydrostat.robot import load_robot, robot_text, save_robot
+from hydrostat.robot.merge import lost_comments, merged_text
+from hydrostat.robot.read import FILE
+from hydrostat.robot.tables_file import read_text
+from hydrostat.studio import studio_file
+from hydrostat.studio.records.timeline import Timeline
+from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
+from hydrostat.studio.studio_file import read_studio_file, write_studio_file
 
-
-def save_work(work: Work, folder: Path) -> None:
-    """Write everything into a folder."""
-    save_robot(work.robot, folder)
+MOST_TOLD = 5
+"""So many lost comments are told one by one."""
 
 
 def open_work(folder: Path) -> Work:
-    """Read a robot's folder.
+    """Read a robot's folder; a studio.json that cannot be read is left alone, and `open_note` says why.
 
     Raises:
         InputError: as for `load_robot`.
     """
-    return Work(robot=load_robot(folder))
+    robot = load_robot(folder)
+    try:
+        kept = read_studio_file(_home(folder))
+    except InputError:
+        return Work(robot=robot)
+    return Work(robot=robot, timeline=kept.timeline, wishes=kept.wishes)
+
+
+def open_note(folder: Path) -> str:
+    """Why keyframes and wishes of a folder could not be read; "" if they could."""
+    try:
+        read_studio_file(_home(folder))
+    except InputError as error:
+        return f"keyframes and wishes were not read: {error}"
+    return ""
+
+
+def save_work(work: Work, folder: Path) -> None:
+    """Write everything into a folder; a robot.toml that is there keeps its comments and its form where it can.
+
+    Raises:
+        InputError: a name that is not allowed, or a folder that cannot be written.
+    """
+    folder = _home(folder)
+    save_robot(work.robot, folder, text=_text(work, folder))
+    if (folder / studio_file.FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes():
+        write_studio_file(folder, work.timeline, work.wishes)
+
+
+def folder_stamp(folder: Path) -> str:
+    """Changes when robot.toml or studio.json do; "" for a folder without a robot."""
+    files = [_home(folder) / FILE, _home(folder) / studio_file.FILE]
+    if not files[0].is_file():
+        return ""
+    try:
+        return hashlib.sha256(b"\0".join(file.read_bytes() for file in files if file.is_file())).hexdigest()
+    except OSError:
+        return "cannot be read"
+
+
+def changed_outside(folder: Path, stamp: str) -> bool:
+    """Whether someone else wrote into a folder since it had this `folder_stamp`."""
+    return folder_stamp(folder) not in ("", stamp)
+
+
+def comments_lost(work: Work, folder: Path) -> list[str]:
+    """Comments of a robot.toml that would be lost by saving, because what they speak of is gone."""
+    file = _home(folder) / FILE
+    if not file.is_file():
+        return []
+    try:
+        before = read_text(file)
+    except InputError:
+        return []
+    return lost_comments(before, merged_text(before, work.robot))
+
+
+def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
+    """What a person should be asked before the work is saved in a folder; empty if nothing is lost by it.
+
+    Args:
+        work: to be saved.
+        folder: where.
+        stamp: of the folder when it was opened or saved last; "": it was never.
+    """
+    asked = []
+    if changed_outside(folder, stamp):
+        asked.append(
+            "robot.toml or studio.json was changed by another program since it was opened; saving replaces that."
+            if stamp
+            else "There is a robot in this folder already; saving replaces it."
+        )
+    lost = comments_lost(work, folder)
+    if lost:
+        told = lost if len(lost) <= MOST_TOLD else [*lost[:MOST_TOLD], f"and {len(lost) - MOST_TOLD} more"]
+        asked.append("Comments in robot.toml would be lost, as what they speak of is gone: " + "  ".join(told))
+    note = open_note(folder)
+    if note:
+        asked.append(f"{studio_file.FILE} cannot be read and would be replaced.")
+    return asked
+
+
+def _text(work: Work, folder: Path) -> str:
+    """The text of robot.toml that will be."""
+    try:
+        return merged_text(read_text(folder / FILE), work.robot)
+    except InputError:
+        return robot_text(work.robot)
+
+
+def _home(folder: Path) -> Path:
+    """The folder itself, also where its robot.toml is named."""
+    return folder.parent if folder.suffix == ".toml" and not folder.is_dir() else folder

@@ -155,7 +155,7 @@ WORDS = st.text("aZ9_-. éß世हाথ", min_size=1, max_size=60).map(lambda t
 @given(data=st.data(), unit=st.sampled_from(["mm", "cm", "m", "in", "ft", "um", "yard"]))
 def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
     """Oracle: bits: whatever floats the records hold, the file gives the very same (the body is not meshed again)."""
-    from hydrostat.robot.read import _gravity, _material, _Reader
+    from hydrostat.robot.read import RobotReader, _gravity, read_material
 
     draw = data.draw
     low, high = small.body.mesh.nodes.min(axis=0) * 0.99, small.body.mesh.nodes.max(axis=0) * 0.99
@@ -201,9 +201,9 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
         gravity=draw(st.none() | GRAVITY),
     )
     text = robot_text(robot)
-    reader = _Reader(Path("robot.toml"), text)
+    reader = RobotReader(Path("robot.toml"), text)
     assert _gravity(reader.table.gravity, 2) == robot.gravity
-    assert _material(reader.table.body.material) == material
+    assert read_material(reader.table.body.material) == material
     assert (reader.table.body.volume or Volume.ELEMENT) is robot.body.volume
     assert reader.records("winch", reader._winch) == robot.winches
     assert reader.records("cable", reader._cable) == robot.cables

@@ -1,0 +1,239 @@
+"""`merged_text`: a robot put into the text of a robot.toml that was there, so that its comments and its form stay."""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import MISSING, dataclass, fields, replace
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+from hydrostat import units
+from hydrostat.errors import InputError
+from hydrostat.robot.body import Body
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.marker import Marker
+from hydrostat.robot.match import matched
+from hydrostat.robot.pin import Pin
+from hydrostat.robot.pose import Pose
+from hydrostat.robot.read import RobotReader, read_material
+from hydrostat.robot.robot import Robot
+from hydrostat.robot.toml_blocks import Block, comments, split_blocks
+from hydrostat.robot.winch import Winch
+from hydrostat.robot.write import robot_text
+
+_RECORDS = {"body": Body, "pin": Pin, "winch": Winch, "cable": Cable, "marker": Marker, "pose": Pose}
+_LISTS = ("pin", "winch", "cable", "marker", "pose")
+_ORDER = ("", "body", *_LISTS)
+_TOP = ("name", "length_unit", "gravity")
+
+
+def merged_text(text: str, robot: Robot) -> str:
+    """The text of a robot.toml that describes a robot, as near as can be to a text that described another state of it.
+
+    Comments, order and form of all that did not change stay, and tables that are no longer wanted go with their own
+    comments (`lost_comments` tells which). A text that is no robot.toml is replaced.
+    """
+    fresh = robot_text(robot)
+    try:
+        merged = _merged(text if text.endswith("\n") else text + "\n", fresh)
+        if merged is not None and _Check(merged, robot.body, fresh).robot() == robot:
+            return text if merged == text + "\n" else merged
+    except InputError:
+        pass
+    return fresh
+
+
+def lost_comments(before: str, after: str) -> list[str]:
+    """The comments of one text that another no longer has, in order."""
+    kept = comments(after)
+    lost = []
+    for comment in comments(before):
+        if comment in kept:
+            kept.remove(comment)
+        else:
+            lost.append(comment)
+    return lost
+
+
+class _Check(RobotReader):
+    """Reads a robot without meshing its body anew: that must be the same."""
+
+    def __init__(self, text: str, body: Body, fresh: str) -> None:
+        super().__init__(Path("robot.toml"), text)
+        self._given, self._wanted = body, RobotReader(Path("robot.toml"), fresh).table.body
+
+    def _body(self) -> Body:
+        if _effective("body", self.table.body, Decimal(1)) != _effective("body", self._wanted, Decimal(1)):
+            raise InputError("the body is another one")
+        return self._given
+
+
+@dataclass(frozen=True, eq=False)
+class _Side:
+    """A text with what it says: entries of each kind as they stand in it and as they mean."""
+
+    blocks: list[Block]
+    tail: str
+    data: dict[str, Any]
+    means: dict[str, list[dict[str, Any]]]
+
+    def blocks_of(self, kind: str) -> list[int]:
+        return [number for number, block in enumerate(self.blocks) if block.name == kind]
+
+
+def _side(text: str, unit: str | None = None) -> _Side:
+    table = RobotReader(Path("robot.toml"), text).table
+    factor = units.unit_factor(unit or table.length_unit, units.LENGTH)
+    means = {kind: [_effective(kind, entry, factor) for entry in getattr(table, kind)] for kind in _LISTS}
+    means["body"] = [_effective("body", table.body, factor)]
+    means[""] = [{key: getattr(table, key) for key in _TOP}]
+    blocks, tail = split_blocks(text)
+    return _Side(blocks, tail, tomllib.loads(text, parse_float=Decimal), means)
+
+
+def _effective(kind: str, entry: Any, factor: Decimal) -> dict[str, Any]:
+    """What each key of a table means, in SI; a key that is left out means the record's default."""
+    defaults = {field.name: field.default for field in fields(_RECORDS[kind]) if field.default is not MISSING}
+    given = {key: getattr(entry, key) for key in type(entry).model_fields}
+    values = {key: defaults.get(key) if value is None else _metres(value, factor) for key, value in given.items()}
+    if kind == "body":
+        values["material"] = read_material(entry.material)
+    return values
+
+
+def _metres(value: Any, factor: Decimal) -> Any:
+    """Bare numbers as lengths [m], lists as tuples."""
+    if isinstance(value, Decimal):
+        return float(value * factor) + 0.0
+    if isinstance(value, list):
+        return tuple(_metres(entry, factor) for entry in value)
+    return {key: _metres(entry, factor) for key, entry in value.items()} if isinstance(value, dict) else value
+
+
+def _merged(text: str, fresh: str) -> str | None:
+    """The old text with what is new in it; None if its form is too unusual."""
+    new = _side(fresh)
+    old = _side(text, RobotReader(Path("robot.toml"), fresh).table.length_unit)
+    counts = {kind: len(old.means[kind]) for kind in _ORDER}
+    if any(counts[kind] != len(old.blocks_of(kind)) for kind in _ORDER) or not all(b.whole for b in old.blocks):
+        return None
+    blocks: list[tuple[Block, int] | None] = [None] * len(old.blocks)
+    added: list[tuple[str, int]] = []
+    for kind in _ORDER:
+        places, wanted = old.blocks_of(kind), new.blocks_of(kind)
+        pairs = matched(old.means[kind], new.means[kind])  # old number by new number
+        slots = sorted(places[before] for before in pairs.values())
+        for slot, number in zip(slots, sorted(pairs), strict=True):
+            before = old.blocks[places[pairs[number]]]
+            own = _updated(before, old, new, kind, pairs[number], number)
+            blocks[slot] = (replace(before, text=own), number)
+        added += [(kind, number) for number in range(len(wanted)) if number not in pairs]
+    laid = _kept(old.blocks, blocks)
+    for kind, number in added:
+        block = Block(name=kind, free="\n", text=new.blocks[new.blocks_of(kind)[number]].text)
+        laid.insert(_place(laid, kind, number), (block, number))
+    tail = "".join(_remarks(block.free) for block, kept in zip(old.blocks, blocks, strict=True) if kept is None)
+    whole = "".join(block.free + block.lead + block.text for block, _ in laid)
+    return whole + tail + old.tail
+
+
+def _kept(before: Sequence[Block], blocks: Sequence[tuple[Block, int] | None]) -> list[tuple[Block, int]]:
+    """The blocks that stay; what is said above the first of a kind speaks of them all and stays with the next."""
+    laid: list[tuple[Block, int]] = []
+    seen: set[str] = set()
+    inherited: dict[str, str] = {}
+    for old, kept in zip(before, blocks, strict=True):
+        first = old.name not in seen
+        seen.add(old.name)
+        if kept is None:
+            if first and any(entry is not None and entry[0].name == old.name for entry in blocks):
+                inherited[old.name] = old.lead
+            continue
+        block, number = kept
+        # free text and what is said of all belong to the place in the file, not to the table that is there now
+        laid.append((replace(block, free=old.free, lead=inherited.pop(old.name, "") + block.lead), number))
+    return laid
+
+
+def _remarks(free: str) -> str:
+    """The comments that stood apart before a table that is gone."""
+    return free if "#" in free else ""
+
+
+def _place(laid: Sequence[tuple[Block, int]], kind: str, number: int) -> int:
+    """Where in the file a new table goes: after the one before it, else before the one after it, else in its order."""
+    before = [place for place, (block, other) in enumerate(laid) if block.name == kind and other < number]
+    if before:
+        return before[-1] + 1
+    after = [place for place, (block, _) in enumerate(laid) if block.name == kind]
+    if after:
+        return after[0]
+    earlier = _ORDER[: _ORDER.index(kind)]
+    return max(place for place, (block, _) in enumerate(laid) if block.name in earlier) + 1
+
+
+def _updated(block: Block, old: _Side, new: _Side, kind: str, before: int, number: int) -> str:
+    """The text of a table with what is new in it."""
+    was, now = old.means[kind][before], new.means[kind][number]
+    changed = [key for key in dict.fromkeys([*was, *now]) if was.get(key) != now.get(key)]
+    if not changed:
+        return block.text
+    import tomlkit
+
+    document = tomlkit.parse(block.text)
+    source = tomlkit.parse(new.blocks[new.blocks_of(kind)[number]].text)
+    table, fresh = (_entry(found, kind) for found in (document, source))
+    for key in changed:
+        if key not in fresh:
+            table.pop(key, None)
+        elif key == "targets":
+            _update_targets(table["targets"], fresh["targets"], was["targets"], now["targets"])
+        elif key == "points" and key in table:
+            _update_points(table[key], fresh[key], was[key], now[key])
+        else:
+            _set(table, key, fresh[key])
+    return tomlkit.dumps(document)
+
+
+def _entry(document: Any, kind: str) -> Any:
+    if not kind:
+        return document
+    return document[kind] if kind == "body" else document[kind][0]
+
+
+def _set(table: Any, key: str, item: Any) -> None:
+    """Give a key a value; a sub-table in its place is removed first, so that it is not mistaken for that."""
+    from tomlkit.items import Table
+
+    if isinstance(table.get(key), Table):
+        table.pop(key)
+    table[key] = deepcopy(item)
+
+
+def _update_targets(targets: Any, fresh: Any, was: Mapping[str, Any], now: Mapping[str, Any]) -> None:
+    """Only the targets that changed."""
+    for name in was:
+        if name not in now:
+            targets.pop(name)
+    for name in now:
+        if was.get(name) != now[name]:
+            targets[name] = deepcopy(fresh[name])
+
+
+def _update_points(points: Any, fresh: Any, was: Sequence[Any], now: Sequence[Any]) -> None:
+    """Only the points that changed, so that remarks beside the others stay."""
+    start = 0
+    while start < min(len(was), len(now)) and was[start] == now[start]:
+        start += 1
+    end = 0
+    while end < min(len(was), len(now)) - start and was[-1 - end] == now[-1 - end]:
+        end += 1
+    old, new = len(was) - end - start, len(now) - end - start
+    for place in range(start, start + min(old, new)):
+        if was[place] != now[place]:
+            points[place] = deepcopy(fresh[place])
+    for _ in range(old - new):
+        points.pop(start + new)
+    for place in range(start + old, start + new):
+        points.insert(place, deepcopy(fresh[place]))

@@ -1,0 +1,314 @@
+"""A robot's folder. The oracle is the robot that was saved, read again, and the comments that stood in the file."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot, Winch, gallery_folder, load_robot, robot_text
+from hydrostat.robot.merge import lost_comments, merged_text
+from hydrostat.robot.read import RobotReader
+from hydrostat.robot.toml_blocks import comments
+from hydrostat.studio.editing.add import add_cable, add_marker, add_pin, add_winch, insert_via
+from hydrostat.studio.editing.change import change, rename, set_gravity
+from hydrostat.studio.editing.move import move
+from hydrostat.studio.editing.part import keys_of, place_of
+from hydrostat.studio.editing.remove import remove
+from hydrostat.studio.records.timeline import Key, Timeline
+from hydrostat.studio.records.wishes import Paint, Wishes
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.work_folder import (
+    changed_outside,
+    comments_lost,
+    doubts,
+    folder_stamp,
+    open_note,
+    open_work,
+    save_work,
+)
+
+pytestmark = pytest.mark.filterwarnings("error")
+
+BODY = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm" viewBox="0 0 60 40">'
+    '<rect width="60" height="40"/></svg>'
+)
+
+COMMENTED = """\
+# A robot with a remark in every place.
+format = 1 # the format
+name   =   "small" # its name
+# end of the top
+
+# apart
+
+# of the body
+[body] # header of the body
+outline = "body.svg" # the drawing
+element_size = "12mm" # coarse
+thickness = "2 cm"
+material = "polyester fibre" # fluffy
+
+# all pins
+[[pin]] # pin one
+at = [ -20, 0.0 ] # odd form
+radius = 12 # wide
+
+# pin two
+[[pin]]
+box = [[25, -20], [30, 20]] # the far end
+
+# all winches
+[[winch]]
+at = [-20, 5] # at comes first here
+name = "left" # the left one
+spool_radius = "3 mm"
+travel = "20 mm"
+# end of left
+
+[[winch]]
+name = "right"
+at = [-20, -5]
+spool_radius = "0.3 cm" # in centimetres
+travel = "20 mm"
+
+# all cables
+[[cable]] # upper
+winch = "left" # pulled by left
+points = [
+  [-20, 5], # at the winch
+  [0, 10], # past the middle
+  [10, 10], # further
+  # nearly there
+  [20, 10], # stopper
+]
+slack = "1 mm" # loose
+
+# lower
+[[cable]]
+winch = "right"
+points = [[-20, -5], [20, -10]] # straight
+
+# all markers
+[[marker]] # tip
+name = "tip"
+at = [25, 0] # at the end
+
+[[marker]]
+name = "middle" # not the end
+at = [0, 0]
+
+# all poses
+[[pose]]
+# how it waves
+name = "wave"
+[pose.targets] # places
+tip = [20, 10] # up
+middle = [0, 5]
+
+[[pose]]
+name = "rest" # as it lies
+targets = { tip = [25, 0] } # home
+
+# the end
+"""
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("small")
+    (folder / "body.svg").write_text(BODY)
+    (folder / "robot.toml").write_text(COMMENTED)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def robot(small: Path) -> Robot:
+    return load_robot(small)
+
+
+class Again(RobotReader):
+    """Reads a robot with a body that is meshed already."""
+
+    def __init__(self, text: str, robot: Robot) -> None:
+        super().__init__(Path("robot.toml"), text)
+        self.given = robot.body
+
+    def _body(self):
+        return self.given
+
+
+def read_again(text: str, robot: Robot) -> Robot:
+    return Again(text, robot).robot()
+
+
+PLACES = st.tuples(st.integers(-280, 280), st.integers(-180, 180)).map(lambda at: (at[0] / 1e4, at[1] / 1e4))
+
+
+def edited_once(data: st.DataObject, robot: Robot) -> Robot:
+    """A robot after one edit of any kind, as it was if the edit is refused."""
+    draw = data.draw
+    key = draw(st.sampled_from([*keys_of(robot), "via:0:1", "via:0:2"]))
+    at, number = draw(PLACES), draw(st.integers(1, 40)) / 1e4
+    name, way, unit = (draw(st.sampled_from(some)) for some in (["one", "two", "three"], ["", "-y"], ["mm", "cm"]))
+    actions = [
+        lambda: move(robot, {key: at}) if place_of(robot, key) else robot,
+        lambda: remove(robot, [key]),
+        lambda: rename(robot, key, name),
+        lambda: change(robot, [key], travel=number),
+        lambda: change(robot, [key], slack=number, friction=0.1),
+        lambda: change(robot, [key], slack=0.0),
+        lambda: add_marker(robot, at),
+        lambda: add_pin(robot, at),
+        lambda: add_winch(robot, at),
+        lambda: add_cable(robot, robot.winches[0].name, (at,)) if robot.winches else robot,
+        lambda: insert_via(robot, 0, at)[0] if robot.cables else robot,
+        lambda: set_gravity(robot, way),
+        lambda: replace(robot, length_unit=unit),
+        lambda: replace(robot, markers=robot.markers[::-1], cables=robot.cables[::-1]),
+    ]
+    try:
+        return actions[draw(st.integers(0, len(actions) - 1))]()
+    except InputError:
+        return robot
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.data())
+def test_any_edits_are_read_again_and_lose_only_what_is_told(robot: Robot, data: st.DataObject) -> None:
+    edited = robot
+    for _ in range(data.draw(st.integers(1, 5))):
+        edited = edited_once(data, edited)
+    text = merged_text(COMMENTED, edited)
+    assert read_again(text, edited) == edited
+    assert read_again(text, edited).body == edited.body
+    lost = lost_comments(COMMENTED, text)
+    assert sorted([*comments(text), *lost]) == sorted(comments(COMMENTED))
+    survivors = {winch.name for winch in edited.winches} | {marker.name for marker in edited.markers}
+    for name, remarks in {
+        "left": ["# the left one", "# end of left"],
+        "tip": ["# at the end"],
+        "middle": ["# not the end"],
+    }.items():
+        if name in survivors and all(part.name != "marker_1" for part in edited.markers):
+            assert not set(remarks) & set(lost)
+    general = ["# A robot with a remark in every place.", "# the format", "# apart", "# of the body", "# fluffy"]
+    assert not set(general) & set(lost)
+
+
+def test_what_did_not_change_is_left_to_the_letter(robot: Robot) -> None:
+    assert merged_text(COMMENTED, robot) == COMMENTED
+    assert merged_text(COMMENTED.rstrip("\n"), robot) == COMMENTED.rstrip("\n")
+    assert "#" not in robot_text(robot)
+
+
+def test_only_the_line_that_changed_is_another(robot: Robot) -> None:
+    moved = merged_text(COMMENTED, move(robot, {"marker:tip": (0.024, 0.001)}))
+    assert moved == COMMENTED.replace("at = [25, 0] # at", "at = [24, 1] # at")
+    bent = merged_text(COMMENTED, move(robot, {"via:0:1": (0.0, 0.011)}))
+    assert bent == COMMENTED.replace("[0, 10], # past", "[0, 11], # past")
+
+
+def test_what_goes_takes_its_own_comments_and_no_others(robot: Robot) -> None:
+    text = merged_text(COMMENTED, remove(robot, ["winch:left"]))
+    told = ["# at comes first here", "# the left one", "# end of left", "# upper", "# pulled by left", "# at the winch",
+            "# past the middle", "# further", "# nearly there", "# stopper", "# loose"]  # fmt: skip
+    assert lost_comments(COMMENTED, text) == told
+    assert text.index("# all winches") < text.index('name = "right"')
+    assert text.index("# all cables") < text.index("# lower") < text.index('winch = "right"')
+
+
+@pytest.mark.parametrize("text", ["", "not TOML at all [", "format = 2\n", 'format = 1\nname = "x"\n# alone\n'])
+def test_what_is_no_robot_is_replaced(robot: Robot, text: str) -> None:
+    assert merged_text(text, robot) == robot_text(robot)
+
+
+def test_an_unusual_form_is_replaced_and_that_is_told(robot: Robot) -> None:
+    unusual = COMMENTED[: COMMENTED.index("# all poses")].replace(
+        "# apart", 'pose = [{ name = "wave", targets = { tip = [1, 2] } }] # in one line'
+    )
+    text = merged_text(unusual, robot)
+    assert read_again(text, robot) == robot
+    assert "# in one line" in lost_comments(unusual, text)
+
+
+def work_of(robot: Robot) -> Work:
+    timeline = Timeline(keys=(Key(time=0.5, contractions={"left": 0.01}),), smooth=True)
+    from hydrostat.design import Zone
+
+    wishes = Wishes(winches=3, zones=((Paint.STILL, Zone(at=(0.0, 0.0), radius=0.01)),), mirror="y", tolerance=0.002)
+    return Work(robot=robot, timeline=timeline, wishes=wishes)
+
+
+def test_all_work_is_read_again(robot: Robot, tmp_path: Path) -> None:
+    work = work_of(robot)
+    save_work(work, tmp_path / "new" / "robot")
+    again = open_work(tmp_path / "new" / "robot")
+    assert (again.robot, again.timeline, again.wishes) == (work.robot, work.timeline, work.wishes)
+    assert open_note(tmp_path / "new" / "robot") == ""
+    assert not list((tmp_path / "new" / "robot").glob(".*"))
+
+
+def test_a_plain_robot_needs_no_second_file(robot: Robot, tmp_path: Path) -> None:
+    save_work(Work(robot=robot), tmp_path)
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["body.svg", "robot.toml"]
+    assert doubts(Work(robot=robot), tmp_path, folder_stamp(tmp_path)) == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [("{", "["), ('"format": 1', '"format": 2'), ('"winches"', '"wenches"'), ('"winches": 3', '"winches": "3"'),
+     ('"time": 0.5', '"time": NaN'), ('"time": 0.5', '"time": -1.0'), ('"radius": 0.01', '"radius": -1.0')],
+)  # fmt: skip
+def test_a_broken_studio_file_is_told_in_one_line(robot: Robot, tmp_path: Path, before: str, after: str) -> None:
+    save_work(work_of(robot), tmp_path)
+    file = tmp_path / "studio.json"
+    assert before in file.read_text()
+    file.write_text(file.read_text().replace(before, after, 1))
+    again = open_work(tmp_path)
+    assert again.robot == robot
+    assert (again.timeline, again.wishes) == (Timeline(), Wishes())
+    assert "studio.json" in open_note(tmp_path)
+    assert "\n" not in open_note(tmp_path)
+    assert len(open_note(tmp_path)) < 400
+    assert "replaced" in doubts(again, tmp_path, folder_stamp(tmp_path))[-1]
+
+
+def test_comments_stay_when_saved(robot: Robot, tmp_path: Path) -> None:
+    save_work(Work(robot=robot), tmp_path)
+    (tmp_path / "robot.toml").write_text(COMMENTED)
+    stamp = folder_stamp(tmp_path)
+    edited = Work(robot=remove(move(robot, {"marker:tip": (0.024, 0.0)}), ["marker:middle"]))
+    assert comments_lost(edited, tmp_path) == ["# not the end"]
+    assert "# not the end" in doubts(edited, tmp_path, stamp)[0]
+    save_work(edited, tmp_path)
+    assert lost_comments(COMMENTED, (tmp_path / "robot.toml").read_text()) == ["# not the end"]
+    assert open_work(tmp_path).robot == edited.robot
+
+
+def test_what_others_wrote_is_asked_about(robot: Robot, tmp_path: Path) -> None:
+    work = Work(robot=robot)
+    assert doubts(work, tmp_path) == []
+    assert not changed_outside(tmp_path, "")
+    save_work(work, tmp_path)
+    assert "already" in doubts(work, tmp_path)[0]
+    stamp = folder_stamp(tmp_path)
+    assert not changed_outside(tmp_path, stamp)
+    (tmp_path / "robot.toml").write_text((tmp_path / "robot.toml").read_text() + "# mine\n")
+    assert changed_outside(tmp_path, stamp)
+    assert "another program" in doubts(work, tmp_path, stamp)[0]
+
+
+def test_names_that_the_file_does_not_allow_are_refused(robot: Robot, tmp_path: Path) -> None:
+    wrong = replace(robot, winches=(*robot.winches, Winch(name="a/b", at=(0.0, 0.0))))
+    with pytest.raises(InputError, match="letters"):
+        save_work(Work(robot=wrong), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_gallery_is_left_to_the_letter() -> None:
+    text = (gallery_folder("starfish") / "robot.toml").read_text(encoding="utf-8")
+    assert merged_text(text, load_robot(gallery_folder("starfish"))) == text
