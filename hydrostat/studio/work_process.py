@@ -16,6 +16,9 @@ from hydrostat.errors import HydrostatError
 SHORTEST = 0.03
 """Progress of one stage is not told more often than each so many seconds."""
 
+AGAIN = 0.02
+"""A stop that was not heard is said again after so many seconds."""
+
 
 @runtime_checkable
 class Report(Protocol):
@@ -113,18 +116,27 @@ class _Report:
         try:
             while True:
                 self._pipe.recv()
-                with self._lock:  # so that no message is cut in two
-                    if self._stoppable:
-                        self._stoppable, self._stopped = False, True
-                        _wake()
+                self._stopped = True
+                Thread(target=self._stop, daemon=True).start()
         except (EOFError, OSError):
             os._exit(1)
+
+    def _stop(self) -> None:
+        """Signal until it is heard: a signal that comes just before the main thread begins to wait does not wake it."""
+        while True:
+            with self._lock:  # so that no message is cut in two
+                if not self._stoppable:
+                    return
+                _wake()
+            time.sleep(AGAIN)
 
     def interrupt(self, number: int, frame: FrameType | None) -> None:
         """Take a signal: a stop that was asked for, or the end from elsewhere."""
         if not self._stopped:
             os._exit(1)
-        raise KeyboardInterrupt
+        if self._stoppable:
+            self._stoppable = False
+            raise KeyboardInterrupt
 
 
 def _wake() -> None:
