@@ -7,8 +7,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import KitOptions
+from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -25,6 +26,9 @@ from hydrostat.studio.view.shape import Shape, rest_shape
 from hydrostat.studio.view.things import Thing
 from hydrostat.studio.work_folder import save_work
 
+_ONCE = InverseOptions(restarts=0)
+"""A pose is shown as soon as it is found."""
+
 
 class Export(StrEnum):
     """What is made in a process of its own."""
@@ -40,6 +44,7 @@ class _Made:
 
     robot: Robot
     value: Any
+    name: str = ""
 
 
 class Exporter(Stage):
@@ -49,6 +54,7 @@ class Exporter(Stage):
 
     Attributes:
         options: of the next kit.
+        pose: that is shown, by its name; "": the robot at rest.
         busy: what is being made; None: nothing.
         errors: why something could not be made, by what it was.
     """
@@ -56,9 +62,11 @@ class Exporter(Stage):
     def __init__(self, document: Document, jobs: Jobs) -> None:
         self._document, self._jobs = document, jobs
         self.options = KitOptions()
+        self.pose = ""
         self.busy: Export | None = None
         self.errors: dict[Export, str] = {}
         self._made: dict[Export, _Made] = {}
+        self._posed: _Made | None = None
 
     @property
     def kit(self) -> KitMade | None:
@@ -78,6 +86,17 @@ class Exporter(Stage):
     def outdated(self, export: Export) -> bool:
         """Whether something was made, and the robot has changed since."""
         return export in self._made and self._result(export) is None
+
+    def choose(self, options: KitOptions) -> None:
+        """Have the next kit made so."""
+        if options != self.options:
+            self.options = options
+            self._document.bell.ring(Topic.JOB)
+
+    def show(self, pose: str) -> None:
+        """Show a pose as the winches reach it, by its name; "": the robot at rest."""
+        self.pose = pose
+        self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def make_kit(self, *, force: bool = False) -> None:
         """Make the kit, in a process of its own.
@@ -137,12 +156,39 @@ class Exporter(Stage):
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Robot")
 
     def shape(self) -> Shape:
-        """The rest shape."""
+        """The pose that is shown, once it is solved; till then the rest shape."""
+        posed = self._posed
+        if posed is not None and self._is_wanted(posed):
+            reached: ReachedPose = posed.value
+            pose = reached.pose
+            return Shape(
+                nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions, errors=dict(reached.errors)
+            )
         return rest_shape(self._document.robot)
 
     def things(self) -> Sequence[Thing]:
         """All parts of the robot."""
-        return robot_things(self._document.robot)
+        tensions = self.shape().tensions
+        most = float(tensions.max(initial=0.0))
+        return robot_things(self._document.robot, tensions=tensions, scale=most or 1.0)
+
+    def step(self, now: float) -> bool:
+        """Solve the pose that is shown, if it is not yet."""
+        robot = self._document.robot
+        pose = robot.poses.get(self.pose) if robot.cables else None
+        if pose is None or (self._posed is not None and self._is_wanted(self._posed)):
+            return False
+        name = self.pose
+        try:
+            self._posed = _Made(robot, solve_ik(self._document.simulation, pose, options=_ONCE), name)
+        except HydrostatError:
+            self.pose = ""
+            raise
+        self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
+        return False
+
+    def _is_wanted(self, posed: "_Made") -> bool:
+        return posed.name == self.pose and posed.robot is self._document.robot
 
     def _start(self, export: Export, title: str, function: Callable[..., Any], *arguments: Any) -> None:
         robot = self._document.robot

@@ -4,12 +4,13 @@ from pathlib import Path
 
 from nicegui import ui
 
-STYLE = Path(__file__).parent / "static" / "studio.css"
+STATIC = Path(__file__).parent / "static"
 
 
 def dress() -> ui.dark_mode:
     """Dress the page of this window; returns its switch between light and dark."""
     ui.colors(primary="#0b5fa5", secondary="#b9774b", accent="#a8256f", positive="#00795f", negative="#c8243f",
               dark="#2a2732")  # fmt: skip
-    ui.add_css(STYLE.read_text(encoding="utf-8"))
+    for style in sorted(STATIC.glob("*.css")):
+        ui.add_css(style.read_text(encoding="utf-8"))
     return ui.dark_mode(None)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from threading import Event
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -187,3 +188,19 @@ def test_a_report_of_a_bare_body_has_no_network(starfish: Robot) -> None:
     text = make_report(Told(), bare).content.decode()
     assert "The body" in text
     assert "Winches and cables" not in text
+
+
+def test_a_pose_is_shown_as_the_winches_reach_it(exporter: Exporter) -> None:
+    robot = exporter._document.robot
+    name = next(iter(robot.poses))
+    exporter.show(name)
+    np.testing.assert_array_equal(exporter.shape().nodes, robot.body.mesh.nodes)
+    assert not exporter.step(0.0)
+    reached = hs.solve_ik(hs.Simulation(robot), robot.pose(name))
+    assert exporter.shape().errors == pytest.approx(dict(reached.errors), abs=1e-4)
+    assert exporter.shape().tensions.max() > 0
+    exporter.show("")
+    np.testing.assert_array_equal(exporter.shape().nodes, robot.body.mesh.nodes)
+    exporter.show("no such pose")
+    assert not exporter.step(1.0)
+    np.testing.assert_array_equal(exporter.shape().nodes, robot.body.mesh.nodes)

@@ -1,0 +1,169 @@
+"""`kit_choices`, `kit_result`: how a kit is made, and what came of it."""
+
+from dataclasses import replace
+from typing import Any
+
+from nicegui import ui
+
+from hydrostat.fabrication import MOTORS, KitOptions, Method, MouldKind, Paper
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.exporting.kit_made import KitMade
+from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.panels.export_download import download_button
+from hydrostat.studio.face.panels.export_pictures import picture, show_large
+
+METHODS = {"": "Auto", Method.PLUSH.value: "Plush", Method.FOAM.value: "Foam"}
+
+PAPERS = {Paper.A4.value: "A4", Paper.LETTER.value: "Letter"}
+
+MOULDS = {MouldKind.PRINTED.value: "Printed", MouldKind.SILICONE.value: "Silicone"}
+
+
+def kit_choices(page: Page) -> None:
+    """Method, motor and paper; the rest behind a door."""
+    exporter = page.session.exporter
+    given: dict[str, Any] = {}
+    motors = {"auto": "Auto: the first that is strong enough", **{motor.key: motor.title for motor in MOTORS}}
+    with ui.element("div").classes("export-form"):
+        ui.label("Body")
+        given["method"] = ui.toggle(METHODS).props("dense no-caps unelevated").mark("kit-method")
+        ui.label("Motor")
+        given["motor"] = ui.select(motors).props("dense outlined options-dense").mark("kit-motor")
+        ui.label("Paper")
+        given["paper"] = ui.toggle(PAPERS).props("dense no-caps unelevated")
+    given |= _more_choices()
+
+    def show() -> None:
+        for name, value in _told(exporter.options).items():
+            given[name].set_value(value)
+
+    def take() -> None:
+        values = {name: control.value for name, control in given.items()}
+        if all(value is not None for value in values.values()):
+            page.act(lambda: exporter.choose(_options(exporter.options, values)))
+
+    page.on(Topic.JOB, show)
+    for control in given.values():
+        control.on_value_change(take)
+
+
+def _more_choices() -> dict[str, Any]:
+    given: dict[str, Any] = {}
+    door = ui.expansion("More choices").props("dense").classes("export-more w-full")
+    with door, ui.element("div").classes("export-form"):
+        ui.label("Printer bed [mm]")
+        with ui.element("div").classes("studio-row").style("gap: 4px"):
+            for axis in "xyz":
+                given[f"bed_{axis}"] = _length(f"bed along {axis}", 10.0)
+        ui.label("Mould")
+        given["mould"] = ui.toggle(MOULDS).props("dense no-caps unelevated")
+        ui.label("Seam [mm]")
+        given["seam"] = _length("cloth between seam and cut", 1.0)
+        ui.label("Cable [mm]")
+        given["cable"] = _length("diameter of the cables", 0.1)
+        ui.label("Clearance [mm]")
+        given["clearance"] = _length("between printed parts that move in each other", 0.05)
+    return given
+
+
+def kit_result(page: Page) -> None:
+    """Why there is no kit, or what is in it."""
+    exporter = page.session.exporter
+    kit = exporter.kit
+    if kit is None:
+        return
+    if kit.zip is None:
+        _refused(page, kit)
+        return
+    download_button(kit.zip)
+    if replace(kit.options, force=False) != replace(exporter.options, force=False):
+        ui.label("Made with other choices than those above.").classes("studio-hint")
+    for line in kit.summary:
+        head, _, words = line.partition(": ")
+        with ui.element("div").classes("export-line"):
+            ui.label(head).classes("export-head")
+            ui.label(words or "")
+    _pages(kit)
+    _lines("cannot be built well", kit.problems, "error_outline", "export-bad")
+    _lines("to mind", kit.warnings, "info_outline", "export-mind")
+    _checks(kit)
+
+
+def _refused(page: Page, kit: KitMade) -> None:
+    ui.label("It cannot be built well as it is:").classes("studio-section")
+    for reason in kit.refused:
+        _line(reason, "error_outline", "export-bad")
+    button = ui.button("Make it all the same", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
+    button.props("outline no-caps").classes("w-full").mark("make-forced")
+
+
+def _pages(kit: KitMade) -> None:
+    with ui.element("div").classes("export-grid"):
+        if kit.pages:
+            picture(kit.pages[0], "Assembly sheet", lambda: show_large(kit.pages, "Assembly sheet"))
+        if kit.pattern is not None:
+            pattern = kit.pattern
+            picture(pattern, "Pattern", lambda: show_large([pattern], "Pattern", kind="svg"), kind="svg")
+
+
+def _lines(words: str, lines: tuple[str, ...], icon: str, kind: str) -> None:
+    if not lines:
+        return
+    with ui.expansion(f"{len(lines)} {words}", value=len(lines) < 3).props("dense").classes("export-more w-full"):
+        for line in lines:
+            _line(line, icon, kind)
+
+
+def _line(words: str, icon: str, kind: str) -> None:
+    with ui.element("div").classes("export-told"):
+        ui.icon(icon, size="18px").classes(kind)
+        ui.label(words[:1].upper() + words[1:])
+
+
+def _checks(kit: KitMade) -> None:
+    with ui.expansion(kit.told).props("dense").classes("export-more w-full").mark("kit-checks"):
+        for check in kit.checks:
+            icon, kind = ("check_circle", "export-good") if check.passed else ("error_outline", "export-bad")
+            with ui.element("div").classes("export-told"):
+                ui.icon(icon, size="18px").classes(kind)
+                with ui.column().classes("gap-0"):
+                    ui.label(check.what)
+                    ui.label(f"{check.measured}; allowed: {check.allowed}").classes("studio-hint")
+
+
+def _length(words: str, step: float) -> ui.number:
+    field = ui.number(min=0, step=step, format="%g").props(f'dense outlined aria-label="{words} [mm]"')
+    return field.tooltip(f"{words} [mm]").classes("export-number")
+
+
+def _told(options: KitOptions) -> dict[str, Any]:
+    """The choices as the controls show them."""
+    bed = dict(zip(("bed_x", "bed_y", "bed_z"), options.mould.bed, strict=True))
+    return {
+        "method": "" if options.method is None else options.method.value,
+        "motor": options.motor,
+        "paper": options.paper.value,
+        "mould": options.mould.kind.value,
+        "seam": options.pattern.seam_allowance,
+        "cable": options.parts.cable,
+        "clearance": options.parts.clearance,
+        **bed,
+    }
+
+
+def _options(before: KitOptions, given: dict[str, Any]) -> KitOptions:
+    """The choices of the controls.
+
+    Raises:
+        InputError: a length that cannot be.
+    """
+    bed = (float(given["bed_x"]), float(given["bed_y"]), float(given["bed_z"]))
+    return replace(
+        before,
+        method=Method(given["method"]) if given["method"] else None,
+        motor=given["motor"],
+        paper=Paper(given["paper"]),
+        mould=replace(before.mould, kind=MouldKind(given["mould"]), bed=bed),
+        pattern=replace(before.pattern, seam_allowance=float(given["seam"])),
+        parts=replace(before.parts, cable=float(given["cable"]), clearance=float(given["clearance"])),
+    )
