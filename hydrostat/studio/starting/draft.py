@@ -14,8 +14,8 @@ from hydrostat.units import quote
 UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)
 """Endings of files that may be brought."""
 
-MOST_BYTES = 200_000_000
-"""No file that is brought is larger."""
+MOST_BYTES = 190_000_000
+"""No file that is brought is larger; with what goes round it on the way, no request has more than 200 MB."""
 
 LONGEST, SHORTEST = 20.0, 1e-4
 """Lengths that a person may ask for [m]."""

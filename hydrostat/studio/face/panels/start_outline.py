@@ -1,0 +1,106 @@
+"""Start: an outline is drawn."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from nicegui import ui
+
+from hydrostat.studio.face.outline_editor import OutlineEditor
+from hydrostat.studio.face.page import Page
+from hydrostat.studio.stage import StageName
+from hydrostat.studio.starting.outlining import beginnings
+from hydrostat.studio.starting.reshape import Reshaped
+
+
+def outline_view(page: Page) -> Callable[[], None]:
+    """Build it; returns what shows it anew."""
+    starter = page.session.starter
+    outlining = starter.outlining
+    if outlining is None:
+        return lambda: None
+    robot = outlining.robot
+    with ui.row().classes("items-center no-wrap w-full gap-2"):
+        ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).props('flat round aria-label="Back"').mark(
+            "back"
+        )
+        ui.label("New outline" if robot is None else f"Outline of {robot.name}").classes("start-title")
+        ui.space()
+        tools = ui.row().classes("items-center no-wrap gap-1")
+        done = (
+            ui.button("Next" if robot is None else "Apply", icon="check")
+            .props("unelevated no-caps")
+            .mark("outline-done")
+        )
+    with ui.element("div").classes("start-outline"):
+        editor = OutlineEditor(outlining.loops, lambda raw: take(raw)).style("width: 100%; height: 100%")
+    with ui.row().classes("items-center no-wrap w-full gap-2"):
+        sign = ui.icon("check_circle").classes("text-lg")
+        words = ui.label().classes("start-small studio-figure").mark("outline-words")
+        ui.space()
+        ui.label("Click: corner. Drag: move. Double click: round or sharp. Delete: remove. Wheel: zoom.").classes(
+            "start-small"
+        )
+    with tools:
+        _tools(editor, new=robot is None)
+
+    def take(raw: Any) -> None:
+        page.act(outlining.take, raw)
+        show()
+
+    def show() -> None:
+        good = not outlining.fault
+        words.set_text(outlining.words or outlining.fault)
+        words.classes(**{"remove" if good else "add": "start-problem"})
+        sign.set_name("check_circle" if good else "error_outline")
+        sign.props(f"color={'positive' if good else 'negative'}")
+        editor.set_fault(not good and bool(outlining.loops))
+        done.set_enabled(good)
+
+    async def finish() -> None:
+        if robot is None:
+            await page.act_slowly(starter.outline_done)
+            return
+        found = await page.act_slowly(outlining.applied, page.session.document.work)
+        if found is not None and await _agreed(page, found):
+            serial = page.session.document.serial
+            await page.act_slowly(starter.outline_apply)
+            if page.session.document.serial != serial:
+                page.go(StageName.EDIT)
+
+    done.on_click(finish)
+    show()
+    return lambda: None
+
+
+def _tools(editor: OutlineEditor, *, new: bool) -> None:
+    if new:
+        for name, loops in beginnings().items():
+            ui.button(name, on_click=partial(editor.show, loops)).props("flat no-caps dense padding='4px 10px'")
+    _tool("undo", "Undo (Ctrl Z)", editor.undo)
+    _tool("redo", "Do again", editor.redo)
+    _tool("add_circle_outline", "Another loop: a hole, if inside", editor.add_loop)
+    _tool("delete_outline", "Remove the chosen corner (Delete)", editor.remove_corner)
+    _tool("fit_screen", "Fit", editor.fit)
+    ui.switch("Mirror", on_change=lambda event: editor.set_mirror(bool(event.value))).mark("outline-mirror")
+    ui.switch("Snap", value=True, on_change=lambda event: editor.set_snap(bool(event.value)))
+
+
+def _tool(icon: str, words: str, action: Callable[[], None]) -> None:
+    ui.button(icon=icon, on_click=lambda: action()).props(f'flat round dense aria-label="{words}"').tooltip(words)
+
+
+async def _agreed(page: Page, found: Reshaped) -> bool:
+    """Ask whether what lies outside may go; True if nothing does."""
+    if not found.dropped:
+        return True
+    with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
+        ui.label("Some parts lie outside the new outline").classes("studio-title")
+        ui.label(f"They would be removed: {', '.join(found.dropped)}.").classes("studio-hint")
+        with ui.row().classes("w-full justify-end"):
+            ui.button("Go on drawing", on_click=lambda: dialog.submit(False)).props("flat no-caps")
+            remove = ui.button("Remove them", on_click=lambda: dialog.submit(True)).props("unelevated no-caps")
+            remove.mark("outline-agree")
+    answer = bool(await dialog)
+    dialog.delete()
+    return answer
