@@ -1,25 +1,307 @@
 """`Designer`: the stage "design"."""
 
+import time
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
+import numpy as np
+
+from hydrostat.design import RouteOptions
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.designing.asked import asked_for, wished_poses
+from hydrostat.studio.designing.candidate import Candidate, Reach, network_words
+from hydrostat.studio.designing.design_work import Found, Glimpse, design_work
+from hydrostat.studio.designing.ease import Ease
+from hydrostat.studio.designing.painter import Painter
+from hydrostat.studio.designing.run import Mark, Run, error_at_rest
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Stage
-from hydrostat.studio.view.robot_things import robot_things
+from hydrostat.studio.records.wishes import Paint, Wishes
+from hydrostat.studio.stage import Hit, Stage
+from hydrostat.studio.view.robot_things import robot_things, target_things
 from hydrostat.studio.view.shape import Shape, rest_shape
 from hydrostat.studio.view.things import Thing
 
+TITLE = "Designing cables"
+
+MOST = 60
+"""So many candidates are kept; the oldest go."""
+
+MODULE = "hydrostat.studio.designing.design_work"
+
 
 class Designer(Stage):
-    """To be written."""
+    """Wishes, zones painted on the body, a design that goes on, and the networks to choose from.
 
-    def __init__(self, document: Document, jobs: Jobs) -> None:
-        self._document, self._jobs = document, jobs
+    Nothing of the robot changes before a candidate is accepted.
+
+    Attributes:
+        painter: of zones.
+        run: the design that goes on, or the last one; None before the first.
+        chosen: number of the candidate that is shown; None: the robot as it is, or the best network so far.
+        pose: name of the pose in which the candidate is shown; None: at rest.
+        outcome: what became of the last design, a line; "" while there is nothing to tell.
+    """
+
+    def __init__(self, document: Document, jobs: Jobs, *, options: RouteOptions | None = None) -> None:
+        """The stage of a document.
+
+        Args:
+            document: the robot.
+            jobs: where designs run.
+            options: of the search, for tests that have no time.
+        """
+        self._document, self._jobs, self._options = document, jobs, options
+        self.painter = Painter(document)
+        self.run: Run | None = None
+        self.chosen: int | None = None
+        self.pose: str | None = None
+        self.outcome = ""
+        self._all: tuple[Candidate, ...] = ()
+        self._numbered = 0
+        self._running = False
+        self._ease: Ease | None = None
+
+    @property
+    def running(self) -> bool:
+        """Whether a design goes on."""
+        return self._running
+
+    @property
+    def wishes(self) -> Wishes:
+        """What is asked for."""
+        return self._document.work.wishes
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """All networks that were found for the body as it is now, the latest design first, its best first."""
+        if not self._document.is_open:
+            return ()
+        body = self._document.robot.body
+        return tuple(one for one in self._all if one.source.body is body or one.source.body == body)
+
+    @property
+    def candidate(self) -> Candidate | None:
+        """The one that is shown."""
+        return next((one for one in self.candidates if one.number == self.chosen), None)
+
+    def wish(self, **wishes: Any) -> None:
+        """Change what is asked for; one step to undo.
+
+        Raises:
+            InputError: a number out of its range.
+        """
+        wanted = replace(self.wishes, **wishes)
+        if wanted != self.wishes:
+            self._document.change("change wishes", wishes=wanted, merge=f"wish {' '.join(wishes)}")
+
+    def wish_pose(self, name: str, wanted: bool) -> None:
+        """Whether a pose is to be reached.
+
+        Raises:
+            InputError: it would be the last one.
+        """
+        names = {pose.name for pose in wished_poses(self._document.robot, self.wishes)}
+        kept = names | {name} if wanted else names - {name}
+        if not kept:
+            raise InputError("a design reaches at least one pose; choose another before this one is left out")
+        every = tuple(self._document.robot.poses)
+        self.wish(poses=() if kept == set(every) else tuple(other for other in every if other in kept))
+
+    def take(self, paint: Paint | None) -> None:
+        """Take a paint in hand, or put it away; the body is shown at rest to be painted on."""
+        self.painter.take(paint)
+        self._document.bell.ring(Topic.THINGS, Topic.SHAPE)
+
+    def show(self, number: int | None, pose: str | None = None) -> None:
+        """Show a candidate, in a pose or at rest; None: the robot as it is."""
+        self.painter.take(None)
+        self.chosen, self.pose = number, pose
+        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
+
+    def design(self) -> None:
+        """Begin a design of what is wished for; it goes on in a process of its own.
+
+        Raises:
+            InputError: no pose, wishes that do not fit, or other work in progress.
+        """
+        robot = self._document.robot
+        asked = asked_for(robot, self.wishes, self._options)
+        before = self.run, self._running, self.outcome
+        self.run = Run(asked=asked, began=time.monotonic(), rest=error_at_rest(robot, asked.poses))
+        self._running, self.outcome = True, ""
+        calls: dict[str, Any] = {"on_part": self._glimpsed, "on_done": self._found, "on_end": self._ended}
+        try:
+            self._jobs.start(TITLE, design_work, asked, **calls)
+        except InputError:
+            self.run, self._running, self.outcome = before
+            raise
+        self.show(None)
+
+    def stop(self) -> None:
+        """End the design with the best network so far; asked again, with none."""
+        if self.running:
+            self._jobs.stop()
+
+    def accept(self) -> None:
+        """Put the chosen network into the robot, in one step to undo.
+
+        Raises:
+            InputError: none is chosen, or the body is another one by now.
+        """
+        candidate = self.candidate
+        if candidate is None:
+            raise InputError("choose one of the networks first; those of another body cannot be accepted")
+        robot = self._document.robot.with_network(candidate.robot.winches, candidate.robot.cables)
+        self._document.change(f"accept design, {candidate.counts}", robot=robot)
+
+    def clear(self) -> None:
+        """Forget all candidates."""
+        self._all, self.outcome = (), ""
+        self.show(None)
+
+    def enter(self) -> None:
+        """A process is made ready, so that the first network appears soon."""
+        self._jobs.warm(MODULE)
+
+    def leave(self) -> None:
+        """What is in hand is put away, the robot is shown as it is when one comes back; a design goes on."""
+        self.painter.take(None)
+        self.chosen = self.pose = None
 
     def shape(self) -> Shape:
-        """The rest shape."""
-        return rest_shape(self._document.robot)
+        """The body at rest, or as the chosen candidate brings it into the chosen pose, or on the way there."""
+        robot, ease = self._document.robot, self._ease
+        if ease is None or len(ease.nodes) != len(robot.body.mesh.nodes):
+            return rest_shape(robot)
+        reach = self._reach()
+        pulled = np.zeros(len(self._shown().winches)) if reach is None else reach.contractions
+        errors = {} if reach is None else reach.errors
+        return Shape(nodes=ease.nodes, tensions=ease.tensions, contractions=pulled, errors=errors)
 
     def things(self) -> Sequence[Thing]:
-        """All parts of the robot."""
-        return robot_things(self._document.robot)
+        """The network that is shown, targets, zones."""
+        shown, ease, reach = self._shown(), self._ease, self._reach()
+        fits = ease is not None and len(ease.tensions) == len(shown.cables)
+        things = robot_things(shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.tension)
+        there = reach is not None and ease is not None and not ease.moving
+        for targets in self._targets():
+            things += target_things(targets, reach.places if reach is not None and there else {})
+        return [*things, *self.painter.things()]
+
+    def step(self, now: float) -> bool:
+        """The body glides to the shape that is to be shown."""
+        reach = self._reach()
+        nodes = self._document.robot.body.mesh.nodes if reach is None else reach.nodes
+        tensions = np.zeros(len(self._shown().cables)) if reach is None else reach.tensions
+        if self._ease is None or self._ease.nodes.shape != nodes.shape:
+            self._ease = Ease(nodes, tensions)
+        self._ease.go(nodes, tensions)
+        return self._ease.step(now)
+
+    def grab(self, hit: Hit) -> bool:
+        """Begin to paint, or take hold of a zone."""
+        held = self.painter.grab(hit)
+        if held:
+            self.pose = None
+        return held
+
+    def drag(self, hit: Hit) -> None:
+        """Paint on."""
+        self.painter.drag(hit)
+
+    def release(self) -> None:
+        """Keep what was painted."""
+        self.painter.release()
+
+    def click(self, hit: Hit) -> None:
+        """Choose a zone, or set a corner."""
+        self.painter.click(hit)
+
+    def key(self, name: str) -> bool:
+        """Delete, Enter and Escape for zones; R: the candidate at rest."""
+        if name == "r":
+            self.show(self.chosen, None)
+            return True
+        return self.painter.key(name)
+
+    def _shown(self) -> Robot:
+        """The robot with the network that is shown."""
+        candidate, run, robot = self.candidate, self.run, self._document.robot
+        if candidate is not None:
+            return candidate.robot
+        if self.running and run is not None and run.best is not None and run.best.body == robot.body:
+            return run.best
+        return robot
+
+    def _reach(self) -> Reach | None:
+        """What is shown of a pose; None: the body at rest."""
+        candidate = self.candidate
+        if candidate is None or self.pose is None or self.painter.busy:
+            return None
+        return candidate.reach(self.pose)
+
+    def _targets(self) -> list[Any]:
+        """Targets of the pose that is shown; of all that are to be reached where none is."""
+        reach, robot = self._reach(), self._document.robot
+        if reach is not None:
+            return [reach.pose.targets]
+        if self.painter.busy or not robot.poses:
+            return []
+        return [pose.targets for pose in wished_poses(robot, self.wishes)]
+
+    def _glimpsed(self, glimpse: Glimpse) -> None:
+        """A better network was found; called in a thread of the jobs."""
+        run = self.run
+        if run is None:
+            return
+        best = run.asked.robot.with_network(glimpse.winches, glimpse.cables)
+        mark = Mark(
+            seconds=time.monotonic() - run.began,
+            error=glimpse.error,
+            winches=len(glimpse.winches),
+            cables=len(glimpse.cables),
+        )
+        self.run = replace(run, best=best, words=glimpse.words, trail=(*run.trail, mark))
+        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
+
+    def _found(self, found: Found) -> None:
+        """The design has ended; called in a thread of the jobs."""
+        run = self.run
+        if run is None:
+            return
+        source, made = run.asked.robot, []
+        for place, solution in enumerate(found.solutions):
+            self._numbered += 1
+            made.append(
+                Candidate(
+                    number=self._numbered,
+                    source=source,
+                    robot=source.with_network(solution.winches, solution.cables),
+                    reaches=solution.reaches,
+                    error=solution.error,
+                    complete=found.complete,
+                    best=place == 0,
+                )
+            )
+        self._all = (*made, *self._all)[:MOST]
+        best = made[0]
+        seconds = time.monotonic() - run.began
+        early = "" if found.complete else "stopped early, the best so far: "
+        self.outcome = (
+            f"{early}{network_words(best.robot)}, {1e3 * best.error:.2g} mm off, in {seconds:.0f} s "
+            f"({found.tried} networks tried)"
+        )
+        self.chosen, self.pose = best.number, best.reaches[0].pose.name
+
+    def _ended(self) -> None:
+        """Called in a thread of the jobs, whatever came of it."""
+        state = self._jobs.state
+        if state is not None and state.error:
+            self.outcome = "stopped before there was a network" if state.error == "stopped" else state.error
+        self._running = False
+        self._jobs.warm(MODULE)
+        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
