@@ -115,6 +115,17 @@ class Editor(Stage):
         self.mirror = Mirror(axis=axes.index(axis)) if axis else None
         self._ring()
 
+    def set_depth(self, depth: float) -> None:
+        """How deep below the skin of a body in space winches and cables are placed [m].
+
+        Raises:
+            InputError: it is no depth in this body.
+        """
+        size = self._document.robot.body.mesh.size
+        if not 0 <= depth <= size:
+            raise InputError(f"the depth must be from 0 to {1e3 * size:.0f} mm, the size of the body")
+        self.depth = depth
+
     def place(self, key: str, at: Point) -> None:
         """Put a part somewhere.
 

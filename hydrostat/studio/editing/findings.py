@@ -1,8 +1,11 @@
 """`Findings`: what the check says of a robot, and its counts."""
 
+import re
 from dataclasses import dataclass
 
 from hydrostat.robot import Robot, find_risks
+
+_PART = re.compile(r"\b(pin|winch|cable|marker|pose)\[(\d+)\]")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,6 +17,7 @@ class Findings:
         elements: of it.
         kind: what the elements are.
         mass: of the body [kg].
+        cables: how many there are.
         cable_length: of all cables together [m].
         risks: what is allowed but may disappoint, a line each.
     """
@@ -22,6 +26,7 @@ class Findings:
     elements: int
     kind: str
     mass: float
+    cables: int
     cable_length: float
     risks: tuple[str, ...]
 
@@ -34,6 +39,23 @@ def look_over(robot: Robot) -> Findings:
         elements=len(mesh.elements),
         kind="triangles" if mesh.dim == 2 else "tetrahedra",
         mass=float(mesh.volumes.sum()) * (robot.body.thickness or 1.0) * robot.body.material.density,
+        cables=len(robot.cables),
         cable_length=sum(cable.length for cable in robot.cables),
         risks=tuple(find_risks(robot)),
     )
+
+
+def in_words(risk: str, robot: Robot) -> str:
+    """A risk with parts called as they are on the screen: "cable 1" for "cable[0]", "winch left" for "winch[0]"."""
+    names = {
+        "winch": [winch.name for winch in robot.winches],
+        "marker": [marker.name for marker in robot.markers],
+        "pose": list(robot.poses),
+    }
+
+    def called(match: re.Match[str]) -> str:
+        kind, number = match[1], int(match[2])
+        known = names.get(kind, [])
+        return f"{kind} {known[number] if number < len(known) else number + 1}"
+
+    return _PART.sub(called, risk)

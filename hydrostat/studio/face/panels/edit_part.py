@@ -1,0 +1,184 @@
+"""`part_card`: name, place and numbers of the part that is chosen."""
+
+from collections.abc import Callable
+
+from nicegui import ui
+
+from hydrostat.robot import Mount, Robot
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.editing.part import Kind, Part, find_part, place_of, title_of
+from hydrostat.studio.editing.sheaths import sheathed_segments, sheaths
+from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.panels.edit_number import EditNumber
+
+Shows = list[Callable[[Robot, Part], None]]
+"""What shows the numbers of the part as they are now."""
+
+PIN = (("radius", "Radius", "mm", 1e3),)
+WINCH = (
+    ("spool_radius", "Spool radius", "mm", 1e3),
+    ("travel", "Travel", "mm", 1e3),
+    ("release", "Release", "mm", 1e3),
+)
+CABLE = (("stiffness", "Stiffness", "N/mm", 1e-3), ("slack", "Slack", "mm", 1e3), ("friction", "Friction", "", 1.0))
+"""Field, name, unit and how many of these one SI unit is."""
+
+
+def part_card(page: Page) -> None:
+    """Build the card; it is there only while something is chosen."""
+    editor, document = page.session.editor, page.session.document
+    card = ui.column().classes("studio-card").style("background: transparent; flex-shrink: 0")
+    shows: Shows = []
+    built: list[str] = []
+
+    def show() -> None:
+        key, robot = editor.chosen, document.robot
+        part = find_part(robot, key)
+        card.set_visibility(part is not None)
+        if part is None:
+            built.clear()
+            return
+        form = f"{key} {len(robot.cables[part.index].points) if part.kind is Kind.CABLE else ''}"
+        if built != [form]:
+            built[:] = [form]
+            card.clear()
+            with card:
+                shows[:] = _build(page, key, part)
+        for refresh in shows:
+            refresh(robot, part)
+
+    page.on(Topic.THINGS, show)
+
+
+def _build(page: Page, key: str, part: Part) -> Shows:
+    """The rows for a part."""
+    editor = page.session.editor
+    with ui.element("div").classes("studio-row"):
+        ui.label(_title(key)).style("font-weight: 600")
+        ui.space()
+        delete = ui.button(icon="delete_outline", on_click=page.doing(editor.delete)).props("flat round dense size=sm")
+        delete.props('aria-label="Delete"').tooltip("Delete (Del)").mark("edit-delete")
+    shows: Shows = []
+    if part.kind in (Kind.WINCH, Kind.MARKER):
+        _name(page, key)
+    if part.kind is not Kind.CABLE:
+        shows.append(_place(page, key))
+    if part.kind is Kind.PIN and page.session.document.robot.pins[part.index].box is None:
+        shows += _numbers(page, key, PIN)
+    if part.kind is Kind.WINCH:
+        shows += [*_numbers(page, key, WINCH), _mount(page, key)]
+    if part.kind is Kind.CABLE:
+        shows += [*_numbers(page, key, CABLE), _sheath(page, key, part)]
+    return shows
+
+
+def _title(key: str) -> str:
+    """Without the name where that can be changed below."""
+    kind = key.partition(":")[0]
+    return (kind if kind in ("winch", "marker") else title_of(key)).capitalize()
+
+
+def _name(page: Page, key: str) -> None:
+    name = key.partition(":")[2]
+    box = ui.input("Name", value=name).props("dense outlined maxlength=60").classes("w-full").mark("edit-name")
+
+    def send() -> None:
+        typed = (box.value or "").strip()
+        if typed not in ("", name):
+            page.act(page.session.editor.rename, key, typed)
+        if page.session.editor.chosen == key:
+            box.set_value(name)
+
+    box.on("keydown.enter", send)
+    box.on("blur", send)
+
+
+def _place(page: Page, key: str) -> Callable[[Robot, Part], None]:
+    """One box for each coordinate."""
+    document, boxes = page.session.document, []
+
+    def take(axis: int, value: float) -> None:
+        at = place_of(document.robot, key)
+        if at is not None:
+            page.act(page.session.editor.place, key, (*at[:axis], 1e-3 * value, *at[axis + 1 :]))
+            show(document.robot)
+
+    def show(robot: Robot, _: Part | None = None) -> None:
+        for box, value in zip(boxes, place_of(robot, key) or (), strict=False):
+            box.show(1e3 * value)
+
+    with ui.element("div").classes("studio-row"):
+        for axis, name in enumerate("xyz"[: document.robot.body.mesh.dim]):
+            boxes.append(EditNumber(name, "mm", lambda value, axis=axis: take(axis, value), mark=f"edit-{name}"))
+    return show
+
+
+def _numbers(page: Page, key: str, fields: tuple[tuple[str, str, str, float], ...]) -> Shows:
+    """A box for each number of a part, two in a row."""
+    shows: Shows = []
+    with ui.element("div").classes("w-full").style("display: grid; grid-template-columns: 1fr 1fr; gap: 8px"):
+        for field, label, unit, scale in fields:
+            shows.append(_number(page, key, field, label, unit, scale))
+    return shows
+
+
+def _number(page: Page, key: str, field: str, label: str, unit: str, scale: float) -> Callable[[Robot, Part], None]:
+    editor, document = page.session.editor, page.session.document
+
+    def take(value: float) -> None:
+        page.act(lambda: editor.set(key, **{field: value / scale}))
+        part = find_part(document.robot, key)
+        if part is not None:
+            show(document.robot, part)
+
+    def show(robot: Robot, part: Part) -> None:
+        record = {Kind.PIN: robot.pins, Kind.WINCH: robot.winches}.get(part.kind, robot.cables)[part.index]
+        box.show(scale * getattr(record, field))
+
+    box = EditNumber(label, unit, take, step=0.1 if field == "friction" else 1.0, mark=f"edit-{field}")
+    return show
+
+
+def _mount(page: Page, key: str) -> Callable[[Robot, Part], None]:
+    """Whether a winch sits in the body."""
+    switch = ui.switch("Fixed beside the body").props("dense").style("font-size: 13px").mark("edit-mount")
+    switch.tooltip("The winch stays where it is in space while the body moves")
+    shown = [False]
+
+    def send() -> None:
+        if switch.value != shown[0]:
+            mount = Mount.WORLD if switch.value else Mount.BODY
+            if page.act(lambda: page.session.editor.set(key, mount=mount) or True) is None:
+                switch.set_value(shown[0])
+
+    def show(robot: Robot, part: Part) -> None:
+        shown[0] = robot.winches[part.index].mount is Mount.WORLD
+        switch.set_value(shown[0])
+
+    switch.on_value_change(send)
+    return show
+
+
+def _sheath(page: Page, key: str, part: Part) -> Callable[[Robot, Part], None]:
+    """Which segments run in a sheath, as chips in the order of the cable."""
+    cable = page.session.document.robot.cables[part.index]
+    buttons: list[ui.button] = []
+
+    def toggle(segment: int) -> None:
+        now = set(sheathed_segments(page.session.document.robot.cables[part.index]))
+        page.session.editor.set(key, sheathed=sheaths(now ^ {segment}))
+
+    ui.label("In a sheath of fixed length, from the winch on").classes("studio-hint")
+    with ui.element("div").classes("w-full").style("display: flex; flex-wrap: wrap; gap: 4px"):
+        for segment in range(len(cable.points) - 1):
+            button = ui.button(f"{segment + 1}", on_click=page.doing(toggle, segment))
+            button.props('dense unelevated padding="1px 9px" no-caps').style("font-size: 13px; border-radius: 9px")
+            buttons.append(button.mark(f"edit-sheath-{segment}"))
+
+    def show(robot: Robot, part: Part) -> None:
+        inside = set(sheathed_segments(robot.cables[part.index]))
+        for segment, button in enumerate(buttons):
+            on = segment in inside
+            button.props(f"color={'primary' if on else 'transparent'} text-color={'white' if on else 'primary'}")
+
+    return show
