@@ -10,6 +10,8 @@ from hydrostat.studio.jobs import Report
 
 SHEET, PATTERN = "assembly_sheet.pdf", "pattern/pattern.svg"
 
+THICK = b"<style>* { vector-effect: non-scaling-stroke; stroke-width: 1px; }</style>"
+
 
 def make_kit(report: Report, robot: Robot, options: KitOptions) -> KitMade:
     """Make the kit of a robot with cables, with pictures of its pages.
@@ -32,5 +34,11 @@ def make_kit(report: Report, robot: Robot, options: KitOptions) -> KitMade:
         problems=kit.problems,
         checks=kit.checks,
         pages=page_pictures(kit.files[SHEET]),
-        pattern=kit.files.get(PATTERN),
+        pattern=_seen(kit.files[PATTERN]) if PATTERN in kit.files else None,
     )
+
+
+def _seen(pattern: bytes) -> bytes:
+    """A pattern with lines as thin as a screen shows, rather than as a laser cuts."""
+    head, end, rest = pattern.partition(b"<title>")
+    return head + THICK + end + rest

@@ -3,7 +3,7 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-DOTS = 90.0
+DOTS = 110.0
 """To the inch: fine enough to be read where a page is as wide as a window."""
 
 MOST_PAGES = 12

@@ -33,15 +33,15 @@ def make_pictures(report: Report, robot: Robot) -> tuple[Download, ...]:
 def _figures(solved: SolvedPoses) -> dict[str, tuple[str, Figure]]:
     """Title and figure, by the name of the file."""
     robot = solved.robot
-    figures = {"rest": ("At rest, with its mesh", draw_rest(robot))}
+    figures = {"rest": ("Mesh", draw_rest(robot))}
     if robot.cables:
-        figures["network"] = ("Winches and cables", draw_network(robot))
-    figures["portrait"] = ("At rest, without words", draw_portrait(robot, robot.body.mesh.nodes))
+        figures["network"] = ("Network", draw_network(robot))
+    figures["portrait"] = ("Rest", draw_portrait(robot, robot.body.mesh.nodes))
     for reached in solved.reached:
         name = reached.wanted.name
-        figures[f"pose_{file_name(name)}"] = (f"{name}: targets, errors, tensions", draw_reached(robot, reached))
+        figures[f"pose_{file_name(name)}"] = (f"{name}: errors", draw_reached(robot, reached))
         bare = draw_portrait(robot, reached.pose.nodes)
-        figures[f"portrait_{file_name(name)}"] = (f"{name}, without words", bare)
+        figures[f"portrait_{file_name(name)}"] = (name, bare)
     return figures
 
 

@@ -1,15 +1,15 @@
 """The keys of the studio, as the help page lists them."""
 
 KEYS = (
-    ("G", "grab: what is chosen follows the pointer"),
-    ("R", "back to rest"),
-    ("Z", "undo"),
-    ("Shift Z", "do again"),
-    ("Space", "play, or stop playing"),
-    ("1, 3, 7", "view from the front, the side, the top"),
-    ("Delete", "remove what is chosen"),
-    ("Esc", "choose nothing; stop what was begun"),
-    ("Ctrl S", "save"),
-    ("?", "this page"),
+    (("G",), "grab: what is chosen follows the pointer"),
+    (("R",), "back to rest"),
+    (("Z",), "undo"),
+    (("Shift", "Z"), "do again"),
+    (("Space",), "play, or stop playing"),
+    (("1", "3", "7"), "view from the front, the side, the top"),
+    (("Delete",), "remove what is chosen"),
+    (("Esc",), "choose nothing; stop what was begun"),
+    (("Ctrl", "S"), "save"),
+    (("?",), "this help"),
 )
-"""Each key, and what it does."""
+"""Keys, and what they do."""

@@ -1,23 +1,142 @@
-"""`offer_tour`, `help_dialog`: five steps for who is here for the first time, and the keys."""
+"""`offer_tour`, `help_dialog`: five steps for who is here for the first time, and the help."""
 
 from collections.abc import Callable
 
-from nicegui import ui
+from nicegui import events, ui
 
 from hydrostat.studio.face.keys import KEYS
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.stage_words import STAGES
+
+SEEN = "hydrostat-tour"
+"""Where the browser keeps that it has shown the tour."""
+
+DELAY = 0.5
+"""The window is drawn before something is laid over it [s]."""
+
+PLACE = """
+const [card, ring] = [getHtmlElement(%d), getHtmlElement(%d)];
+removeEventListener("resize", card.place);
+card.place = () => {
+  const at = document.querySelector('[data-testid="stage-%s"]').getBoundingClientRect();
+  const middle = at.left + at.width / 2, wide = card.offsetWidth;
+  const left = Math.min(Math.max(middle - wide / 2, 12), innerWidth - wide - 12);
+  card.style.left = left + "px";
+  card.style.top = at.bottom + 18 + "px";
+  card.style.setProperty("--at", middle - left + "px");
+  ring.style.inset = `${at.top - 4}px auto auto ${at.left - 4}px`;
+  ring.style.width = at.width + 8 + "px";
+  ring.style.height = at.height + 8 + "px";
+};
+addEventListener("resize", card.place);
+requestAnimationFrame(() => {
+  card.place();
+  card.classList.add("tour-there");
+  card.querySelector(".tour-next").focus();
+});
+"""
+"""Puts the card below the button of a stage, a ring round that, and the keyboard on the card."""
 
 
-def help_dialog() -> Callable[[], None]:
-    """Build the page of keys; returns what opens it."""
-    with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
-        ui.label("Keys").classes("studio-title")
-        with ui.grid(columns="auto 1fr").classes("gap-x-6 gap-y-2"):
-            for key, words in KEYS:
-                ui.label(key).style("font-weight: 600")
-                ui.label(words)
+class Tour:
+    """A small card that goes from stage to stage and says what each is for."""
+
+    def __init__(self) -> None:
+        """Build the card, hidden."""
+        self._stops = [(stage, words) for stage, words in STAGES.items() if words.tour]
+        self._step = 0
+        self._ring = ui.element("div").classes("tour-ring")
+        self._card = ui.element("div").classes("tour").props('role="dialog" aria-label="Tour" data-testid="tour"')
+        with self._card, ui.element("div").classes("tour-head"):
+            self._icon = ui.icon("home").classes("tour-icon")
+            self._title = ui.label().classes("studio-title")
+            self._count = ui.label().classes("tour-count")
+        with self._card:
+            self._words = ui.label().classes("tour-words")
+            with ui.element("div").classes("tour-foot"):
+                self._button("Skip", "tour-skip", self.end)
+                ui.space()
+                self._back = self._button("Back", "tour-back", lambda: self.show(self._step - 1))
+                self._next = self._button("Next", "tour-next", lambda: self.show(self._step + 1))
+                self._next.props(remove="flat", add="unelevated")
+        self._card.on("keydown", self._key, args=["key"])
+        self._set_visible(False)
+
+    def show(self, step: int = 0) -> None:
+        """Show one step; after the last the tour is over."""
+        if step >= len(self._stops):
+            self.end()
+            return
+        self._step = max(step, 0)
+        stage, words = self._stops[self._step]
+        self._icon.set_name(words.icon)
+        self._title.set_text(words.title)
+        self._words.set_text(words.tour)
+        self._count.set_text(f"{self._step + 1} of {len(self._stops)}")
+        self._back.set_visibility(self._step > 0)
+        self._next.set_text("Next" if self._step + 1 < len(self._stops) else "Begin")
+        self._set_visible(True)
+        ui.run_javascript(PLACE % (self._card.id, self._ring.id, stage))
+
+    def end(self) -> None:
+        """Hide the card; this browser is not shown it again unless it is asked for."""
+        self._set_visible(False)
+        ui.run_javascript(f'localStorage.setItem("{SEEN}", "1")')
+
+    async def offer(self) -> None:
+        """Show the tour if this browser has not seen it."""
+        try:
+            seen = await ui.run_javascript(f'localStorage.getItem("{SEEN}")', timeout=10.0)
+        except TimeoutError:  # the window is gone
+            return
+        if seen is None:
+            self.show()
+
+    def _set_visible(self, on: bool) -> None:
+        self._card.set_visibility(on)
+        self._ring.set_visibility(on)
+
+    def _key(self, event: events.GenericEventArguments) -> None:
+        key = event.args["key"]
+        if key == "Escape":
+            self.end()
+        elif key == "ArrowRight":
+            self.show(self._step + 1)
+        elif key == "ArrowLeft":
+            self.show(self._step - 1)
+
+    @staticmethod
+    def _button(words: str, name: str, action: Callable[[], None]) -> ui.button:
+        return ui.button(words, on_click=action).props(f'flat dense no-caps data-testid="{name}"').classes(name)
+
+
+def help_dialog(tour: Tour) -> Callable[[], object]:
+    """Build the help: what the stages are for, and the keys; returns what opens it."""
+
+    def begin() -> None:
+        dialog.close()
+        tour.show()
+
+    with ui.dialog() as dialog, ui.card().classes("help"):
+        with ui.element("div").classes("studio-row"):
+            ui.label("Help").classes("help-title flex-1")
+            ui.button("Show the tour", icon="explore", on_click=begin).props('flat no-caps data-testid="help-tour"')
+            ui.button(icon="close", on_click=dialog.close).props('flat round dense aria-label="Close"')
+        with ui.element("div").classes("help-columns"):
+            with ui.element("div").classes("help-stages"):
+                for words in STAGES.values():
+                    ui.icon(words.icon).classes("tour-icon")
+                    with ui.column().classes("gap-0"):
+                        ui.label(words.title).classes("help-head")
+                        ui.label(words.line).classes("studio-hint")
+            with ui.element("div").classes("help-keys"):
+                for keys, what in KEYS:
+                    with ui.element("div").classes("help-key"):
+                        for key in keys:
+                            ui.label(key).classes("help-cap")
+                    ui.label(what)
     return dialog.open
 
 
-def offer_tour(page: Page) -> None:
-    """Show the tour if this browser has not seen it."""
+def offer_tour(tour: Tour) -> None:
+    """Show the tour as soon as the window is there, if this browser has not seen it."""
+    ui.timer(DELAY, tour.offer, once=True)

@@ -16,7 +16,7 @@ from hydrostat.studio.face.panels.pose_panel import pose_panel
 from hydrostat.studio.face.panels.start_panel import start_panel
 from hydrostat.studio.face.save_dialog import save_dialog
 from hydrostat.studio.face.theme import dress
-from hydrostat.studio.face.tour import help_dialog, offer_tour
+from hydrostat.studio.face.tour import Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
 from hydrostat.studio.face.viewport import Viewport
 from hydrostat.studio.session import Session
@@ -48,7 +48,8 @@ def build_window(session: Session) -> Page:
     """Build the page of one browser window; it follows the session from now on."""
     page = Page(session)
     dark = dress()
-    ask_save, ask_help = save_dialog(page), help_dialog()
+    tour = Tour()
+    ask_save, ask_help = save_dialog(page), help_dialog(tour)
     _header(page, dark, ask_save, ask_help)
     with ui.element("div").classes("studio-body"):
         page.whole = ui.column().classes("studio-whole")
@@ -70,7 +71,7 @@ def build_window(session: Session) -> Page:
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
     ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
     ui.timer(HEARTBEAT, page.beat)
-    offer_tour(page)
+    offer_tour(tour)
     return page
 
 
@@ -92,7 +93,7 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
         undo = _tool("undo", "Undo", session.undo)
         redo = _tool("redo", "Do again", session.redo)
         save = _tool("save", "Save", ask_save)
-        _tool("dark_mode", "Light or dark", dark.toggle)
+        _tool("dark_mode", "Light or dark", partial(_switch, dark))
         _tool("help_outline", "Help", ask_help)
 
     def show_stage() -> None:
@@ -115,6 +116,11 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
 def _tool(icon: str, words: str, action: Ask) -> ui.button:
     button = ui.button(icon=icon, color=None, on_click=lambda: action())
     return button.props(f'flat round dense aria-label="{words}"').classes("studio-tool").tooltip(words)
+
+
+async def _switch(dark: ui.dark_mode) -> None:
+    """Light if it is dark now, and dark if it is light."""
+    dark.set_value(not await ui.run_javascript("Quasar.Dark.isActive", timeout=10.0))
 
 
 def _key(page: Page, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> None:

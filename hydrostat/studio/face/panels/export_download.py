@@ -7,8 +7,8 @@ from hydrostat.studio.exporting.download import Download
 
 def download_button(download: Download) -> None:
     """A button that hands over a file."""
-    button = ui.button(on_click=lambda: send(download)).props("outline no-caps").classes("w-full")
-    button.mark(f"download-{download.name}")
+    button = ui.button(on_click=lambda: send(download)).props("unelevated no-caps").classes("w-full")
+    button.props(f'data-testid="download-{download.name}"')
     with button:
         ui.icon("download", size="20px").classes("q-mr-sm")
         ui.label(download.name).classes("ellipsis")

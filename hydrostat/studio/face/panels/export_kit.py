@@ -23,12 +23,12 @@ def kit_choices(page: Page) -> None:
     """Method, motor and paper; the rest behind a door."""
     exporter = page.session.exporter
     given: dict[str, Any] = {}
-    motors = {"auto": "Auto: the first that is strong enough", **{motor.key: motor.title for motor in MOTORS}}
+    motors = {"auto": "Auto, by strength", **{motor.key: motor.title for motor in MOTORS}}
     with ui.element("div").classes("export-form"):
         ui.label("Body")
-        given["method"] = ui.toggle(METHODS).props("dense no-caps unelevated").mark("kit-method")
+        given["method"] = ui.toggle(METHODS).props("dense no-caps unelevated").props('data-testid="kit-method"')
         ui.label("Motor")
-        given["motor"] = ui.select(motors).props("dense outlined options-dense").mark("kit-motor")
+        given["motor"] = ui.select(motors).props("dense outlined options-dense").props('data-testid="kit-motor"')
         ui.label("Paper")
         given["paper"] = ui.toggle(PAPERS).props("dense no-caps unelevated")
     given |= _more_choices()
@@ -94,7 +94,7 @@ def _refused(page: Page, kit: KitMade) -> None:
     for reason in kit.refused:
         _line(reason, "error_outline", "export-bad")
     button = ui.button("Make it all the same", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
-    button.props("outline no-caps").classes("w-full").mark("make-forced")
+    button.props("outline no-caps").classes("w-full").props('data-testid="make-forced"')
 
 
 def _pages(kit: KitMade) -> None:
@@ -121,7 +121,7 @@ def _line(words: str, icon: str, kind: str) -> None:
 
 
 def _checks(kit: KitMade) -> None:
-    with ui.expansion(kit.told).props("dense").classes("export-more w-full").mark("kit-checks"):
+    with ui.expansion(kit.told).props("dense").classes("export-more w-full").props('data-testid="kit-checks"'):
         for check in kit.checks:
             icon, kind = ("check_circle", "export-good") if check.passed else ("error_outline", "export-bad")
             with ui.element("div").classes("export-told"):

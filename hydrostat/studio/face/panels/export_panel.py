@@ -33,10 +33,10 @@ def _kit_card(page: Page) -> None:
         with bare:
             ui.label("A kit needs winches and cables, and this robot has none yet.").classes("studio-hint")
             design = ui.button("Go to Design", icon="auto_awesome", on_click=lambda: page.go(StageName.DESIGN))
-            design.props("outline no-caps").classes("w-full").mark("export-design")
+            design.props("outline no-caps").classes("w-full").props('data-testid="export-design"')
         with ui.column().classes("w-full gap-2") as work:
             kit_choices(page)
-            _maker(page, Export.KIT, "Make the kit", "inventory_2", exporter.make_kit)
+            _maker(page, Export.KIT, "Make the kit", "inventory_2", exporter.make_kit, lambda: exporter.kit)
             _result(page, Export.KIT, lambda: exporter.kit, lambda: kit_result(page))
 
     def show() -> None:
@@ -51,7 +51,7 @@ def _report_card(page: Page) -> None:
     exporter = page.session.exporter
     words = "One page of the robot, its network and what it reaches in each pose, with errors and tensions."
     with _card("Report", words):
-        _maker(page, Export.REPORT, "Write the report", "article", exporter.make_report)
+        _maker(page, Export.REPORT, "Write the report", "article", exporter.make_report, lambda: exporter.report)
 
         def result() -> None:
             if exporter.report is not None:
@@ -65,12 +65,12 @@ def _pictures_card(page: Page) -> None:
     with _card("Pictures", "Rest, network and poses as PNG, flat robots as SVG too."):
         with ui.element("div").classes("studio-row"):
             choice = ui.select({"": "At rest"}, label="In the view", value="").props("dense outlined options-dense")
-            choice.classes("flex-1").mark("export-pose")
+            choice.classes("flex-1").props('data-testid="export-pose"')
             view = ui.button(icon="photo_camera", on_click=lambda: _save_view(page)).props(
                 'flat dense aria-label="This view as PNG"'
             )
-            view.tooltip("This view as PNG").mark("export-view")
-        _maker(page, Export.PICTURES, "Draw all pictures", "image", exporter.make_pictures)
+            view.tooltip("This view as PNG").props('data-testid="export-view"')
+        _maker(page, Export.PICTURES, "Draw all pictures", "image", exporter.make_pictures, lambda: exporter.pictures)
         _result(page, Export.PICTURES, lambda: exporter.pictures or None, lambda: _pictures(page))
 
     def show() -> None:
@@ -102,25 +102,29 @@ def _robot_card(page: Page) -> None:
                 send(found)
 
         button = ui.button("Download the robot", icon="download", on_click=save).props("outline no-caps")
-        button.classes("w-full").mark("export-robot")
+        button.classes("w-full").props('data-testid="export-robot"')
 
 
-def _maker(page: Page, export: Export, words: str, icon: str, make: Callable[[], None]) -> None:
-    """The button that begins the work, and while it runs how far it is."""
+def _maker(
+    page: Page, export: Export, words: str, icon: str, make: Callable[[], None], find: Callable[[], object]
+) -> None:
+    """The button that begins the work, quiet once there is a result, and while it runs how far it is."""
     exporter, jobs = page.session.exporter, page.session.jobs
     button = ui.button(words, icon=icon, on_click=page.doing(make)).props("unelevated no-caps").classes("w-full")
-    button.mark(f"make-{export}")
+    button.props(f'data-testid="make-{export}"')
     with ui.column().classes("w-full gap-1") as progress:
         with ui.element("div").classes("studio-row"):
             stage = ui.label().classes("studio-hint flex-1")
             stop = ui.button("Stop", on_click=jobs.stop).props("flat dense no-caps size=sm")
         bar = ui.linear_progress(value=0.0, show_value=False).props("rounded size=6px")
-    failed = ui.label().classes("export-failed").mark(f"failed-{export}")
+    failed = ui.label().classes("export-failed").props(f'data-testid="failed-{export}"')
 
     def show() -> None:
         busy, state = exporter.busy is export, jobs.state
         button.set_visibility(not busy)
         button.set_enabled(not jobs.running)
+        quiet = bool(find())
+        button.props(remove="unelevated" if quiet else "flat", add="flat" if quiet else "unelevated")
         progress.set_visibility(busy)
         failed.set_text(exporter.errors.get(export, ""))
         failed.set_visibility(export in exporter.errors)
@@ -132,12 +136,13 @@ def _maker(page: Page, export: Export, words: str, icon: str, make: Callable[[],
             bar.props(**{"remove" if known else "add": "indeterminate"})
 
     page.on(Topic.JOB, show)
+    page.on(Topic.ROBOT, show)
 
 
 def _result(page: Page, export: Export, find: Callable[[], object], build: Callable[[], None]) -> None:
     """What was made, drawn anew when it is another."""
     exporter = page.session.exporter
-    room = ui.column().classes("w-full gap-2").mark(f"result-{export}")
+    room = ui.column().classes("w-full gap-2").props(f'data-testid="result-{export}"')
     drawn: list[object] = [object()]
 
     def show() -> None:
@@ -151,7 +156,7 @@ def _result(page: Page, export: Export, find: Callable[[], object], build: Calla
             if found is not None:
                 build()
             elif exporter.outdated(export) and exporter.busy is not export:
-                ui.label(OUTDATED).classes("studio-hint").mark(f"outdated-{export}")
+                ui.label(OUTDATED).classes("studio-hint").props(f'data-testid="outdated-{export}"')
 
     page.on(Topic.JOB, show)
     page.on(Topic.ROBOT, show)
