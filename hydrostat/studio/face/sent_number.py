@@ -7,7 +7,11 @@ LARGEST = 1e9
 
 
 def sent_number(value: Any) -> float | None:
-    """The number; None if it is none, which no screen of ours sends."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    """The number, or that of a text which a person is typing; None if it is none yet."""
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
         return None
-    return float(value) if -LARGEST <= value <= LARGEST else None
+    try:
+        number = float(value)
+    except (ValueError, OverflowError):
+        return None
+    return number if -LARGEST <= number <= LARGEST else None

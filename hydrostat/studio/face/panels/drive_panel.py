@@ -7,12 +7,17 @@ from hydrostat.robot import Robot, Winch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.knob import Knob
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.face.panels.drive_strip import drive_strip
+from hydrostat.studio.face.panels.drive_strip import drive_strip, unfocused
 from hydrostat.studio.face.sent_number import sent_number
 from hydrostat.studio.stage import StageName
 
 STEP = 0.5
 """Of a knob's wheel and arrow keys [mm]."""
+
+MANY = 6
+"""More winches than this have smaller knobs."""
+
+ui.add_css("body.body--dark { --lift: 38% }", shared=True)  # colours of winches are made for paper: lighter on dark
 
 
 def drive_panel(page: Page) -> None:
@@ -25,9 +30,9 @@ def drive_panel(page: Page) -> None:
     with ui.element("div").classes("studio-row"):
         ui.label("Drive").classes("studio-title")
         ui.space()
-        ui.button("Rest", icon="restart_alt", on_click=page.doing(driver.rest)).props("flat dense no-caps").tooltip(
-            "Let all cable out (R)"
-        ).mark("drive-rest")
+        rest = ui.button("Rest", icon="restart_alt", on_click=page.doing(driver.rest), color=None)
+        rest.props("flat dense no-caps").style("color: var(--accent)")
+        unfocused(rest).tooltip("Let all cable out (R)").mark("drive-rest")
     ui.label("Turn a knob, type a length, or pull a winch in the view downwards.").classes("studio-hint")
     notes = ui.label().classes("studio-hint").style(f"color: {ERROR}; white-space: pre-line").mark("drive-notes")
     box = ui.column().classes("w-full").style("gap: 8px")
@@ -42,7 +47,8 @@ def drive_panel(page: Page) -> None:
         box.clear()
         colours = winch_colours(robot)
         with box:
-            cards[:] = [_Card(page, winch, colours[winch.name]) for winch in robot.winches]
+            size = 68 if len(robot.winches) <= MANY else 50
+            cards[:] = [_Card(page, winch, colours[winch.name], size) for winch in robot.winches]
         show_drive()
 
     def show_drive() -> None:
@@ -65,13 +71,19 @@ def drive_panel(page: Page) -> None:
 class _Card:
     """A winch: its knob, its box, the tension of its cables."""
 
-    def __init__(self, page: Page, winch: Winch, colour: str) -> None:
+    def __init__(self, page: Page, winch: Winch, colour: str, size: int) -> None:
         self.name = winch.name
         self._page, self._typing = page, False
         driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
-        with ui.element("div").classes("studio-card").style("display: flex; align-items: center; padding: 8px 12px"):
+        with (
+            ui.element("div")
+            .classes("studio-card")
+            .style(f"display: flex; align-items: center; gap: 12px; padding: {size // 8}px 12px")
+        ):
             self._knob = Knob(least=least, most=most, step=STEP, colour=colour, label=winch.name)
-            self._knob.style("width: 62px; height: 62px; flex: none").mark(f"knob-{winch.name}")
+            self._knob.style(f"width: {size}px; height: {size}px; flex: none; margin: -3px 0 -5px -4px").mark(
+                f"knob-{winch.name}"
+            )
             with ui.element("div").style("flex: 1; min-width: 0; display: flex; flex-direction: column; gap: 5px"):
                 name = ui.label(winch.name).style(
                     "font-weight: 600; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
@@ -84,7 +96,7 @@ class _Card:
             self._box = ui.number(min=least, max=most, step=STEP, format="%.1f", suffix="mm", value=0.0)
             self._box.props(f'dense outlined aria-label="{winch.name}, millimetres"').style("width: 98px; flex: none")
             self._box.mark(f"box-{winch.name}")
-        self._colour = colour
+        self._colour = f"color-mix(in oklab, {colour}, white var(--lift, 0%))"
         self._knob.on_turn(
             lambda millimetres: page.act(driver.turn, winch.name, 1e-3 * millimetres), page.doing(driver.let_go)
         )

@@ -2,19 +2,22 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.driving.record_work import FilmKind
 from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.sent_number import sent_number
 from hydrostat.studio.face.timeline import TimelineView
 from hydrostat.studio.session import Tone
 
 SPEEDS = {0.1: "0.1x", 0.25: "0.25x", 0.5: "0.5x", 1.0: "1x", 2.0: "2x", 4.0: "4x"}
 
 FILMS = {FilmKind.GIF: "GIF, for pages", FilmKind.MP4: "MP4, a film", FilmKind.GLB: "GLB, for Blender and 3D viewers"}
+
+Part = TypeVar("Part", bound=ui.element)
 
 LARGEST = 4_000_000
 """No table is larger [bytes]."""
@@ -39,23 +42,25 @@ def _player(page: Page) -> None:
     play = ui.button(icon="play_arrow", on_click=page.doing(driver.toggle)).props(
         'unelevated round dense aria-label="Play"'
     )
-    play.tooltip("Play, or stop playing (space)").mark("drive-play")
+    unfocused(play).tooltip("Play, or stop playing (space)").mark("drive-play")
     loop = _button("repeat", "Begin anew at the end", lambda: page.act(driver.set_loop, not driver.player.loop))
     time = ui.label().classes("studio-figure").style("width: 58px; text-align: right; white-space: nowrap")
     time.mark("drive-time")
     ui.label("of").classes("studio-hint")
-    length = ui.number(min=0.1, max=600, step=0.5, format="%.4g", suffix="s")
-    length.props('dense borderless debounce=500 aria-label="Length of the timeline"').style("width: 76px")
+    length = ui.number(min=0.1, max=600, step=0.5, format="%.4g")
+    length.props(
+        'dense borderless debounce=500 input-style="appearance: textfield; text-align: right" aria-label="Length of the timeline"'
+    ).style("width: 40px")
     length.mark("drive-length")
+    ui.label("s").classes("studio-hint")
+    ui.separator().props("vertical").style("margin: 6px 10px 6px 4px")
     speed = ui.select(SPEEDS, value=1.0, on_change=lambda event: page.act(driver.set_speed, event.value))
-    speed.props('dense borderless options-dense aria-label="Speed"').style("width: 68px")
+    speed.props('dense borderless options-dense aria-label="Speed"').style("width: 62px")
 
     def set_length(event: events.GenericEventArguments) -> None:
-        try:
-            seconds = float(event.args)
-        except (TypeError, ValueError):
-            return
-        page.act(driver.keyframes.set_length, seconds)
+        seconds = sent_number(event.args)
+        if seconds is not None:
+            page.act(driver.keyframes.set_length, seconds)
 
     length.on("update:model-value", set_length)  # only what a person types comes this way
     length.on("blur", lambda: length.set_value(driver.keyframes.timeline.seconds))
@@ -63,7 +68,7 @@ def _player(page: Page) -> None:
     def show() -> None:
         player = driver.player
         _set(play, "icon", "pause" if player.playing else "play_arrow")
-        _set(loop, "color", "primary" if player.loop else "grey")
+        loop.style(f"color: var(--{'accent' if player.loop else 'muted'})")
         words = f"{player.time:.2f} s"
         if words != time.text:
             time.set_text(words)
@@ -82,14 +87,15 @@ def _keys(page: Page) -> None:
     """Add, duplicate, delete; linear or smooth."""
     driver = page.session.driver
     add = ui.button("Add", icon="add", on_click=page.doing(driver.add_key)).props("unelevated dense no-caps")
-    add.style("padding: 2px 12px 2px 8px").tooltip("Keep the knobs as a keyframe at the playhead").mark("drive-add")
+    add.style("padding: 2px 12px 2px 8px")
+    unfocused(add).tooltip("Keep the knobs as a keyframe at the playhead").mark("drive-add")
     copy = _button("content_copy", "Duplicate the keyframe", page.doing(driver.duplicate_key))
     delete = _button("delete_outline", "Delete the keyframe", page.doing(driver.delete_key))
     smooth = ui.toggle({False: "Linear", True: "Smooth"}, value=False)
-    smooth.props("dense no-caps unelevated toggle-color=primary color=transparent text-color=grey").style(
-        "border: 1px solid var(--line); border-radius: 8px; margin-left: 6px"
-    )
-    smooth.on_value_change(lambda event: page.act(driver.keyframes.set_smooth, bool(event.value)))
+    smooth.props(
+        "dense no-caps unelevated toggle-color=primary color=transparent text-color=grey padding='2px 9px'"
+    ).style("border: 1px solid var(--line); border-radius: 8px; margin-left: 6px")
+    unfocused(smooth).on_value_change(lambda event: page.act(driver.keyframes.set_smooth, bool(event.value)))
 
     def show() -> None:
         chosen = driver.keyframes.chosen is not None
@@ -107,7 +113,7 @@ def _poses(page: Page) -> None:
     driver, document = page.session.driver, page.session.document
     button = _button("accessibility_new", "A keyframe from a stored pose", None)
     with button:
-        menu = ui.menu()
+        menu = _menu()
 
     async def add(name: str) -> None:
         button.props("loading")
@@ -148,7 +154,7 @@ def _films(page: Page) -> None:
         if recorder.latest is not None:
             ui.download.content(recorder.latest.content, recorder.latest.name)
 
-    with button, ui.menu():
+    with button, _menu():
         for kind, title in FILMS.items():
             ui.menu_item(title, on_click=partial(start, kind)).mark(f"film-{kind}")
         again = ui.menu_item("", on_click=save)
@@ -202,7 +208,7 @@ def _tables(page: Page) -> None:
             label="Choose or drop a CSV", auto_upload=True, max_file_size=LARGEST, on_upload=load,
             on_rejected=lambda: page.tell("a table may have 4 MB", Tone.BAD),
         ).props("accept=.csv flat bordered").classes("w-full")  # fmt: skip
-    with _button("table_view", "Contractions as a table", None), ui.menu():
+    with _button("table_view", "Contractions as a table", None), _menu():
         ui.menu_item("Export CSV", on_click=export).mark("drive-export")
         ui.menu_item("Import CSV", on_click=dialog.open)
 
@@ -230,10 +236,21 @@ def _timeline(page: Page) -> None:
     page.on(Topic.DRIVE, show)
 
 
+def _menu() -> ui.menu:
+    """One that opens upwards: below the strip is no room."""
+    return ui.menu().props('anchor="top right" self="bottom right"')
+
+
 def _button(icon: str, words: str, action: Callable[[], Any] | None) -> ui.button:
-    button = ui.button(icon=icon, on_click=action).props(f'flat round dense size=sm aria-label="{words}"')
+    button = ui.button(icon=icon, on_click=action, color=None).props(f'flat round dense size=sm aria-label="{words}"')
     button.classes("studio-tool").tooltip(words)
-    return button
+    return unfocused(button)
+
+
+def unfocused(part: Part) -> Part:
+    """A click with the mouse leaves the space key to play."""
+    part.on("mousedown", js_handler="(event) => event.preventDefault()")
+    return part
 
 
 def _set(button: ui.button, prop: str, value: str) -> None:

@@ -21,14 +21,14 @@ export default {
       :aria-valuenow="shown" :style="{ cursor: held === null ? 'grab' : 'grabbing', touchAction: 'none', outline: 'none' }"
       @pointerdown="grab" @pointermove="drag" @pointerup="letGo" @pointercancel="letGo" @dblclick="rest"
       @wheel.prevent="wheel" @keydown="key" @keyup="$emit('letgo')" @focus="focused = true" @blur="focused = false">
-      <path :d="track" fill="none" stroke="var(--line)" stroke-width="5" stroke-linecap="round" />
-      <path v-if="Math.abs(reached - zero) > 0.002" :d="filled" fill="none" :stroke="colour" stroke-width="5"
+      <path :d="track" fill="none" stroke="var(--line)" stroke-width="4.5" stroke-linecap="round" />
+      <path v-if="Math.abs(reached - zero) > 0.002" :d="filled" fill="none" :stroke="lifted" stroke-width="4.5"
         stroke-linecap="round" />
-      <circle cx="32" cy="32" r="20" fill="var(--paper)" :stroke="focused ? colour : 'var(--line)'"
+      <circle cx="32" cy="32" r="21" fill="var(--paper)" :stroke="focused ? lifted : 'var(--line)'"
         :stroke-width="focused ? 2 : 1.5" />
       <line v-for="tooth in teeth" :key="tooth.key" v-bind="tooth" stroke="var(--line)" stroke-width="1.5"
         stroke-linecap="round" />
-      <line :x1="inner[0]" :y1="inner[1]" :x2="outer[0]" :y2="outer[1]" :stroke="colour" stroke-width="4"
+      <line :x1="inner[0]" :y1="inner[1]" :x2="outer[0]" :y2="outer[1]" :stroke="lifted" stroke-width="4.5"
         stroke-linecap="round" />
     </svg>`,
   props: { value: Number, reach: Number, least: Number, most: Number, step: Number, colour: String, label: String },
@@ -47,21 +47,24 @@ export default {
     reached() {
       return this.shareOf(this.reach);
     },
-    track: () => arc(0, 1, 27),
+    lifted() {
+      return `color-mix(in oklab, ${this.colour}, white var(--lift, 0%))`;
+    },
+    track: () => arc(0, 1, 28),
     filled() {
-      return arc(this.zero, this.reached, 27);
+      return arc(this.zero, this.reached, 28);
     },
     inner() {
-      return place(this.share, 9);
+      return place(this.share, 5);
     },
     outer() {
-      return place(this.share, 16.5);
+      return place(this.share, 17);
     },
     teeth() {
       return [0.25, 0.5, 0.75].map((turn) => {
         const share = this.share + (turn * 360) / SWEEP;
-        const [x1, y1] = place(share, 14);
-        const [x2, y2] = place(share, 16.5);
+        const [x1, y1] = place(share, 15);
+        const [x2, y2] = place(share, 18);
         return { key: turn, x1, y1, x2, y2 };
       });
     },

@@ -1,5 +1,5 @@
 // Keyframes in time: a ruler, the contraction of each winch as a curve, keys as diamonds, and the playhead.
-const RULER = 24;
+const RULER = 28;
 const CURVES = 66;
 const KEYS = 26;
 const PAD = 18;
@@ -11,7 +11,7 @@ const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120];
 
 export default {
   template: `
-    <svg :height="height" width="100%" tabindex="0" aria-label="Timeline" style="display: block; outline: none;
+    <svg :height="height" width="100%" tabindex="0" aria-label="Timeline" style="display: block; outline: none; --head: color-mix(in oklab, #c8243f, white var(--lift, 0%));
       touch-action: none; user-select: none; font-size: 13px" @pointerdown="grab" @pointermove="drag" @pointerup="letGo"
       @pointercancel="letGo" @dblclick="$emit('add', { time: timeAt($event) })" @keydown="key">
       <rect :x="left" :y="ruler" :width="span" :height="height - ruler - 2" rx="6" fill="var(--room)" />
@@ -19,10 +19,10 @@ export default {
       <g v-for="tick in ticks" :key="tick.time">
         <line :x1="tick.x" :x2="tick.x" :y1="tick.words ? ruler - 7 : ruler - 4" :y2="tick.words ? height - 2 : ruler"
           stroke="var(--line)" stroke-width="1" />
-        <text v-if="tick.words" :x="tick.x" :y="13" :text-anchor="tick.anchor" fill="var(--muted)"
+        <text v-if="tick.words" :x="tick.x" :y="12" :text-anchor="tick.anchor" fill="var(--muted)"
           style="font-variant-numeric: tabular-nums">{{ tick.words }}</text>
       </g>
-      <path v-for="(path, index) in paths" :key="'path' + index" :d="path" fill="none" :stroke="colours[index]"
+      <path v-for="(path, index) in paths" :key="'path' + index" :d="path" fill="none" :stroke="'color-mix(in oklab, ' + colours[index] + ', white var(--lift, 0%))'"
         stroke-width="1.8" stroke-linejoin="round" opacity="0.9" />
       <g v-for="(mark, index) in marks" :key="'key' + index">
         <line :x1="mark.x" :x2="mark.x" :y1="ruler" :y2="ruler + curves" stroke="var(--muted)" stroke-width="1"
@@ -36,8 +36,8 @@ export default {
         {{ hint }}
       </text>
       <g :transform="'translate(' + x(shownTime) + ' 0)'" style="pointer-events: none">
-        <line x1="0" x2="0" :y1="ruler - 8" :y2="height - 2" stroke="#c8243f" stroke-width="1.6" />
-        <path :d="'M-6 ' + (ruler - 18) + 'h12v7l-6 6l-6 -6z'" fill="#c8243f" stroke="var(--paper)" stroke-width="1" />
+        <line x1="0" x2="0" :y1="ruler - 6" :y2="height - 2" stroke="var(--head)" stroke-width="1.6" />
+        <path :d="'M-6 ' + (ruler - 13) + 'h12v6l-6 6l-6 -6z'" fill="var(--head)" stroke="var(--paper)" stroke-width="1" />
       </g>
       <g v-if="held && held.moved" :transform="'translate(' + x(held.time) + ' ' + (ruler + curves - 10) + ')'"
         style="pointer-events: none">
