@@ -67,13 +67,13 @@ export default {
       this.view_?.fit();
     },
     section(axis, share) {
-      this.view_?.section(axis, share);
+      this.view_?.open(axis, share);
     },
     orthographic(on) {
       this.view_?.parallel(on);
     },
     opacity(value) {
-      this.view_?.opacity(value);
+      this.view_?.seeThrough(value);
     },
     mesh(on) {
       this.view_?.mesh(on);

@@ -150,12 +150,27 @@ export class Camera {
     this.place();
   }
 
-  /** Begin to turn to a view; `turn` goes on with it. */
-  look(name, now) {
+  /** Begin to turn to a view; `turn` goes on with it. `fit` is called with the camera as it will be in the end. */
+  look(name, now, fit = () => {}) {
     if (this.flat || !(name in VIEWS)) return;
     const [azimuth, elevation] = VIEWS[name];
-    const round = 2 * Math.PI * Math.round((this.azimuth - azimuth) / (2 * Math.PI));
-    this.turning = { start: now, from: [this.azimuth, this.elevation], to: [azimuth + round, elevation] };
+    const from = this.pose();
+    this.azimuth = azimuth + 2 * Math.PI * Math.round((this.azimuth - azimuth) / (2 * Math.PI));
+    this.elevation = elevation;
+    this.place();
+    fit();
+    this.turning = { start: now, from, to: this.pose() };
+    this.stand(from);
+  }
+
+  pose() {
+    return [this.azimuth, this.elevation, this.span, ...this.target.toArray()];
+  }
+
+  stand(pose) {
+    [this.azimuth, this.elevation, this.span] = pose;
+    this.target.fromArray(pose, 3);
+    this.place();
   }
 
   /** Go on turning; whether there is more to do. */
@@ -164,16 +179,13 @@ export class Camera {
     const { start, from, to } = this.turning;
     const share = Math.min(Math.max((now - start) / TURN, 0), 1);
     const smooth = share * share * (3 - 2 * share);
-    this.azimuth = from[0] + smooth * (to[0] - from[0]);
-    this.elevation = from[1] + smooth * (to[1] - from[1]);
+    this.stand(share === 1 ? to : from.map((value, i) => value + smooth * (to[i] - value)));
     if (share === 1) this.turning = null;
-    this.place();
     return share < 1;
   }
 
   /** Show all of some points; `margin` is kept free at the sides, in pixels [left, top, right, bottom]. */
   fit(tables, margin) {
-    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     const middle = new THREE.Vector3();
     const box = new THREE.Box3();
     for (const table of tables) {
@@ -182,23 +194,30 @@ export class Camera {
     if (box.isEmpty()) return;
     box.getCenter(middle);
     this.reach = Math.max(box.getSize(new THREE.Vector3()).length() / 2, 1e-4);
-    for (const table of tables) {
-      for (let i = 0; i + 2 < table.length; i += 3) {
-        const [x, y, z] = [table[i] - middle.x, table[i + 1] - middle.y, table[i + 2] - middle.z];
-        const u = x * this.right.x + y * this.right.y + z * this.right.z;
-        const v = x * this.up.x + y * this.up.y + z * this.up.z;
-        low[0] = Math.min(low[0], u); high[0] = Math.max(high[0], u);
-        low[1] = Math.min(low[1], v); high[1] = Math.max(high[1], v);
-      }
-    }
+    this.target.copy(middle);
+    this.span = 3 * this.reach;
     const [left, top, right, bottom] = margin;
     const wide = Math.max(this.width - left - right, 40), tall = Math.max(this.height - top - bottom, 40);
-    const near = this.flat || this.parallel ? 1 : 1.12; // what is nearer than the target looks larger
-    const size = near * Math.max((high[0] - low[0]) / wide, (high[1] - low[1]) / tall, 1e-7); // metres in a pixel
-    this.span = size * this.height;
-    this.target.copy(middle)
-      .addScaledVector(this.right, (low[0] + high[0]) / 2 + (size * (right - left)) / 2)
-      .addScaledVector(this.up, (low[1] + high[1]) / 2 + (size * (top - bottom)) / 2);
+    const spot = [0, 0, 0];
+    // with perspective, what is seen of a thing depends on where one stands: a few steps come near enough
+    for (let step = 0; step < (this.flat || this.parallel ? 1 : 4); step++) {
+      this.place();
+      const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+      for (const table of tables) {
+        for (let i = 0; i + 2 < table.length; i += 3) {
+          this.project(table[i], table[i + 1], table[i + 2], spot);
+          for (const k of [0, 1]) {
+            low[k] = Math.min(low[k], spot[k]);
+            high[k] = Math.max(high[k], spot[k]);
+          }
+        }
+      }
+      const size = Math.max((high[0] - low[0]) / wide, (high[1] - low[1]) / tall, 1e-6);
+      const u = (low[0] + high[0] - this.width) / 2, v = (this.height - low[1] - high[1]) / 2;
+      this.target.addScaledVector(this.right, (u + (size * (right - left)) / 2) / this.metre)
+        .addScaledVector(this.up, (v + (size * (top - bottom)) / 2) / this.metre);
+      this.span *= size;
+    }
     this.moved = false;
     this.place();
   }

@@ -56,7 +56,7 @@ export class Cover {
   layers(x, y, depth) {
     const { spots, faces, nodes, cut } = this;
     const column = Math.floor(x / CELL), row = Math.floor(y / CELL);
-    if (column < 0 || row < 0 || column >= this.across || row >= this.down) return 0;
+    if (!(column >= 0 && row >= 0 && column < this.across && row < this.down)) return 0;
     let count = 0;
     for (const f of this.cells[row * this.across + column]) {
       const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
@@ -99,7 +99,11 @@ export class Cover {
   pieces(e, count, draw) {
     const { edges, spots, nodes, cut } = this;
     const a = 3 * edges[e], b = 3 * edges[e + 1];
-    if (cut && cut[0] * (nodes[a] + nodes[b]) + cut[1] * (nodes[a + 1] + nodes[b + 1]) + cut[2] * (nodes[a + 2] + nodes[b + 2]) > 2 * cut[3]) return;
+    if (cut) {
+      let beyond = -2 * cut[3];
+      for (let k = 0; k < 3; k++) beyond += cut[k] * (nodes[a + k] + nodes[b + k]);
+      if (beyond > 0) return;
+    }
     const at = (share, k) => spots[a + k] + share * (spots[b + k] - spots[a + k]);
     for (let i = 0; i < count; i++) {
       const middle = (i + 0.5) / count, from = i / count, to = (i + 1) / count;

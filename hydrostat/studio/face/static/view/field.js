@@ -64,8 +64,10 @@ export class Field {
     const whole = ux * vy - uy * vx;
     if (!whole) return;
     const { pixels, colours } = this;
-    const first = Math.max(Math.ceil(Math.min(ay, by, cy) - 0.5), 0), last = Math.min(Math.floor(Math.max(ay, by, cy) + 0.5), tall - 1);
-    const from = Math.max(Math.ceil(Math.min(ax, bx, cx) - 0.5), 0), to = Math.min(Math.floor(Math.max(ax, bx, cx) + 0.5), wide - 1);
+    const first = Math.max(Math.ceil(Math.min(ay, by, cy) - 0.5), 0);
+    const last = Math.min(Math.floor(Math.max(ay, by, cy) + 0.5), tall - 1);
+    const from = Math.max(Math.ceil(Math.min(ax, bx, cx) - 0.5), 0);
+    const to = Math.min(Math.floor(Math.max(ax, bx, cx) + 0.5), wide - 1);
     const near = -0.02; // a little over the edges, so that no gap is between triangles
     for (let row = first; row <= last; row++) {
       for (let column = from; column <= to; column++) {

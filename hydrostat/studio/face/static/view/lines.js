@@ -62,7 +62,7 @@ export function drawLines(pen, view) {
     const own = runs(view, line);
     for (const [layer, width, colour, dash] of strips(view, line)) layers[layer].push({ layer, own, width, colour, dash });
   }
-  const inside = 0.55 + 0.35 * (1 - view.opacityNow);
+  const inside = 0.55 + 0.35 * (1 - view.opacity);
   for (const kind of [BEHIND, INSIDE, FRONT]) {
     for (const layer of layers) {
       for (const { layer: level, own, width, colour, dash } of layer) {

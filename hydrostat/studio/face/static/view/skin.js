@@ -102,14 +102,18 @@ export class Skin {
     this.loops = loops(rim, rest);
     this.rim = new Rings(this.loops.map((loop) => smooth(loop, rest)), 4);
     const rings = this.rim.at(rest).map(pairs);
-    const flat = rings.flat();
-    const extent = [0, 1].map((k) => flat.reduce((most, p) => Math.max(most, p[k]), -1e9) - flat.reduce((least, p) => Math.min(least, p[k]), 1e9));
-    const seams = rings.map((ring) => inset(ring, rings, INSET * Math.max(...extent)));
+    const size = Math.max(extent(rings.flat(), 0), extent(rings.flat(), 1));
+    const seams = rings.map((ring) => inset(ring, rings, INSET * size));
     const stuck = seams.map((ring) => ring.map(([x, y]) => within(x, y, rest, faces)).filter(Boolean).map(({ face, shares }) => ({
       nodes: [...faces.subarray(face, face + 3)], weights: shares,
     })));
     this.seam = new Rings(stuck.filter((ring) => ring.length > 8), 3);
   }
+}
+
+function extent(points, k) {
+  const values = points.map((point) => point[k]);
+  return Math.max(...values) - Math.min(...values);
 }
 
 function pairs(ring) {

@@ -1,23 +1,19 @@
-// The view: holds a scene, takes frames, paints when something has changed.
+// The view: takes scenes and frames, and paints when something has changed.
 
 import { THREE } from "nicegui-scene";
-import { Camera } from "./camera.js";
-import { Cover } from "./cover.js";
-import { Field, ramp256 } from "./field.js";
 import { Link } from "./link.js";
 import { Overlay } from "./overlay.js";
-import { opened, same } from "./packet.js";
+import { opened } from "./packet.js";
 import { pick } from "./pick.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
-import { Skin } from "./skin.js";
-import { Ghost, Surface } from "./surface.js";
-import { mix, theme } from "./theme.js";
+import { Shown } from "./shown.js";
+import { theme } from "./theme.js";
 
 const BARE = 300; // a scene without a frame is shown at rest after so long [ms]
 const MARGIN = { flat: [84, 44, 44, 56], space: [84, 44, 44, 72] };
 
-export class View {
+export class View extends Shown {
   /**
    * @param element that is filled
    * @param canvases for the body and for what is drawn on top
@@ -25,21 +21,12 @@ export class View {
    * @param tell (name, value) is told "connected" and "note"
    */
   constructor(element, canvases, options, tell) {
-    Object.assign(this, { element, tell, brush: options.brush, palette: options.palette, ink: options.palette.ink });
-    this.sheet = canvases[0];
+    super(options.palette, options.dark);
+    Object.assign(this, { element, tell, brush: options.brush, sheet: canvases[0] });
     this.renderer = null; // made for the first body in space: flat ones need no WebGL
     this.slow = hasNoCard();
     this.overlay = new Overlay(canvases[1], this.slow);
-    this.world = new THREE.Scene();
-    this.camera = new Camera();
-    this.ramp = ramp256(options.palette.tension);
-    this.field = new Field(this.ramp);
     this.font = getComputedStyle(element).fontFamily || "sans-serif";
-    Object.assign(this, { dots: [], lines: [], areas: [], ghosts: {}, clouds: {}, points: new Float32Array(), hover: "" });
-    const none = new Float32Array();
-    Object.assign(this, { rest: none, nodes: none, faces: new Uint32Array(), values: null }); // the body
-    Object.assign(this, { surface: null, skin: null, cover: null, cut: null, serial: -1, opacityNow: 1 });
-    this.see = null; // what the person chose; null: as fits the body
     this.dirty = new Set();
     this.pixel = new Uint8Array(4);
     this.probe = new Probe(this);
@@ -127,122 +114,28 @@ export class View {
     if (coming && (bare || latest?.head.scene === coming.head.serial)) {
       this.coming = null;
       clearTimeout(this.bare);
-      this.build(coming.head, coming.arrays);
+      if (this.build(coming.head, coming.arrays)) {
+        this.camera.begin(this.camera.flat);
+        this.fitting = true;
+      }
     }
     if (!latest || latest.head.scene !== this.serial) return false;
     this.stamp = latest.head.stamp;
     this.move(latest.arrays);
+    if (this.fitting) this.fit();
     return true;
-  }
-
-  /** Show another scene; what is the same in it is kept. */
-  build(head, arrays) {
-    const flat = head.dim === 2;
-    const other = flat !== this.camera.flat || !same(arrays.rest, this.rest) || !same(arrays.faces, this.faces);
-    const elsewhere = this.serial < 0 || flat !== this.camera.flat || head.name !== this.name || this.grown(arrays.rest);
-    Object.assign(this, { serial: head.serial, name: head.name, rest: arrays.rest });
-    this.camera.flat = flat;
-    if (other) this.newBody(flat, arrays);
-    const before = new Map(this.dots.map((dot) => [dot.key, dot]));
-    this.dots = head.things.filter((thing) => thing.kind === "dot").map((dot) => ({
-      ...dot, short: initials(dot.label), x: -99, y: -99, depth: 0, density: 1, place: [0, 0, 0], slot: before.get(dot.key)?.slot,
-    }));
-    this.lines = head.things.filter((thing) => thing.kind === "line");
-    this.areas = head.things.filter((thing) => thing.kind === "area").map((area) => ({ ...area, spots: [] }));
-    this.takeGhosts(head, arrays);
-    this.clouds = named(head, arrays, "cloud");
-    this.applyLook();
-    if (elsewhere) {
-      this.camera.begin(flat);
-      this.fitting = true;
-    }
-    this.mark("camera");
-  }
-
-  /** Whether a body is so much larger or smaller than before that one has to look anew. */
-  grown(rest) {
-    const size = (table) => table.reduce((most, value) => Math.max(most, Math.abs(value)), 1e-9);
-    const ratio = size(rest) / size(this.rest);
-    return ratio > 1.5 || ratio < 0.67;
-  }
-
-  newBody(flat, arrays) {
-    this.drop(this.surface);
-    Object.assign(this, { nodes: arrays.rest, faces: arrays.faces, values: null, surface: null });
-    this.skin = flat ? new Skin(arrays.rim, arrays.rest, arrays.faces) : null;
-    this.cover = new Cover(arrays.faces, arrays.rest.length / 3);
-    if (flat) return;
-    this.openRenderer();
-    this.surface = new Surface(arrays.rest, arrays.faces, this.ramp, 1);
-    this.add(this.surface);
   }
 
   openRenderer() {
     if (this.renderer) return;
     try {
-      this.renderer = new THREE.WebGLRenderer({ canvas: this.sheet, antialias: false, alpha: false, powerPreference: "high-performance" });
+      this.renderer = new THREE.WebGLRenderer({ canvas: this.sheet, powerPreference: "high-performance" });
     } catch (error) {
       this.tell("failure", "Bodies in space are drawn with WebGL, which this browser does not have. Switch it on, or use another.");
       throw error;
     }
     this.renderer.setClearColor(this.theme.back, 1);
     this.resize();
-  }
-
-  /** Keep ghosts that are the same, make those that are not; of flat bodies only the pen draws them. */
-  takeGhosts(head, arrays) {
-    const fresh = named(head, arrays, "ghost");
-    const { faces } = this;
-    for (const [name, ghost] of Object.entries(fresh)) {
-      const old = this.ghosts[name];
-      if (old?.skin && old.faces === faces && same(old.array, ghost.array)) {
-        ghost.skin = old.skin;
-        delete old.skin;
-      } else if (!this.camera.flat) {
-        ghost.skin = new Ghost(ghost.array, faces, 3);
-        this.add(ghost.skin);
-      }
-      ghost.faces = faces;
-    }
-    for (const old of Object.values(this.ghosts)) this.drop(old.skin);
-    this.ghosts = fresh;
-  }
-
-  ghostColour(thing) {
-    return thing.colour === this.palette.ghost ? this.theme.ghost : thing.colour;
-  }
-
-  add(part) {
-    for (const object of part.objects) this.world.add(object);
-  }
-
-  drop(part) {
-    if (!part) return;
-    for (const object of part.objects) this.world.remove(object);
-    part.dispose();
-  }
-
-  /** Everything to the place of a frame. */
-  move(arrays) {
-    Object.assign(this, { nodes: arrays.nodes, values: arrays.values ?? null });
-    this.surface?.move(arrays.nodes, arrays.values);
-    this.points = arrays.points;
-    this.lines.forEach((line, i) => (line.load = arrays.loads[i] ?? 0));
-    for (const dot of this.dots) dot.place = [0, 1, 2].map((k) => arrays.points[3 * dot.first + k]);
-    if (this.fitting) this.fit();
-  }
-
-  /** Colours, and how much is seen through the body. */
-  applyLook() {
-    const { surface, palette } = this;
-    this.opacityNow = this.camera.flat ? 1 : this.see ?? 1;
-    if (!surface) return;
-    surface.colour(palette, mix(palette.seam, palette.dark, 0.12));
-    surface.see(this.opacityNow);
-    surface.section(this.cut);
-    for (const { thing, skin } of Object.values(this.ghosts)) {
-      skin?.colour(this.ghostColour(thing), thing.colour === palette.ghost ? 0.6 : 0.8);
-    }
   }
 
   dress(dark) {
@@ -268,7 +161,8 @@ export class View {
   fit() {
     if (this.serial < 0) return;
     this.fitting = !this.element.clientWidth;
-    this.camera.fit([this.nodes, this.points, ...Object.values(this.ghosts).map((ghost) => ghost.array)], MARGIN[this.camera.flat ? "flat" : "space"]);
+    const ghosts = Object.values(this.ghosts).map((ghost) => ghost.array);
+    this.camera.fit([this.nodes, this.points, ...ghosts], this.camera.flat ? MARGIN.flat : MARGIN.space);
     this.mark("camera");
   }
 
@@ -309,29 +203,11 @@ export class View {
     if (this.slow) overlay.pen.getImageData(0, 0, 1, 1);
   }
 
-  /** Dots and areas to their pixels. */
-  spread() {
-    const { camera, points } = this;
-    const spot = [0, 0, 0];
-    for (const dot of this.dots) {
-      [dot.x, dot.y] = camera.project(...dot.place, spot);
-      dot.density = camera.density(dot.place);
-      if (this.surface) dot.depth = this.cover.layers(...spot);
-    }
-    for (const area of this.areas) {
-      area.spots = Array.from({ length: points.length ? area.count : 0 }, (_, k) => {
-        const i = 3 * (area.first + k);
-        const place = [points[i], points[i + 1], points[i + 2]];
-        const [x, y, depth] = camera.project(...place, spot);
-        return [x, y, depth, camera.density(place)];
-      });
-    }
-  }
-
   // What the page may ask for.
 
   look(name) {
-    this.camera.look(name, performance.now());
+    const moved = this.camera.moved;
+    this.camera.look(name, performance.now(), () => moved || this.fit());
     this.mark("camera");
   }
 
@@ -340,36 +216,20 @@ export class View {
     this.mark("camera");
   }
 
-  opacity(value) {
-    this.see = value;
+  /** How solid a body in space looks, from 0 to 1. */
+  seeThrough(opacity) {
+    this.opacity = opacity;
     this.applyLook();
     this.mark("camera");
   }
 
   mesh(on) {
     this.edges = on;
-    this.applyLook();
     this.mark("camera");
   }
 
-  /** Cut the body across an axis at a share of its extent; the side that faces the viewer goes away. */
-  section(axis, share) {
-    const k = ["x", "y", "z"].indexOf(axis);
-    if (k < 0 || !this.surface) {
-      [this.cut, this.cutAxis] = [null, null];
-    } else {
-      if (this.cutAxis !== axis) this.cutSide = this.camera.toward[axis] < 0 ? -1 : 1;
-      this.cutAxis = axis;
-      let low = Infinity, high = -Infinity;
-      for (let i = k; i < this.rest.length; i += 3) {
-        low = Math.min(low, this.rest[i]);
-        high = Math.max(high, this.rest[i]);
-      }
-      const at = low + share * (high - low);
-      this.cut = [0, 0, 0, this.cutSide * at];
-      this.cut[k] = this.cutSide;
-    }
-    this.applyLook();
+  open(axis, share) {
+    this.cutAcross(axis, share);
     this.mark("camera");
   }
 
@@ -403,12 +263,6 @@ export class View {
   }
 }
 
-/** The things of a kind by name, each with its array. */
-function named(head, arrays, kind) {
-  const things = head.things.filter((thing) => thing.kind === kind);
-  return Object.fromEntries(things.map((thing) => [thing.name, { thing, array: arrays[`${kind}:${thing.name}`] }]));
-}
-
 /** Whether WebGL is missing or done by the processor. */
 function hasNoCard() {
   const gl = document.createElement("canvas").getContext("webgl");
@@ -417,10 +271,4 @@ function hasNoCard() {
   const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
   gl.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
-}
-
-/** Up to two letters for a disc: "index flexor" is IF, "winch_2" is W2, "left" is L. */
-function initials(label) {
-  const parts = label.split(/[\s_\-.]+|(?<=[a-z])(?=[0-9])/i).filter(Boolean);
-  return parts.slice(0, 2).map((part) => part[0]).join("").toUpperCase();
 }

@@ -1,0 +1,175 @@
+// What is shown: a body and the things beside it, from scenes and frames.
+
+import { THREE } from "nicegui-scene";
+import { Camera } from "./camera.js";
+import { Cover } from "./cover.js";
+import { Field, ramp256 } from "./field.js";
+import { same } from "./packet.js";
+import { Skin } from "./skin.js";
+import { Ghost, Surface } from "./surface.js";
+import { mix, theme } from "./theme.js";
+
+export class Shown {
+  /** @param palette colours by name, and `tension`, a row of them */
+  constructor(palette, dark) {
+    Object.assign(this, { palette, ink: palette.ink, theme: theme(dark) });
+    this.world = new THREE.Scene(); // what WebGL draws: skins of bodies in space
+    this.camera = new Camera();
+    this.ramp = ramp256(palette.tension);
+    this.field = new Field(this.ramp);
+    const none = new Float32Array();
+    Object.assign(this, { serial: -1, name: "", rest: none, nodes: none, faces: new Uint32Array(), values: null });
+    Object.assign(this, { surface: null, skin: null, cover: null });
+    Object.assign(this, { points: none, dots: [], lines: [], areas: [], ghosts: {}, clouds: {}, hover: "" });
+    // how it is looked at: solid by default; a plane that cuts it; the edges of its mesh
+    Object.assign(this, { opacity: 1, section: null, cut: null, edges: false });
+  }
+
+  /** Show another scene; what is the same in it is kept. Returns whether one has to look at it anew. */
+  build(head, arrays) {
+    const flat = head.dim === 2;
+    const other = flat !== this.camera.flat || !same(arrays.rest, this.rest) || !same(arrays.faces, this.faces);
+    const elsewhere = this.serial < 0 || flat !== this.camera.flat || head.name !== this.name || this.grown(arrays.rest);
+    Object.assign(this, { serial: head.serial, name: head.name, rest: arrays.rest });
+    this.camera.flat = flat;
+    if (other) this.newBody(flat, arrays);
+    const before = new Map(this.dots.map((dot) => [dot.key, dot]));
+    this.dots = head.things.filter((thing) => thing.kind === "dot").map((dot) => ({
+      ...dot, short: initials(dot.label), x: -99, y: -99, depth: 0, density: 1, place: [0, 0, 0], slot: before.get(dot.key)?.slot,
+    }));
+    this.points = new Float32Array(3 * head.things.reduce((most, thing) => Math.max(most, thing.first + thing.count), 0));
+    this.lines = head.things.filter((thing) => thing.kind === "line");
+    this.areas = head.things.filter((thing) => thing.kind === "area").map((area) => ({ ...area, spots: [] }));
+    this.takeGhosts(head, arrays);
+    this.clouds = named(head, arrays, "cloud");
+    this.recut();
+    return elsewhere;
+  }
+
+  /** Whether a body is so much larger or smaller than before that one has to look anew. */
+  grown(rest) {
+    const size = (table) => table.reduce((most, value) => Math.max(most, Math.abs(value)), 1e-9);
+    const ratio = size(rest) / size(this.rest);
+    return ratio > 1.5 || ratio < 0.67;
+  }
+
+  newBody(flat, arrays) {
+    this.drop(this.surface);
+    Object.assign(this, { nodes: arrays.rest, faces: arrays.faces, values: null, surface: null });
+    this.skin = flat ? new Skin(arrays.rim, arrays.rest, arrays.faces) : null;
+    this.cover = new Cover(arrays.faces, arrays.rest.length / 3);
+    if (flat) return;
+    this.openRenderer();
+    this.surface = new Surface(arrays.rest, arrays.faces, this.ramp, 1);
+    this.add(this.surface);
+  }
+
+  /** Keep ghosts that are the same, make those that are not; of flat bodies only the pen draws them. */
+  takeGhosts(head, arrays) {
+    const fresh = named(head, arrays, "ghost");
+    const { faces } = this;
+    for (const [name, ghost] of Object.entries(fresh)) {
+      const old = this.ghosts[name];
+      if (old?.skin && old.faces === faces && same(old.array, ghost.array)) {
+        ghost.skin = old.skin;
+        delete old.skin;
+      } else if (!this.camera.flat) {
+        ghost.skin = new Ghost(ghost.array, faces, 3);
+        this.add(ghost.skin);
+      }
+      ghost.faces = faces;
+    }
+    for (const old of Object.values(this.ghosts)) this.drop(old.skin);
+    this.ghosts = fresh;
+  }
+
+  ghostColour(thing) {
+    return thing.colour === this.palette.ghost ? this.theme.ghost : thing.colour;
+  }
+
+  add(part) {
+    for (const object of part.objects) this.world.add(object);
+  }
+
+  drop(part) {
+    if (!part) return;
+    for (const object of part.objects) this.world.remove(object);
+    part.dispose();
+  }
+
+  /** Everything to the place of a frame. */
+  move(arrays) {
+    Object.assign(this, { nodes: arrays.nodes, values: arrays.values ?? null });
+    this.surface?.move(arrays.nodes, arrays.values);
+    this.points = arrays.points;
+    this.lines.forEach((line, i) => (line.load = arrays.loads[i] ?? 0));
+    for (const dot of this.dots) dot.place = [0, 1, 2].map((k) => arrays.points[3 * dot.first + k]);
+  }
+
+  /** Colours, and how much is seen through the body. */
+  applyLook() {
+    const { surface, palette } = this;
+    if (!surface) return;
+    surface.colour(palette, mix(palette.seam, palette.dark, 0.12));
+    surface.see(this.opacity);
+    surface.section(this.cut);
+    for (const { thing, skin } of Object.values(this.ghosts)) {
+      skin?.colour(this.ghostColour(thing), thing.colour === palette.ghost ? 0.6 : 0.8);
+    }
+  }
+
+  /** Cut the body across an axis at a share of its extent; the side that faces the viewer goes away. */
+  cutAcross(axis, share) {
+    const side = this.section?.axis === axis ? this.section.side : this.camera.toward[axis] < 0 ? -1 : 1;
+    this.section = axis in this.camera.toward ? { axis, share, side } : null;
+    this.recut();
+  }
+
+  /** Put the section where it belongs in the body that is shown now. */
+  recut() {
+    this.cut = null;
+    if (this.section && this.surface) {
+      const { axis, share, side } = this.section;
+      const k = "xyz".indexOf(axis);
+      let low = Infinity, high = -Infinity;
+      for (let i = k; i < this.rest.length; i += 3) {
+        low = Math.min(low, this.rest[i]);
+        high = Math.max(high, this.rest[i]);
+      }
+      this.cut = [0, 0, 0, side * (low + share * (high - low))];
+      this.cut[k] = side;
+    }
+    this.applyLook();
+  }
+
+  /** Dots and areas to their pixels. */
+  spread() {
+    const { camera, points } = this;
+    const spot = [0, 0, 0];
+    for (const dot of this.dots) {
+      [dot.x, dot.y] = camera.project(...dot.place, spot);
+      dot.density = camera.density(dot.place);
+      if (this.surface) dot.depth = this.cover.layers(...spot);
+    }
+    for (const area of this.areas) {
+      area.spots = Array.from({ length: points.length ? area.count : 0 }, (_, k) => {
+        const i = 3 * (area.first + k);
+        const place = [points[i], points[i + 1], points[i + 2]];
+        const [x, y, depth] = camera.project(...place, spot);
+        return [x, y, depth, camera.density(place)];
+      });
+    }
+  }
+}
+
+/** The things of a kind by name, each with its array. */
+function named(head, arrays, kind) {
+  const things = head.things.filter((thing) => thing.kind === kind);
+  return Object.fromEntries(things.map((thing) => [thing.name, { thing, array: arrays[`${kind}:${thing.name}`] }]));
+}
+
+/** Up to two letters for a disc: "index flexor" is IF, "winch_2" is W2, "left" is L. */
+function initials(label) {
+  const parts = label.split(/[\s_\-.]+|(?<=[a-z])(?=[0-9])/i).filter(Boolean);
+  return parts.slice(0, 2).map((part) => part[0]).join("").toUpperCase();
+}
