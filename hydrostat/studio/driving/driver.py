@@ -1,30 +1,23 @@
 """`Driver`: the stage "drive"."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import isfinite
-from threading import RLock
 
 import numpy as np
 
-from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
-from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.contraction_table import read_table, table_bytes
-from hydrostat.studio.driving.follower import Follower
 from hydrostat.studio.driving.keyframes import Keyframes
-from hydrostat.studio.driving.motors import Motors
-from hydrostat.studio.driving.player import Player
+from hydrostat.studio.driving.machine import Machine
 from hydrostat.studio.driving.recorder import Recorder
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.shape import Shape, rest_shape
+from hydrostat.studio.view.shape import Shape
 from hydrostat.studio.view.things import Thing
 
 
@@ -32,31 +25,23 @@ class Driver(Stage):
     """Contractions by hand and in time (R58): knobs or keyframes command a link, and the body follows its motors.
 
     Attributes:
-        player: the playhead.
         keyframes: the timeline, edited.
         recorder: films of it.
+        player: the playhead.
         motors: of the winches.
-        notice: why it does not do what was asked; "" if it does.
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
-        self.player, self.keyframes, self.recorder = Player(), Keyframes(document), Recorder(document, jobs)
-        self.motors = Motors()
-        self.notice = ""
+        self.keyframes, self.recorder = Keyframes(document), Recorder(document, jobs)
         self._document = document
-        self._lock = RLock()
-        self._posed: tuple[Robot, Shape] | None = None
-        self._follower = Follower()
-        self._timeline: Timeline | None = None
+        self._machine = Machine(document, self.keyframes)
+        self._lock = self._machine.lock
+        self.player, self.motors = self._machine.player, self._machine.motors
         self._pull: tuple[str, float, Hit] | None = None
 
     def shape(self) -> Shape:
         """The body as the motors pull it."""
-        robot, posed = self._document.robot, self._posed
-        if posed is None or posed[0] is not robot:
-            return rest_shape(robot)
-        notes = ((self.notice,) if self.notice else ()) + _strained(robot, posed[1].tensions, self.strongest)
-        return replace(posed[1], notes=notes)
+        return self._machine.shape()
 
     def things(self) -> Sequence[Thing]:
         """All parts of the robot, the winch that is pulled marked."""
@@ -66,18 +51,18 @@ class Driver(Stage):
     @property
     def strongest(self) -> float:
         """The most that a cable should bear [N]."""
-        return self._document.work.wishes.tension
+        return self._machine.strongest
 
     def commands(self) -> dict[str, float]:
         """What each winch shall take in [m], by name."""
         with self._lock:
-            self._meet(self._document.robot)
+            self._machine.meet()
             return dict(zip(self.motors.names, self.motors.command.tolist(), strict=True))
 
     def places(self) -> dict[str, float]:
         """What each winch has taken in [m], by name."""
         with self._lock:
-            self._meet(self._document.robot)
+            self._machine.meet()
             return dict(zip(self.motors.names, self.motors.places.tolist(), strict=True))
 
     def tensions(self) -> dict[str, float]:
@@ -98,12 +83,12 @@ class Driver(Stage):
             raise InputError(f"{name}: the contraction must be a number")
         with self._lock:
             robot = self._document.robot
-            self._meet(robot)
+            self._machine.meet(robot)
             robot.winch(name)
-            self._halt()
+            self._machine.halt()
             self.motors.turn(name, contraction)
             self.keyframes.adjust(self.commands())
-            self._timeline = self.keyframes.timeline
+            self._machine.mind_keys()
         self._tell()
 
     def let_go(self) -> None:
@@ -113,8 +98,8 @@ class Driver(Stage):
     def rest(self) -> None:
         """Let all cable out that was taken in; stops playing. No key changes by it."""
         with self._lock:
-            self._meet(self._document.robot)
-            self._halt()
+            self._machine.meet()
+            self._machine.halt()
             self.keyframes.choose(None)
             self.motors.ask(np.zeros(len(self.motors.names)))
         self._tell()
@@ -167,8 +152,8 @@ class Driver(Stage):
         if not timeline.keys:
             raise InputError("there are no keyframes yet: turn the knobs and press Add")
         with self._lock:
-            self._meet(self._document.robot)
-            self.notice = ""
+            self._machine.meet()
+            self._machine.notice = ""
             self.keyframes.choose(None)
             self.player.play(timeline.seconds)
         self._tell()
@@ -176,7 +161,7 @@ class Driver(Stage):
     def stop(self) -> None:
         """Stop where it is."""
         with self._lock:
-            self._halt()
+            self._machine.halt()
         self._tell()
 
     def seek(self, time: float) -> None:
@@ -188,10 +173,10 @@ class Driver(Stage):
         if not isfinite(time):
             raise InputError("the playhead must be at a number of seconds")
         with self._lock:
-            self._meet(self._document.robot)
-            self.notice = ""
+            self._machine.meet()
+            self._machine.notice = ""
             self.keyframes.choose(None)
-            self._seek(time)
+            self._machine.seek(time)
         self._tell()
 
     def set_loop(self, loop: bool) -> None:
@@ -215,16 +200,16 @@ class Driver(Stage):
             InputError: there is no such key.
         """
         with self._lock:
-            self._meet(self._document.robot)
+            self._machine.meet()
             self.keyframes.choose(index)
-            self._halt()
-            self._seek(self.keyframes.timeline.keys[index].time)
+            self._machine.halt()
+            self._machine.seek(self.keyframes.timeline.keys[index].time)
         self._tell()
 
     def choose_none(self) -> None:
         """Select no key; stops playing."""
         with self._lock:
-            self._halt()
+            self._machine.halt()
             self.keyframes.choose(None)
         self._tell()
 
@@ -234,9 +219,9 @@ class Driver(Stage):
             commands = self.commands()
             if not commands:
                 raise InputError("this robot has no winches; press Design to find some")
-            self._halt()
+            self._machine.halt()
             self.keyframes.put(self.player.time, commands)
-            self._timeline = self.keyframes.timeline
+            self._machine.mind_keys()
         self._tell()
 
     def key_from_pose(self, name: str) -> str:
@@ -251,8 +236,8 @@ class Driver(Stage):
         if self._document.robot is not robot:
             raise InputError("the robot was changed meanwhile; ask again")
         with self._lock:
-            self._meet(robot)
-            self._halt()
+            self._machine.meet(robot)
+            self._machine.halt()
             self.motors.ask(found.pose.contractions)
             self.add_key()
         return f"{name}: marker error {1e3 * found.rms_error:.1f} mm rms"
@@ -264,8 +249,8 @@ class Driver(Stage):
             InputError: there is no such key.
         """
         with self._lock:
-            self._halt()
-            self._seek(self.keyframes.move(index, time))
+            self._machine.halt()
+            self._machine.seek(self.keyframes.move(index, time))
         self._tell()
 
     def drop_key(self) -> None:
@@ -279,8 +264,8 @@ class Driver(Stage):
             InputError: none is selected, or there is no room.
         """
         with self._lock:
-            self._halt()
-            self._seek(self.keyframes.duplicate())
+            self._machine.halt()
+            self._machine.seek(self.keyframes.duplicate())
         self._tell()
 
     def delete_key(self) -> None:
@@ -291,7 +276,7 @@ class Driver(Stage):
         """
         with self._lock:
             self.keyframes.delete()
-            self._timeline = self.keyframes.timeline
+            self._machine.mind_keys()
         self._tell()
 
     def table(self) -> bytes:
@@ -302,9 +287,9 @@ class Driver(Stage):
         """Put a CSV in place of the timeline; see `read_table`."""
         timeline = read_table(self._document.robot, name, content)
         with self._lock:
-            self._halt()
+            self._machine.halt()
             self.keyframes.replace_all(timeline, f"import {name}")
-            self._seek(0.0)
+            self._machine.seek(0.0)
         self._tell()
 
     def enter(self) -> None:
@@ -314,7 +299,7 @@ class Driver(Stage):
     def leave(self) -> None:
         """Motors stop."""
         with self._lock:
-            self._halt()
+            self._machine.halt()
             self._pull = None
             self.motors.hold()
 
@@ -322,75 +307,14 @@ class Driver(Stage):
         """Command the motors, see where they are, and let the body follow; whether there is more to do."""
         if not self._document.robot.cables:
             return False
-        simulation = self._document.simulation
-        with self._lock:
-            self._meet(simulation.robot)
-            was, time = self.player.playing, self.player.time
-            self._run(now)
-            moved = self._drive(now)
-            fresh = self._posed is None or self._posed[0] is not simulation.robot
-            places = self.motors.places
-        if moved or fresh:
-            self._show(simulation, places)
-        if moved or fresh or was != self.player.playing or time != self.player.time:
-            self._tell()
-        return self.player.playing or self.motors.moving
-
-    def _run(self, now: float) -> None:
-        """Let the playhead run, and the commands with it; at a limit it stops."""
-        timeline = self.keyframes.timeline
-        if timeline is not self._timeline:  # undone, done again: a selected key shows what it is now
-            self._timeline = timeline
-            if (index := self.keyframes.chosen) is not None:
-                self._ask(timeline.keys[index].time)
-        if self.player.playing:
-            self.player.advance(now, timeline.seconds)
-            if beyond := self._ask(self.player.time):
-                self._halt(f"stopped: {beyond}")
-
-    def _drive(self, now: float) -> bool:
-        """Tell the motors, and hear whether they have moved; after an error nothing plays."""
         try:
-            return self.motors.drive(now)
-        except Exception as error:
-            self._halt(f"motors stopped: {error}")
+            changed = self._machine.run(now)
+        except Exception:
             self._tell()
             raise
-
-    def _show(self, simulation: Simulation, places: Vector) -> None:
-        """Solve for where the motors are; what cannot be solved ends the playing."""
-        shape = self._follower.follow(simulation, places)
-        with self._lock:
-            if self._follower.failure:
-                self._halt(self._follower.failure)
-            self._posed = (simulation.robot, shape)
-
-    def _meet(self, robot: Robot) -> None:
-        if self.motors.meet(robot):
-            self._halt()
-
-    def _seek(self, time: float) -> None:
-        self._timeline = self.keyframes.timeline
-        self.player.time = min(max(time, 0.0), self._timeline.seconds)
-        if self._timeline.keys:
-            self._ask(self.player.time)
-
-    def _ask(self, time: float) -> str:
-        """Command what the keyframes say; what cannot be done, "" if all can."""
-        return self.motors.ask(self.keyframes.timeline.profile(self.motors.names).at(time))
-
-    def _halt(self, why: str = "") -> None:
-        """Play no further."""
-        self.player.stop()
-        self.notice = why
+        if changed:
+            self._tell()
+        return self._machine.busy
 
     def _tell(self) -> None:
         self._document.bell.ring(Topic.DRIVE, Topic.SHAPE)
-
-
-def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
-    """What cables bear that they should not."""
-    return tuple(
-        f"a cable of {robot.cables[index].winch} pulls {tensions[index]:.1f} N, more than {most:g} N"
-        for index in np.flatnonzero(tensions > most)[:3]
-    )

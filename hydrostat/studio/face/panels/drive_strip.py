@@ -49,7 +49,8 @@ def _player(page: Page) -> None:
     ui.label("of").classes("studio-hint")
     length = ui.number(min=0.1, max=600, step=0.5, format="%.4g")
     length.props(
-        'dense borderless debounce=500 input-style="appearance: textfield; text-align: right" aria-label="Length of the timeline"'
+        'dense borderless debounce=500 aria-label="Length of the timeline"'
+        ' input-style="appearance: textfield; text-align: right"'
     ).style("width: 40px")
     length.mark("drive-length")
     ui.label("s").classes("studio-hint")
