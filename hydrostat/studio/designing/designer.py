@@ -17,6 +17,7 @@ from hydrostat.studio.designing.design_work import Found, Glimpse, design_work
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.designing.run import Mark, Run, error_at_rest
+from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.wishes import Paint, Wishes
@@ -64,11 +65,17 @@ class Designer(Stage):
         self._numbered = 0
         self._running = False
         self._ease: Ease | None = None
+        self._sketch: BodySketch | None = None
 
     @property
     def running(self) -> bool:
         """Whether a design goes on."""
         return self._running
+
+    @property
+    def seconds(self) -> float:
+        """Since the last design was asked for [s]."""
+        return 0.0 if self.run is None else time.monotonic() - self.run.began
 
     @property
     def wishes(self) -> Wishes:
@@ -82,6 +89,13 @@ class Designer(Stage):
             return ()
         body = self._document.robot.body
         return tuple(one for one in self._all if one.source.body is body or one.source.body == body)
+
+    def sketch(self, candidate: Candidate) -> str:
+        """A small picture of a candidate, as SVG."""
+        body = candidate.source.body
+        if self._sketch is None or self._sketch.body is not body:
+            self._sketch = BodySketch(body)
+        return self._sketch.network(candidate.robot)
 
     @property
     def candidate(self) -> Candidate | None:
@@ -115,6 +129,12 @@ class Designer(Stage):
         """Take a paint in hand, or put it away; the body is shown at rest to be painted on."""
         self.painter.take(paint)
         self._document.bell.ring(Topic.THINGS, Topic.SHAPE)
+
+    def choose_zone(self, index: int) -> None:
+        """Select a zone; the body is shown at rest."""
+        self.painter.take(None)
+        self.painter.chosen, self.pose = index, None
+        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
 
     def show(self, number: int | None, pose: str | None = None) -> None:
         """Show a candidate, in a pose or at rest; None: the robot as it is."""

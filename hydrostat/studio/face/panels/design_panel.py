@@ -1,10 +1,158 @@
-"""The panel of the stage "design"."""
+"""The panel of the stage "design": what is asked for, the search while it runs, and the networks to choose from."""
+
+from functools import partial
 
 from nicegui import ui
 
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.designing.asked import wished_poses
+from hydrostat.studio.designing.growth_chart import growth_chart
 from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.panels.design_compare import design_compare
+from hydrostat.studio.face.panels.design_limits import design_limits
+from hydrostat.studio.face.panels.design_paint import design_paint
+from hydrostat.studio.stage import StageName
 
 
 def design_panel(page: Page) -> None:
     """Build the panel."""
-    ui.label("design")
+    ui.label("Design").classes("studio-title")
+    _poses(page)
+    _counts(page)
+    _go(page)
+    _progress(page)
+    design_paint(page)
+    design_limits(page)
+    with page.bottom:
+        design_compare(page)
+
+
+def _poses(page: Page) -> None:
+    """The poses to reach, each to be left out or not."""
+    document, designer = page.session.document, page.session.designer
+    room = ui.column().classes("w-full gap-2")
+    drawn: list[object] = []
+
+    def show() -> None:
+        robot = document.robot
+        wanted = {pose.name for pose in wished_poses(robot, designer.wishes)} if robot.poses else set()
+        state = (tuple(robot.poses), frozenset(wanted))
+        if drawn == [state]:
+            return
+        drawn[:] = [state]
+        room.clear()
+        with room:
+            if not robot.poses:
+                _no_pose(page)
+                return
+            ui.label("Poses to reach").classes("studio-section").style("margin-top: 0")
+            with ui.element("div").classes("row").style("gap: 6px"):
+                for name in robot.poses:
+                    chip = ui.element("div").classes("design-pose" + (" design-pose-on" if name in wanted else ""))
+                    chip.props(f'role="checkbox" tabindex="0" aria-checked="{str(name in wanted).lower()}"')
+                    chip.on("click", page.doing(designer.wish_pose, name, name not in wanted))
+                    chip.on("keydown.enter", page.doing(designer.wish_pose, name, name not in wanted))
+                    with chip:
+                        ui.label(name)
+
+    page.on(Topic.ROBOT, show)
+
+
+def _no_pose(page: Page) -> None:
+    with ui.element("div").classes("studio-card column"):
+        ui.label("There is no pose to design for yet.").style("font-weight: 600")
+        ui.label("Drag the body to where it should go, and store that as a pose.").classes("studio-hint")
+        go = ui.button("Go to Pose", icon="back_hand", on_click=lambda: page.go(StageName.POSE))
+        go.props('outline no-caps data-testid="design-to-pose"').classes("w-full")
+
+
+def _counts(page: Page) -> None:
+    """Winches and cables, by steps."""
+    designer = page.session.designer
+    with ui.column().classes("w-full").style("gap: 4px"):
+        winches = _stepper(page, "Winches", "winches", least=0)
+        cables = _stepper(page, "Cables, at most", "cables", least=1)
+    hint = ui.label("As few winches as bring every pose close enough.").classes("studio-hint")
+
+    def show() -> None:
+        wishes = designer.wishes
+        winches.set_text(str(wishes.winches) if wishes.winches else "auto")
+        cables.set_text(str(wishes.cables))
+        hint.set_visibility(wishes.winches == 0)
+
+    page.on(Topic.ROBOT, show)
+
+
+def _stepper(page: Page, words: str, name: str, *, least: int) -> ui.label:
+    designer = page.session.designer
+
+    def step(change: int) -> None:
+        page.act(lambda: designer.wish(**{name: max(least, getattr(designer.wishes, name) + change)}))
+
+    number = ui.label().classes("design-number").props(f'data-testid="design-{name}"')
+    with ui.element("div").classes("design-count") as row:
+        ui.label(words).classes("design-name")
+        for icon, change in (("remove", -1), ("add", 1)):
+            if change > 0:
+                number.move(row)
+            button = ui.button(icon=icon, color=None, on_click=partial(step, change))
+            words_of = "fewer" if change < 0 else "more"
+            button.props(f'outline round size=sm aria-label="{words_of} {name}" data-testid="{words_of}-{name}"')
+            button.style("color: var(--accent)")
+    return number
+
+
+def _go(page: Page) -> None:
+    """The button that everything here is for."""
+    designer, jobs, document = page.session.designer, page.session.jobs, page.session.document
+    button = ui.button("Design", icon="auto_awesome", on_click=page.doing(designer.design)).classes("design-go")
+    button.props('unelevated no-caps data-testid="design-go"')
+
+    def show() -> None:
+        button.set_visibility(not designer.running)
+        button.set_enabled(bool(document.robot.poses) and not jobs.running)
+
+    page.on(Topic.JOB, show)
+    page.on(Topic.ROBOT, show)
+
+
+def _progress(page: Page) -> None:
+    """The search while it runs: the best error so far, how it fell, and a button that ends it."""
+    designer, jobs = page.session.designer, page.session.jobs
+    with ui.element("div").classes("studio-card column") as card:
+        with ui.element("div").classes("studio-row").style("align-items: flex-end"):
+            with ui.column().classes("flex-1").style("gap: 2px"):
+                error = ui.label().classes("design-figure").props('data-testid="design-error"')
+                count = ui.label().classes("studio-hint")
+            stop = ui.button("Stop", icon="stop", on_click=page.doing(designer.stop))
+            stop.props('unelevated no-caps color=negative data-testid="design-stop"')
+        chart = ui.html("", sanitize=False).classes("w-full")
+        bar = ui.linear_progress(value=0.0, show_value=False).props("rounded size=6px")
+        stage = ui.label().classes("studio-hint")
+    outcome = ui.label().props('data-testid="design-outcome"')
+
+    def show() -> None:
+        state, run = jobs.state, designer.run
+        card.set_visibility(designer.running)
+        outcome.set_visibility(bool(designer.outcome) and not designer.running)
+        outcome.set_text(designer.outcome)
+        failed = not designer.candidates
+        outcome.classes(add="design-bad" if failed else "studio-hint", remove="studio-hint" if failed else "design-bad")
+        if not designer.running or run is None or state is None:
+            return
+        best = run.trail[-1] if run.trail else None
+        error.set_text("Searching" if best is None else f"{1e3 * best.error:.2g} mm off")
+        count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm off at rest")
+        chart.set_content(growth_chart(run, designer.seconds))
+        bar.set_value(state.done / state.total if state.total else 0.0)
+        stage.set_text("Finishing with the best so far" if state.stopping else state.stage)
+        stop.set_text("End now" if state.stopping else "Stop")
+
+    page.on(Topic.JOB, show)
+    ui.timer(1.0, lambda: show() if designer.running else None)
+
+
+def _so_far(winches: int, cables: int) -> str:
+    from hydrostat.units import counted
+
+    return f"with {counted(winches, 'winch')} and {counted(cables, 'cable')} so far"

@@ -1,0 +1,87 @@
+"""`BodySketch`: small pictures of a network, as SVG that follows the colours of the page."""
+
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Points
+from hydrostat.plot.palette import winch_colours
+from hydrostat.robot import Body, Robot
+
+EDGE = 200.0
+"""Longest side of a picture, in units of its drawing."""
+
+MARGIN = 12.0
+
+SIGHT = np.array([[0.905, -0.426, 0.0], [0.168, 0.357, 0.919]])
+"""A body in space is seen from the front, a little from the right and from above: picture axes, (2, 3)."""
+
+
+class BodySketch:
+    """The silhouette of a body, made once, with networks drawn into it."""
+
+    def __init__(self, body: Body) -> None:
+        self.body = body
+
+    def network(self, robot: Robot) -> str:
+        """The picture of a network in this body."""
+        colours = winch_colours(robot)
+        parts = [f'<path d="{self._outline}" class="sketch-body"/>']
+        for cable in robot.cables:
+            places = self._places(np.array(cable.points))
+            colour = colours[cable.winch]
+            parts.append(f'<path d="{_path(places)}" class="sketch-cable" stroke="{colour}"/>')
+            x, y = places[-1]
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.4" fill="{colour}"/>')
+        for winch in robot.winches:
+            x, y = self._places(np.array([winch.at]))[0]
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" class="sketch-winch" fill="{colours[winch.name]}"/>')
+        wide, high = self._size
+        return f'<svg viewBox="0 0 {wide:.0f} {high:.0f}" class="sketch" role="img">{"".join(parts)}</svg>'
+
+    @property
+    def _size(self) -> tuple[float, float]:
+        low, high = self._box
+        wide, tall = self._scale * (high - low) + 2 * MARGIN
+        return float(wide), float(tall)
+
+    @cached_property
+    def _box(self) -> tuple[np.ndarray, np.ndarray]:
+        flat = _seen(self.body.mesh.nodes)
+        return flat.min(axis=0), flat.max(axis=0)
+
+    @property
+    def _scale(self) -> float:
+        low, high = self._box
+        return float((EDGE - 2 * MARGIN) / (high - low).max())
+
+    def _places(self, points: Points) -> Float[np.ndarray, "points 2"]:
+        """Points [m] in the picture, y down."""
+        low = self._box[0]
+        seen = self._scale * (_seen(points) - low) + MARGIN
+        seen[:, 1] = self._size[1] - seen[:, 1]
+        return seen
+
+    @cached_property
+    def _outline(self) -> str:
+        from shapely import polygons, union_all
+
+        mesh = self.body.mesh
+        places = self._places(mesh.nodes)
+        corners = places[mesh.elements if mesh.dim == 2 else mesh.boundary]
+        spans = corners[:, 1:] - corners[:, :1]
+        areas = spans[:, 0, 0] * spans[:, 1, 1] - spans[:, 0, 1] * spans[:, 1, 0]
+        whole = union_all(polygons(corners[np.abs(areas) > 1e-6]), grid_size=0.05).simplify(0.3)
+        pieces = getattr(whole, "geoms", [whole])
+        rings = [ring for piece in pieces for ring in (piece.exterior, *piece.interiors)]
+        return "".join(_path(np.array(ring.coords)) + "Z" for ring in rings)
+
+
+def _seen(points: Points) -> Float[np.ndarray, "points 2"]:
+    """Places of points in the plane of a picture, y up [m]."""
+    return points.astype(float) if points.shape[1] == 2 else points @ SIGHT.T
+
+
+def _path(places: Float[np.ndarray, "points 2"]) -> str:
+    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in places)

@@ -1,0 +1,118 @@
+"""`design_limits`: limits of cables and motors, and what stays of the robot's own network."""
+
+from collections.abc import Callable
+from typing import Any
+
+from nicegui import ui
+
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.page import Page
+from hydrostat.studio.records.wishes import Wishes
+
+Show = Callable[[Wishes], Any]
+
+
+def design_limits(page: Page) -> None:
+    """Build the sections, closed."""
+    designer = page.session.designer
+    shows: list[Show] = []
+    with _more("Limits"):
+        with ui.element("div").classes("studio-row"):
+            shows += [
+                _number(page, "Tension, at most", "N", "tension"),
+                _number(page, "From the edge", "mm", "clearance"),
+            ]
+        shows.append(_mirror(page))
+        with ui.element("div").classes("studio-row"):
+            shows += [_number(page, "Close enough", "mm", "tolerance"), _number(page, "Slack, at most", "mm", "slack")]
+        with ui.element("div").classes("studio-row"):
+            shows += [_number(page, "Cables a winch", "", "cables_per_winch"), _number(page, "Torque", "N m", "torque")]
+        shows.append(_switch(page, "Spools may differ in radius", "stepped"))
+    _own(page, shows)
+
+    def show() -> None:
+        for refresh in shows:
+            refresh(designer.wishes)
+
+    page.on(Topic.ROBOT, show)
+
+
+def _more(title: str) -> ui.expansion:
+    return ui.expansion(title).classes("design-more").props('dense header-class="studio-section"')
+
+
+def _number(page: Page, words: str, unit: str, name: str) -> Show:
+    """A box for a wish; empty for one that is left open."""
+    designer = page.session.designer
+    scale = 1e3 if unit == "mm" else 1.0
+    whole = unit == ""
+    optional = name in ("tolerance", "torque")
+    box = ui.number(words, suffix=unit or None, format="%.6g").props("dense outlined hide-bottom-space stack-label")
+    box.classes("flex-1 studio-figure").style("min-width: 0").props(f'data-testid="wish-{name}"')
+    if optional:
+        box.props('placeholder="auto" clearable')
+
+    def send() -> None:
+        value = box.value
+        if value is None and not optional:
+            show(designer.wishes)
+            return
+        number = None if value is None else int(value) if whole else value / scale
+        page.act(lambda: designer.wish(**{name: number}))
+        show(designer.wishes)
+
+    def show(wishes: Wishes) -> None:
+        value = getattr(wishes, name)
+        box.set_value(None if value is None else float(f"{scale * value:.6g}"))
+
+    for event in ("blur", "keydown.enter", "clear"):
+        box.on(event, send)
+    return show
+
+
+def _switch(page: Page, words: str, name: str) -> Show:
+    designer = page.session.designer
+    switch = ui.switch(words).props(f'dense data-testid="wish-{name}"').style("font-size: 13px")
+    switch.on_value_change(lambda event: page.act(lambda: designer.wish(**{name: bool(event.value)})))
+    return lambda wishes: switch.set_value(getattr(wishes, name))
+
+
+def _mirror(page: Page) -> Show:
+    designer, robot = page.session.designer, page.session.document.robot
+    choices = {"": "off", **{axis: axis for axis in "xyz"[: robot.body.mesh.dim]}}
+    with ui.element("div").classes("studio-row"):
+        ui.label("Same on both sides of").classes("flex-1").style("font-size: 13px")
+        choice = ui.toggle(choices, value="").props('dense no-caps unelevated padding="2px 12px"')
+        choice.props("toggle-color=primary color=transparent text-color=primary")
+        choice.props('data-testid="wish-mirror"')
+    choice.on_value_change(lambda event: page.act(lambda: designer.wish(mirror=event.value or None)))
+    return lambda wishes: choice.set_value(wishes.mirror or "")
+
+
+def _own(page: Page, shows: list[Show]) -> None:
+    """What the robot has already: it can stay, or be improved."""
+    designer, robot = page.session.designer, page.session.document.robot
+    if not robot.cables and not robot.winches:
+        return
+    with _more("What the robot has"):
+        shows.append(_switch(page, "Begin with it and improve it", "improve"))
+        options = {f"winch {winch.name}": f"winch {winch.name}" for winch in robot.winches}
+        options |= {f"cable {index}": f"cable {index + 1}, {cable.winch}" for index, cable in enumerate(robot.cables)}
+        keep = ui.select(options, multiple=True, label="These stay").props("dense outlined use-chips options-dense")
+        keep.classes("w-full").props('data-testid="wish-keep"')
+
+    def send() -> None:
+        names = [name.partition(" ") for name in keep.value]
+        winches = tuple(name for kind, _, name in names if kind == "winch")
+        cables = tuple(int(name) for kind, _, name in names if kind == "cable")
+        page.act(lambda: designer.wish(kept_winches=winches, kept_cables=cables))
+
+    def show(wishes: Wishes) -> None:
+        chosen = [
+            *(f"winch {name}" for name in wishes.kept_winches),
+            *(f"cable {index}" for index in wishes.kept_cables),
+        ]
+        keep.set_value([name for name in chosen if name in options])
+
+    keep.on_value_change(send)
+    shows.append(show)

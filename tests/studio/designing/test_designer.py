@@ -1,0 +1,221 @@
+"""The stage design with real searches in real processes. Oracles: `design_cables` here, the network that was shown."""
+
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hydrostat.design import RouteOptions, design_cables
+from hydrostat.errors import InputError
+from hydrostat.ik import Limits, solve_ik
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.simulation import Simulation
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.designing.ease import DURATION
+from hydrostat.studio.designing.run import error_at_rest
+from hydrostat.studio.records.wishes import Wishes
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.session import Session
+from hydrostat.studio.stage import StageName
+from hydrostat.studio.view.things import Dot, Line, Look
+
+PATIENCE = 100.0
+FAST = RouteOptions(starts=1, exchanges=0, polish=2, trials=1, steps=1, hops=6)
+LONG = RouteOptions(enough=0.0, exchanges=1000)
+
+
+class Studio:
+    """A session that can be waited on."""
+
+    def __init__(self, robot: Robot, options: RouteOptions, *, cables: int = 2) -> None:
+        self.session = Session()
+        self.designer = self.session.designer
+        self.designer._options = options
+        self.rung = threading.Condition()
+        self.session.bell.listen(self._hear)
+        self.session.document.open(Work(robot=robot, wishes=Wishes(winches=1, cables=cables, poses=("wave",))))
+        self.session.go(StageName.DESIGN)
+
+    def _hear(self, topic: Topic) -> None:
+        with self.rung:
+            self.rung.notify_all()
+
+    def until(self, condition) -> None:
+        with self.rung:
+            assert self.rung.wait_for(condition, PATIENCE)
+
+    def settle(self) -> None:
+        """Let the body come to where it glides."""
+        now = 0.0
+        while self.session.step(now):
+            now += DURATION / 4
+
+
+@pytest.fixture(scope="module")
+def starfish() -> Robot:
+    return load_robot(gallery_folder("starfish"))
+
+
+@pytest.fixture(scope="module")
+def done(starfish: Robot) -> Iterator[Studio]:
+    """A design that is done; tests leave it so."""
+    studio = Studio(starfish, FAST)
+    studio.designer.design()
+    studio.until(lambda: not studio.designer.running)
+    yield studio
+    studio.session.close()
+
+
+@pytest.fixture
+def fresh(starfish: Robot) -> Iterator[Studio]:
+    studio = Studio(starfish, LONG, cables=6)
+    yield studio
+    studio.session.close()
+
+
+def test_what_is_found_is_what_design_cables_returns(done: Studio, starfish: Robot, unchecked: None) -> None:
+    expected = design_cables(starfish, [starfish.pose("wave")], winches=1, cables=2, options=FAST)
+    best = done.designer.candidates[0]
+    assert best.best
+    assert best.complete
+    assert (best.robot.winches, best.robot.cables) == (expected.robot.winches, expected.robot.cables)
+    assert best.error == pytest.approx(expected.rms_error, rel=1e-6)
+    assert len(done.designer.candidates) == 1 + len(expected.alternatives)
+    assert best.counts == "1 winch, 2 cables"
+    assert best.length == sum(cable.length for cable in expected.robot.cables)
+    assert best.tension == pytest.approx(expected.reached[0].pose.tensions.max(), rel=1e-6)
+    assert "1 winch, 2 cables" in done.designer.outcome
+    assert done.session.document.robot is starfish
+
+
+def test_networks_on_the_way_get_better_from_rest_on(done: Studio, starfish: Robot) -> None:
+    run = done.designer.run
+    assert run is not None
+    errors = [mark.error for mark in run.trail]
+    assert errors == sorted(set(errors), reverse=True)
+    assert [mark.seconds for mark in run.trail] == sorted(mark.seconds for mark in run.trail)
+    assert 0 < errors[-1] < run.rest == error_at_rest(starfish, (starfish.pose("wave"),))
+
+
+def test_a_candidate_is_shown_in_its_pose_and_at_rest(done: Studio) -> None:
+    designer, best = done.designer, done.designer.candidates[0]
+    designer.show(best.number, "wave")
+    done.settle()
+    solved = solve_ik(Simulation(best.robot), best.robot.pose("wave"), limits=Limits(tension=20.0)).pose
+    np.testing.assert_allclose(designer.shape().nodes, solved.nodes, atol=1e-5)
+    np.testing.assert_allclose(designer.shape().tensions, solved.tensions, atol=1e-2)
+    assert designer.shape().errors == best.reaches[0].errors
+    targets = [thing for thing in designer.things() if isinstance(thing, Dot) and thing.look is Look.TARGET]
+    assert [dot.at for dot in targets] == list(best.robot.pose("wave").targets.values())
+    cables = [thing for thing in designer.things() if isinstance(thing, Line) and thing.key.startswith("cable")]
+    assert [line.points for line in cables] == [cable.points for cable in best.robot.cables]
+    designer.show(best.number)
+    done.settle()
+    np.testing.assert_array_equal(designer.shape().nodes, best.source.body.mesh.nodes)
+    assert not designer.shape().tensions.any()
+    assert done.session.shown() is not None
+
+
+def test_accepting_is_one_step_to_undo(done: Studio, starfish: Robot) -> None:
+    document, designer = done.session.document, done.designer
+    best = designer.candidates[0]
+    designer.show(best.number, "wave")
+    designer.accept()
+    assert document.robot.winches == best.robot.winches
+    assert document.robot.cables == best.robot.cables
+    assert document.robot.body is starfish.body
+    assert document.undo_label == "accept design, 1 winch, 2 cables"
+    document.undo()
+    assert document.robot is starfish
+
+
+def test_nothing_is_accepted_into_another_body(done: Studio, starfish: Robot) -> None:
+    document, designer = done.session.document, done.designer
+    designer.show(designer.candidates[0].number)
+    thick = replace(starfish, body=replace(starfish.body, thickness=0.05))
+    document.change("thicker", robot=thick)
+    assert designer.candidates == ()
+    with pytest.raises(InputError, match="another body"):
+        designer.accept()
+    document.undo()
+    assert len(designer.candidates) > 0
+
+
+def test_candidates_are_forgotten_when_cleared(done: Studio) -> None:
+    kept = done.designer._all
+    done.designer.clear()
+    assert done.designer.candidates == ()
+    assert done.designer.candidate is None
+    done.designer._all = kept
+
+
+def test_stopped_it_returns_the_best_so_far(fresh: Studio, starfish: Robot) -> None:
+    designer = fresh.designer
+    designer.design()
+    with pytest.raises(InputError, match="Designing cables is still in progress"):
+        designer.design()
+    fresh.until(lambda: designer.run is not None and designer.run.best is not None)
+    assert designer.running
+    fresh.settle()
+    run = designer.run
+    assert run is not None
+    assert run.best is not None
+    cables = [thing for thing in designer.things() if isinstance(thing, Line) and thing.key.startswith("cable")]
+    assert [line.points for line in cables] in [[cable.points for cable in robot.cables] for robot in (run.best,)]
+    fresh.session.go(StageName.POSE)
+    fresh.session.go(StageName.DESIGN)
+    assert designer.running
+    designer.stop()
+    fresh.until(lambda: not designer.running)
+    assert not designer.candidates[0].complete
+    assert designer.outcome.startswith("stopped early")
+    assert fresh.session.document.robot is starfish
+
+
+def test_stopped_twice_there_is_none(fresh: Studio) -> None:
+    fresh.designer.design()
+    fresh.designer.stop()
+    fresh.designer.stop()
+    fresh.until(lambda: not fresh.designer.running)
+    assert fresh.designer.candidates == ()
+    assert fresh.designer.outcome == "stopped before there was a network"
+    assert fresh.designer.step(0.0) is False
+
+
+def test_what_the_search_refuses_is_told(fresh: Studio) -> None:
+    fresh.designer.wish(winches=2, cables=1)
+    fresh.designer.design()
+    fresh.until(lambda: not fresh.designer.running)
+    assert fresh.designer.outcome.startswith("2 winches and 1 cables")
+
+
+def test_without_poses_it_says_what_to_do(fresh: Studio, starfish: Robot) -> None:
+    fresh.session.document.change("no poses", robot=replace(starfish, poses={}))
+    with pytest.raises(InputError, match="there is no pose to design for; drag the body in Pose"):
+        fresh.designer.design()
+    assert not fresh.designer.running
+
+
+def test_wishes_are_undone_and_wrong_ones_refused(fresh: Studio) -> None:
+    designer, document = fresh.designer, fresh.session.document
+    designer.wish(winches=3)
+    designer.wish(cables=4)
+    document.undo()
+    assert (designer.wishes.winches, designer.wishes.cables) == (3, 6)
+    for wrong in ({"winches": 21}, {"cables": 0}, {"tension": 0.0}, {"slack": -1.0}, {"torque": float("nan")}):
+        with pytest.raises(InputError, match="must be"):
+            designer.wish(**wrong)
+    designer.wish(slack=0.0)
+    assert document.redo_label == "change wishes"
+
+
+def test_one_pose_at_least_is_reached(fresh: Studio) -> None:
+    designer = fresh.designer
+    with pytest.raises(InputError, match="at least one pose"):
+        designer.wish_pose("wave", False)
+    designer.wish_pose("star_jump", True)
+    assert designer.wishes.poses == ()
+    designer.wish_pose("wave", False)
+    assert designer.wishes.poses == ("star_jump",)
