@@ -155,6 +155,10 @@ class Exporter(Stage):
             files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Robot")
 
+    def enter(self) -> None:
+        """A process stands ready, so that work begins at once."""
+        self._jobs.warm(make_kit.__module__)
+
     def shape(self) -> Shape:
         """The pose that is shown, once it is solved; till then the rest shape."""
         posed = self._posed

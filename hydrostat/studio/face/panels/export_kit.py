@@ -11,6 +11,7 @@ from hydrostat.studio.exporting.kit_made import KitMade
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.export_download import download_button
 from hydrostat.studio.face.panels.export_pictures import picture, show_large
+from hydrostat.units import counted
 
 METHODS = {"": "Auto", Method.PLUSH.value: "Plush", Method.FOAM.value: "Foam"}
 
@@ -84,7 +85,7 @@ def kit_result(page: Page) -> None:
             ui.label(head).classes("export-head")
             ui.label(words or "")
     _pages(kit)
-    _lines("cannot be built well", kit.problems, "error_outline", "export-bad")
+    _lines("that cannot be built well", kit.problems, "error_outline", "export-bad")
     _lines("to mind", kit.warnings, "info_outline", "export-mind")
     _checks(kit)
 
@@ -109,7 +110,11 @@ def _pages(kit: KitMade) -> None:
 def _lines(words: str, lines: tuple[str, ...], icon: str, kind: str) -> None:
     if not lines:
         return
-    with ui.expansion(f"{len(lines)} {words}", value=len(lines) < 3).props("dense").classes("export-more w-full"):
+    with (
+        ui.expansion(f"{counted(len(lines), 'thing')} {words}", value=len(lines) < 3)
+        .props("dense")
+        .classes("export-more w-full")
+    ):
         for line in lines:
             _line(line, icon, kind)
 
@@ -117,7 +122,7 @@ def _lines(words: str, lines: tuple[str, ...], icon: str, kind: str) -> None:
 def _line(words: str, icon: str, kind: str) -> None:
     with ui.element("div").classes("export-told"):
         ui.icon(icon, size="18px").classes(kind)
-        ui.label(words[:1].upper() + words[1:])
+        ui.label(words)
 
 
 def _checks(kit: KitMade) -> None:
