@@ -44,7 +44,8 @@ function runs(view, line) {
   for (let k = 0; k < line.count; k++) {
     const i = 3 * (line.first + k);
     camera.project(points[i], points[i + 1], points[i + 2], next);
-    const pieces = flat || !k ? 1 : Math.min(Math.max(Math.ceil(Math.hypot(next[0] - here[0], next[1] - here[1]) / PIECE), 1), 200);
+    const length = flat || !k ? 0 : Math.hypot(next[0] - here[0], next[1] - here[1]);
+    const pieces = Math.min(Math.max(Math.ceil(length / PIECE), 1), 200);
     for (let p = 1; p <= pieces; p++) {
       const share = k ? p / pieces : 1;
       const [x, y, z] = [0, 1, 2].map((m) => here[m] + share * (next[m] - here[m]));

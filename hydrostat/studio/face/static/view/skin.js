@@ -1,7 +1,7 @@
 // The smooth rim of a flat body and the stitches a little inside it, stuck to its nodes so that they follow.
 
 const INSET = 0.016; // as a share of the body's size, as in the report
-const PIECES = 4; // of each edge of the rim
+const POINTS = 1600; // on all rims, about; an edge has four at most
 const CORNER = Math.cos((60 * Math.PI) / 180); // what turns more is a corner, and stays one
 
 /** The closed loops of a rim, as indices of nodes, the outer first; the body lies to the left of each. */
@@ -15,7 +15,8 @@ export function loops(rim, rest) {
   const found = [], used = new Set();
   for (const start of next.keys()) {
     const loop = [];
-    for (let here = used.has(start) ? undefined : start; here !== undefined; here = next.get(here).find((node) => !used.has(node))) {
+    const onward = (node) => next.get(node).find((other) => !used.has(other));
+    for (let here = used.has(start) ? undefined : start; here !== undefined; here = onward(here)) {
       used.add(here);
       loop.push(here);
     }
@@ -100,7 +101,8 @@ class Rings {
 export class Skin {
   constructor(rim, rest, faces) {
     this.loops = loops(rim, rest);
-    this.rim = new Rings(this.loops.map((loop) => smooth(loop, rest)), 4);
+    const pieces = Math.min(4, Math.max(1, Math.floor((2 * POINTS) / Math.max(rim.length, 1))));
+    this.rim = new Rings(this.loops.map((loop) => smooth(loop, rest, pieces)), 4);
     const rings = this.rim.at(rest).map(pairs);
     const size = Math.max(extent(rings.flat(), 0), extent(rings.flat(), 1));
     const seams = rings.map((ring) => inset(ring, rings, INSET * size));
@@ -121,15 +123,15 @@ function pairs(ring) {
 }
 
 /** A curve through the nodes of a loop, by Hermite's polynomials. */
-function smooth(loop, rest) {
+function smooth(loop, rest, pieces) {
   const at = (i) => loop[(i + loop.length) % loop.length];
   const bend = loop.map((node, i) => {
     const [a, b, c] = [at(i - 1), node, at(i + 1)].map((n) => [rest[3 * n], rest[3 * n + 1]]);
     const u = [b[0] - a[0], b[1] - a[1]], v = [c[0] - b[0], c[1] - b[1]];
     return (u[0] * v[0] + u[1] * v[1]) / (Math.hypot(...u) * Math.hypot(...v) || 1) < CORNER ? 0 : 0.5;
   });
-  return loop.flatMap((_, i) => Array.from({ length: PIECES }, (_, k) => {
-    const t = k / PIECES, u = 1 - t;
+  return loop.flatMap((_, i) => Array.from({ length: pieces }, (_, k) => {
+    const t = k / pieces, u = 1 - t;
     const from = bend[i] * t * u * u, to = -bend[(i + 1) % loop.length] * t * t * u;
     const start = u * u * (1 + 2 * t), end = t * t * (3 - 2 * t);
     return { nodes: [at(i - 1), at(i), at(i + 1), at(i + 2)], weights: [-from, start - to, end + from, to] };

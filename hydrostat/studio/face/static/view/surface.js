@@ -170,7 +170,7 @@ export class Ghost {
     this.geometry = surface(nodes, faces, false);
     this.uniforms = { tint: { value: new THREE.Vector3() }, opacity: { value: 1 } };
     this.objects = [shown(this.geometry, new THREE.ShaderMaterial({
-      vertexShader: VERTEX.replace("projectionMatrix * seen;", "projectionMatrix * seen; gl_Position.z += 0.004 * gl_Position.w;"),
+      vertexShader: VERTEX.replace(/}$/, "gl_Position.z += 0.004 * gl_Position.w; }"),
       fragmentShader: GHOST, uniforms: this.uniforms, transparent: true, depthWrite: false,
     }), order)];
   }

@@ -37,7 +37,8 @@ export class View extends Shown {
     this.watch.observe(element);
     canvases[0].addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvases[0].addEventListener("webglcontextrestored", () => this.mark("camera"));
-    this.link = new Link(options.stream, (buffer) => this.guarded(() => this.receive(buffer)), (connected) => this.linked(connected));
+    const receive = (buffer) => this.guarded(() => this.receive(buffer));
+    this.link = new Link(options.stream, receive, (connected) => this.linked(connected));
     this.mark("size");
   }
 
@@ -131,7 +132,7 @@ export class View extends Shown {
     try {
       this.renderer = new THREE.WebGLRenderer({ canvas: this.sheet, powerPreference: "high-performance" });
     } catch (error) {
-      this.tell("failure", "Bodies in space are drawn with WebGL, which this browser does not have. Switch it on, or use another.");
+      this.tell("failure", "Bodies in space need WebGL, which this browser does not have. Switch it on, or use another.");
       throw error;
     }
     this.renderer.setClearColor(this.theme.back, 1);
