@@ -12,6 +12,7 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
+from hydrostat.studio.work_folder import folder_stamp
 
 MOST_STEPS = 500
 """So many changes can be undone; older ones are forgotten."""
@@ -45,12 +46,14 @@ class Document:
     Attributes:
         bell: rung after each change.
         folder: where the robot is saved; None: nowhere yet.
+        stamp: of that folder when it was opened or saved last (`folder_stamp`).
         serial: counts the changes, undoing included; the same number means the same work.
     """
 
     def __init__(self, bell: Bell) -> None:
         self.bell = bell
         self.folder: Path | None = None
+        self.stamp = ""
         self.serial = 0
         self._lock = RLock()
         self._past: list[Change] = []
@@ -109,6 +112,7 @@ class Document:
         with self._lock:
             self._past, self._future = [Change("open", work)], []
             self.folder, self._saved = folder, work if saved else None
+            self.stamp = "" if folder is None else folder_stamp(folder)
             self.serial += 1
         self.bell.ring(Topic.ROBOT, Topic.STAGE, Topic.SHAPE, Topic.THINGS)
 
@@ -166,7 +170,7 @@ class Document:
     def mark_saved(self, folder: Path) -> None:
         """The work is saved in this folder."""
         with self._lock:
-            self.folder, self._saved = folder, self.work
+            self.folder, self._saved, self.stamp = folder, self.work, folder_stamp(folder)
         self.bell.ring(Topic.ROBOT)
 
     def _move(self, source: list[Change], goal: list[Change], *, least: int) -> bool:

@@ -99,7 +99,7 @@ def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
     lost = comments_lost(work, folder)
     if lost:
         told = lost if len(lost) <= MOST_TOLD else [*lost[:MOST_TOLD], f"and {len(lost) - MOST_TOLD} more"]
-        asked.append("Comments in robot.toml would be lost, as what they speak of is gone: " + "  ".join(told))
+        asked.append("Comments in robot.toml would be lost, as what they speak of is gone:\n" + "\n".join(told))
     note = open_note(folder)
     if note:
         asked.append(f"{studio_file.FILE} cannot be read and would be replaced.")

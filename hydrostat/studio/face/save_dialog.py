@@ -1,4 +1,4 @@
-"""`save_dialog`: where a robot is saved."""
+"""`save_dialog`: where a robot is saved, and whether it may be."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,17 +6,20 @@ from pathlib import Path
 from nicegui import ui
 
 from hydrostat.studio.face.page import Page
+from hydrostat.studio.work_folder import doubts
 
 
 def save_dialog(page: Page) -> Callable[[], None]:
-    """Build the dialog; returns what saves: at once where the robot has a folder, else after asking for one."""
+    """Build the dialogs; returns what saves: at once where nothing can be lost by it, else after asking."""
+    document = page.session.document
     with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
         ui.label("Save the robot").classes("studio-title")
         ui.label("A folder with robot.toml and the file of the body.").classes("studio-hint")
-        folder = ui.input("Folder").classes("w-full")
+        folder = ui.input("Folder").classes("w-full").mark("save-folder")
         with ui.row().classes("w-full justify-end"):
             ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
-            ui.button("Save", on_click=lambda: save()).props("unelevated no-caps")
+            ui.button("Save", on_click=lambda: save()).props("unelevated no-caps").mark("save-now")
+    sure = _Sure()
 
     async def save() -> None:
         name = (folder.value or "").strip()
@@ -24,14 +27,53 @@ def save_dialog(page: Page) -> Callable[[], None]:
             page.tell("name a folder")
             return
         dialog.close()
-        await page.act_slowly(page.session.save, Path(name).expanduser())
+        await save_in(Path(name).expanduser())
 
-    async def ask() -> None:
-        document = page.session.document
-        if document.folder is not None:
-            await page.act_slowly(page.session.save)
+    async def save_in(goal: Path) -> None:
+        same = document.folder is not None and goal.resolve() == document.folder.resolve()
+        told = await page.act_slowly(doubts, document.work, goal, document.stamp if same else "")
+        if told is None:
             return
-        folder.set_value(str(Path.cwd() / document.robot.name))
+        answer = await sure.ask(told) if told else "save"
+        if answer == "save":
+            await page.act_slowly(page.session.save, goal)
+        elif answer == "elsewhere":
+            ask_where()
+
+    def ask_where() -> None:
+        folder.set_value(str(document.folder or Path.cwd() / document.robot.name))
         dialog.open()
 
+    async def ask() -> None:
+        if document.folder is None:
+            ask_where()
+        else:
+            await save_in(document.folder)
+
     return ask  # type: ignore[return-value]
+
+
+class _Sure:
+    """Tells what would be lost, and asks whether it may be."""
+
+    def __init__(self) -> None:
+        with ui.dialog() as self._dialog, ui.card().classes("q-pa-md").style("width: 480px"):
+            ui.label("Save over what is there?").classes("studio-title")
+            self._words = ui.column().classes("w-full gap-2")
+            with ui.row().classes("w-full justify-end"):
+                self._button("Cancel", "", "flat").mark("save-cancel")
+                self._button("Save elsewhere", "elsewhere", "flat").mark("save-elsewhere")
+                self._button("Save over it", "save", "unelevated color=negative").mark("save-over")
+
+    async def ask(self, told: list[str]) -> str:
+        """What a person chooses: "save", "elsewhere", or "" to leave all as it is."""
+        self._words.clear()
+        with self._words:
+            for words in told:
+                ui.label(words).style(
+                    "font-size: 14px; line-height: 1.45; white-space: pre-line; overflow-wrap: anywhere"
+                )
+        return await self._dialog or ""
+
+    def _button(self, words: str, answer: str, look: str) -> ui.button:
+        return ui.button(words, on_click=lambda: self._dialog.submit(answer)).props(f"no-caps {look}")

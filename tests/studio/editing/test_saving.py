@@ -12,6 +12,8 @@ from hydrostat.robot import Robot, Winch, gallery_folder, load_robot, robot_text
 from hydrostat.robot.merge import lost_comments, merged_text
 from hydrostat.robot.read import RobotReader
 from hydrostat.robot.toml_blocks import comments
+from hydrostat.studio.bell import Bell
+from hydrostat.studio.document import Document
 from hydrostat.studio.editing.add import add_cable, add_marker, add_pin, add_winch, insert_via
 from hydrostat.studio.editing.change import change, rename, set_gravity
 from hydrostat.studio.editing.move import move
@@ -312,3 +314,18 @@ def test_names_that_the_file_does_not_allow_are_refused(robot: Robot, tmp_path: 
 def test_the_gallery_is_left_to_the_letter() -> None:
     text = (gallery_folder("starfish") / "robot.toml").read_text(encoding="utf-8")
     assert merged_text(text, load_robot(gallery_folder("starfish"))) == text
+
+
+def test_a_document_knows_how_its_folder_was(robot: Robot, tmp_path: Path) -> None:
+    document = Document(Bell())
+    save_work(Work(robot=robot), tmp_path)
+    document.open(open_work(tmp_path), folder=tmp_path)
+    assert doubts(document.work, tmp_path, document.stamp) == []
+    (tmp_path / "robot.toml").write_text((tmp_path / "robot.toml").read_text() + "# mine\n")
+    assert changed_outside(tmp_path, document.stamp)
+    save_work(document.work, tmp_path)
+    document.mark_saved(tmp_path)
+    assert doubts(document.work, tmp_path, document.stamp) == []
+    assert "# mine" in (tmp_path / "robot.toml").read_text()
+    document.open(Work(robot=robot))
+    assert document.stamp == ""

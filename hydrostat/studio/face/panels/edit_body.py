@@ -14,7 +14,7 @@ OWN = "its own numbers"
 
 def body_card(page: Page) -> None:
     """Build the card, folded at first."""
-    fold = ui.expansion("Body", icon="interests").classes("w-full").props("dense header-class=q-px-none")
+    fold = ui.expansion("Body").classes("w-full").props('dense header-class="q-px-none text-weight-bold"')
     with fold.mark("edit-body").style("flex-shrink: 0; font-size: 13px"), ui.column().classes("w-full gap-2"):
         _material(page)
         _lengths(page)

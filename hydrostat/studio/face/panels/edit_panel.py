@@ -71,7 +71,7 @@ def _mirror(page: Page) -> None:
         ui.label("Mirror").style("font-size: 13px")
         ui.space()
         choice = ui.toggle({"": "off", **{axis: axis for axis in axes}}, value="").props("dense no-caps unelevated")
-        choice.props('padding="2px 12px" toggle-color=primary color=transparent text-color=primary').mark("edit-mirror")
+        choice.props('padding="2px 12px" toggle-color=primary color=transparent').mark("edit-mirror")
         choice.tooltip("Edit both sides alike, about the plane where this coordinate is 0")
         choice.on_value_change(lambda event: page.act(editor.mirror_about, event.value))
 

@@ -179,6 +179,7 @@ def _sheath(page: Page, key: str, part: Part) -> Callable[[Robot, Part], None]:
         inside = set(sheathed_segments(robot.cables[part.index]))
         for segment, button in enumerate(buttons):
             on = segment in inside
-            button.props(f"color={'primary' if on else 'transparent'} text-color={'white' if on else 'primary'}")
+            button.props(f"color={'primary' if on else 'transparent'}")
+            button.style("color: white" if on else "color: var(--ink)")
 
     return show
