@@ -39,6 +39,7 @@ export class View extends Shown {
     canvases[0].addEventListener("webglcontextrestored", () => this.mark("camera"));
     const receive = (buffer) => this.guarded(() => this.receive(buffer));
     this.link = new Link(options.stream, receive, (connected) => this.linked(connected));
+    document.fonts?.ready.then(() => this.mark("camera")); // labels that were written before the page's letters came
     this.mark("size");
   }
 
