@@ -6,11 +6,11 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-from shapely import LinearRing, Polygon, get_coordinates
+from shapely import LinearRing, Polygon, distance, get_coordinates
+from shapely import points as shapely_points
 
-from hydrostat.arrays import Points
 from hydrostat.errors import InputError
-from hydrostat.geometry.outline import Outline
+from hydrostat.geometry.outline import Outline, Ring
 
 HANDLE = 0.35
 """Length of the handles of a curve, in distances of its ends: the one that fits circles of four to eight corners best.
@@ -23,8 +23,8 @@ MOST_LOOPS, MOST_CORNERS = 50, 1000
 """So many loops, so many corners in all."""
 
 _STATIONS = np.linspace(0.0, 1.0, 17)[:-1]
-_GOOD_FIT = 0.004
-_SHARP = np.deg2rad(50.0)
+_GOOD_FIT, _THIN, _FIRST, _MOST_KNOTS = 0.0045, 0.0003, 6, 200
+_SHARP, _WINDOW = np.deg2rad(50.0), 0.004
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def send_loops(loops: Iterable[Loop]) -> list[list[list[Any]]]:
     return [[[corner.x, corner.y, corner.smooth] for corner in loop] for loop in loops]
 
 
-def handles(loop: Loop) -> tuple[Points, Points, Points]:
+def handles(loop: Loop) -> tuple[Ring, Ring, Ring]:
     """For each side its start and its two handles [mm]; those of a straight side lie on it."""
     places = np.array([(corner.x, corner.y) for corner in loop], dtype=float)
     smooth = np.array([corner.smooth for corner in loop])
@@ -83,8 +83,8 @@ def handles(loop: Loop) -> tuple[Points, Points, Points]:
     return places, places + HANDLE * chords * leaving, ends - HANDLE * chords * arriving
 
 
-def curve(loop: Loop) -> Points:
-    """Points along a loop [mm]."""
+def curve(loop: Loop) -> Ring:
+    """Ring along a loop [mm]."""
     starts, first, second = handles(loop)
     ends = np.roll(starts, -1, axis=0)
     s = _STATIONS[None, :, None]
@@ -99,8 +99,11 @@ def outline_of(loops: Sequence[Loop]) -> Outline:
 
     Raises:
         OutlineError: they enclose no body, such as when one crosses itself; the message says where.
-        InputError: there is no loop.
+        InputError: there is no loop, or one has not three corners.
     """
+    for loop in loops:
+        if len(loop) < 3:
+            raise InputError(f"a loop needs three corners at least, one has {len(loop)}")
     return Outline(*_sorted([1e-3 * curve(loop) for loop in loops]))
 
 
@@ -108,8 +111,7 @@ def loops_svg(loops: Sequence[Loop]) -> tuple[bytes, tuple[float, float]]:
     """The loops as a drawing in millimetres, and what of theirs lies in its upper left corner [mm].
 
     Raises:
-        OutlineError: as for `outline_of`.
-        InputError: there is no loop.
+        InputError: as for `outline_of`.
     """
     rim = 1e3 * outline_of(loops).exterior
     (left, low), (right, top) = rim.min(axis=0), rim.max(axis=0)
@@ -128,30 +130,54 @@ def fitted(outline: Outline) -> tuple[Loop, ...]:
     return tuple(_fitted(1e3 * ring, 1e3 * outline.size) for ring in outline.rings)
 
 
-def _fitted(ring: Points, size: float) -> Loop:
-    """The coarsest of a few simplifications that is true to the ring [mm]."""
-    rim = LinearRing(ring)
-    loop: Loop = ()
-    for share in (0.04, 0.03, 0.02, 0.015, 0.01, 0.007, 0.005, 0.003, 0.002):
-        kept = get_coordinates(Polygon(ring).simplify(share * size))[:-1]
-        if len(kept) < 3:
-            continue
-        for smooth in (np.abs(_turns(kept)) < _SHARP, np.zeros(len(kept), dtype=bool)):
-            pairs = zip(kept, smooth, strict=True)
-            loop = tuple(Corner(round(float(x), 2), round(float(y), 2), bool(is_smooth)) for (x, y), is_smooth in pairs)
-            if rim.hausdorff_distance(LinearRing(curve(loop))) < _GOOD_FIT * size:
-                return loop
-    return loop
+def _fitted(rim: Ring, size: float) -> Loop:
+    """Corners where a ring [mm] is followed worst, stretch by stretch, until all of it is followed well."""
+    ring = get_coordinates(Polygon(rim).simplify(_THIN * size))[:-1]
+    whole, places = LinearRing(ring), shapely_points(ring)
+    sharp = _sharp(ring, _WINDOW * size)
+    knots = [int(index) for index in np.linspace(0, len(ring), min(_FIRST, len(ring)), endpoint=False)]
+    while True:
+        loop = tuple(
+            Corner(round(float(ring[knot, 0]), 2), round(float(ring[knot, 1]), 2), not sharp[knot]) for knot in knots
+        )
+        dense = curve(loop)
+        missed = distance(places, LinearRing(dense))
+        missed[knots] = 0.0
+        strayed = distance(shapely_points(dense), whole)
+        if max(missed.max(), strayed.max()) < _GOOD_FIT * size or len(knots) >= min(_MOST_KNOTS, len(ring)):
+            return loop
+        stretches = [part[1:] for part in np.split(np.arange(len(ring)), knots[1:])]
+        worst = [int(part[missed[part].argmax()]) for part in stretches if len(part)]
+        more = {knot for knot in worst if missed[knot] > _GOOD_FIT * size}
+        if not more:
+            near = int(np.linalg.norm(ring - dense[strayed.argmax()], axis=1).argmin())
+            more = {near if near not in knots else _halfway(knots, near, len(ring))}
+        knots = sorted({*knots, *more})
 
 
-def _turns(ring: Points) -> np.ndarray:
-    """By which angle a ring turns at each corner."""
+def _halfway(knots: list[int], knot: int, count: int) -> int:
+    """A point of a ring in the middle of the longer stretch beside a knot."""
+    place = knots.index(knot)
+    before, after = (knot - knots[place - 1]) % count, (knots[(place + 1) % len(knots)] - knot) % count
+    return (knot + after // 2) % count if after >= before else (knot - before // 2) % count
+
+
+def _sharp(ring: Ring, window: float) -> np.ndarray:
+    """Which points of a ring are corners: it turns there by a lot within a window [mm]."""
     sides = np.roll(ring, -1, axis=0) - ring
-    angles = np.arctan2(sides[:, 1], sides[:, 0])
-    return (angles - np.roll(angles, 1) + np.pi) % (2 * np.pi) - np.pi
+    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(sides, axis=1))])
+    closed, total = np.concatenate([ring, ring[:1]]), lengths[-1]
+
+    def at(shift: float) -> Ring:
+        stations = (lengths[:-1] + shift) % total
+        return np.stack([np.interp(stations, lengths, closed[:, axis]) for axis in (0, 1)], axis=1)
+
+    coming, going = ring - at(-window), at(window) - ring
+    turns = np.arctan2(going[:, 1], going[:, 0]) - np.arctan2(coming[:, 1], coming[:, 0])
+    return np.abs((turns + np.pi) % (2 * np.pi) - np.pi) > _SHARP
 
 
-def _sorted(rings: list[Points]) -> tuple[Points, tuple[Points, ...]]:
+def _sorted(rings: list[Ring]) -> tuple[Ring, tuple[Ring, ...]]:
     if not rings:
         raise InputError("there is no outline yet; click to set its corners")
     areas = [abs(Polygon(ring).area) if len(ring) > 2 else 0.0 for ring in rings]

@@ -81,7 +81,7 @@ def beginnings() -> dict[str, tuple[Loop, ...]]:
     """Simple shapes to begin with, by name."""
     disc = tuple(Corner(100 * _cos(k, 8), 70 * _sin(k, 8), True) for k in range(8))
     bar = (Corner(-120, -25), Corner(120, -25), Corner(120, 25), Corner(-120, 25))
-    star = tuple(Corner((120 if k % 2 else 45) * _cos(k + 0.5, 10), (120 if k % 2 else 45) * _sin(k + 0.5, 10), True)
+    star = tuple(Corner((120 if k % 2 else 45) * _cos(k + 1.5, 10), (120 if k % 2 else 45) * _sin(k + 1.5, 10), True)
                  for k in range(10))  # fmt: skip
     return {"Disc": (disc,), "Bar": (bar,), "Star": (star,)}
 

@@ -26,6 +26,15 @@ from hydrostat.studio.work_folder import open_work
 
 TITLE = "Meshing"
 
+_MODULES = (
+    "hydrostat.studio.starting.sketch",
+    "hydrostat.geometry.files.outline_file",
+    "hydrostat.geometry.tetrahedra.tetrahedralise",
+    "hydrostat.ik.first_pose",
+    "hydrostat.plot",
+)
+"""What a process that meshes needs; a process that has them already answers at once."""
+
 _LIGHT = {"name", "material"}
 """What can be changed without a new mesh."""
 
@@ -58,6 +67,7 @@ class Starter(Stage):
         self._recent = Recent(None if state is None else state / "recent.json")
         self._known: Path | None = None
         self._working: Draft | None = None
+        self._halted = self._eager = False
         self._lock = RLock()
         document.bell.listen(self._hear)
 
@@ -103,6 +113,11 @@ class Starter(Stage):
     def is_current(self) -> bool:
         """Whether the sketch is what the draft asks for."""
         return self.sketch is not None and self.sketch.draft is self.draft and not self.problem
+
+    def get_ready(self) -> None:
+        """Files may be brought soon: from now on a process that meshes them is kept ready."""
+        self._eager = True
+        self._jobs.warm(*_MODULES)
 
     def bring(self, name: str, content: bytes) -> None:
         """Begin with a file that a person brings; it is meshed in a process of its own.
@@ -152,6 +167,15 @@ class Starter(Stage):
             self._end()
         self._document.bell.ring(Topic.JOB)
 
+    def stop(self) -> None:
+        """End meshing; what was sketched before stays."""
+        with self._lock:
+            if self.sketch is None:
+                self.drop()
+            elif self._working is not None:
+                self.draft, self._halted = self.sketch.draft, True
+                self._end()
+
     def outline_new(self) -> None:
         """Begin to draw an outline."""
         self.outlining = Outlining()
@@ -193,7 +217,7 @@ class Starter(Stage):
 
     def _take(self, draft: Draft) -> None:
         """Make a sketch of a draft as soon as the one before is out of the way."""
-        self.draft, self.problem = draft, ""
+        self.draft, self.problem, self._halted = draft, "", False
         if self._working is None:
             self._begin(draft)
         else:
@@ -220,12 +244,15 @@ class Starter(Stage):
 
     def _ended(self) -> None:
         with self._lock:
-            done, self._working = self._working, None
-            if self.draft is not None and self.draft is not done:
-                self._begin(self.draft)
-            elif self.draft is not None:
+            again = self.draft is not None and self.draft is not self._working and not self._halted
+            if self.draft is not None and not again and not self._halted:
                 state = self._jobs.state
                 self.problem = "" if state is None else state.error
+            self._working, self._halted = None, False
+            if again and self.draft is not None:
+                self._begin(self.draft)
+            elif self._eager:
+                self.get_ready()
         self._document.bell.ring(Topic.JOB)
 
     def _hear(self, topic: Topic) -> None:

@@ -10,7 +10,7 @@ from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.leave_dialog import may_leave
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.draft import Draft
-from hydrostat.studio.starting.material_words import material_words
+from hydrostat.studio.starting.material_words import material_words, young_words
 from hydrostat.studio.starting.sketch import Sketch
 
 FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}
@@ -50,7 +50,7 @@ def _state(page: Page) -> Callable[[], None]:
         ui.spinner(size="20px")
         stage = ui.label()
         ui.space()
-        ui.button("Stop", on_click=page.doing(starter.drop)).props("flat no-caps dense padding='2px 12px'")
+        ui.button("Stop", on_click=page.doing(starter.stop)).props("flat no-caps dense padding='2px 12px'")
     with ui.element("div").classes("start-card") as wrong, ui.element("div").classes("start-problem"):
         ui.icon("error_outline").classes("text-lg")
         problem = ui.label().mark("problem")
@@ -128,7 +128,7 @@ def _fields(page: Page) -> Callable[[Draft, Sketch | None], None]:
         thick = _Length("Thickness", lambda value: ask(**{_thick_key(starter.draft): value}), "thickness")
         fine = ui.toggle(["Coarse", "Medium", "Fine"]).props("no-caps spread unelevated").classes("w-full")
         element = _Length("Element size", lambda value: ask(element_size=value, nodes=None), "element-size")
-        options = {key: key for key in MATERIALS}
+        options = {key: f"{key}, {young_words(found)}" for key, found in MATERIALS.items()}
         material = ui.select(options, label="Material", with_input=False).props("outlined dense").mark("material")
         words = ui.label().classes("start-small")
         make = ui.button("Make robot", icon="check").props("unelevated no-caps size=md").mark("make-robot")

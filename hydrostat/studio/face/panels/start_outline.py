@@ -50,11 +50,12 @@ def outline_view(page: Page) -> Callable[[], None]:
 
     def show() -> None:
         good = not outlining.fault
+        faulty = not good and bool(outlining.loops)
         words.set_text(outlining.words or outlining.fault)
-        words.classes(**{"remove" if good else "add": "start-problem"})
-        sign.set_name("check_circle" if good else "error_outline")
-        sign.props(f"color={'positive' if good else 'negative'}")
-        editor.set_fault(not good and bool(outlining.loops))
+        words.classes(**{"add" if faulty else "remove": "start-problem"})
+        sign.set_name("check_circle" if good else "error_outline" if faulty else "touch_app")
+        sign.props(f"color={'positive' if good else 'negative' if faulty else 'primary'}")
+        editor.set_fault(faulty)
         done.set_enabled(good)
 
     async def finish() -> None:

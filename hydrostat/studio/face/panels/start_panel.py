@@ -34,4 +34,5 @@ def start_panel(page: Page) -> None:
                 refresh = VIEWS[wanted](page)
         refresh()
 
+    starter.get_ready()
     page.on(Topic.JOB, show)

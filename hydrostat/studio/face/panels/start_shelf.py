@@ -121,7 +121,7 @@ def _draw(page: Page) -> None:
         new = ui.button("New outline", icon="add", on_click=page.doing(starter.outline_new))
         new.props("unelevated no-caps").mark("outline-new")
         if document.is_open and document.robot.body.outline is not None:
-            edit = ui.button(f"Edit that of {document.robot.name}", on_click=page.doing(starter.outline_open))
+            edit = ui.button(f"Edit that of {document.robot.name}", on_click=page.doing_slowly(starter.outline_open))
             edit.props("outline no-caps").mark("outline-edit")
 
 

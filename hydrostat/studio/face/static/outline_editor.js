@@ -66,9 +66,9 @@ export default {
     rulers() {
       const texts = [], { left, right, low, top } = this.edges, big = this.step * 5;
       for (let n = Math.ceil(left / big); n * big <= right; n++)
-        texts.push({ id: "x" + n, words: n * big, x: this.px(n * big) + 4, y: this.high - 7, anchor: "start" });
+        if (this.px(n * big) > 44 && this.px(n * big) < this.wide - 62) texts.push({ id: "x" + n, words: n * big, x: this.px(n * big) + 4, y: this.high - 7, anchor: "start" });
       for (let n = Math.ceil(low / big); n * big <= top; n++)
-        if (n) texts.push({ id: "y" + n, words: n * big, x: 7, y: this.py(n * big) - 4, anchor: "start" });
+        if (this.py(n * big) > 18 && this.py(n * big) < this.high - 26) texts.push({ id: "y" + n, words: n * big, x: 7, y: this.py(n * big) - 4, anchor: "start" });
       texts.push({ id: "unit", words: "mm", x: this.wide - 9, y: this.high - 7, anchor: "end" });
       return texts;
     },

@@ -1,0 +1,164 @@
+"""Work that was not saved comes back after a crash."""
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from hydrostat.robot import Marker, gallery_folder, load_robot
+from hydrostat.studio.bell import Bell
+from hydrostat.studio.document import Document
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.starting.autosave import LONGEST, PATIENCE, Autosave
+
+CRASHES = """
+import sys
+from pathlib import Path
+from dataclasses import replace
+from hydrostat.robot import Marker, gallery_folder, load_robot
+from hydrostat.studio.session import Session
+
+session = Session(Path(sys.argv[1]))
+robot = load_robot(gallery_folder("letter_e"))
+session.starter.open_gallery(gallery_folder("letter_e"))
+new = Marker(name="new", at=robot.pins[0].at)
+session.document.change("add marker", robot=replace(robot, markers=(*robot.markers, new)))
+clock = 0.0
+while not list(Path(sys.argv[1]).glob("work/*/*/meta.json")):
+    session.step(clock)
+    clock += 0.05
+print("kept", flush=True)
+sys.stdin.read()
+"""
+
+
+def opened(folder: Path | None) -> tuple[Document, Autosave]:
+    document = Document(Bell())
+    return document, Autosave(document, folder)
+
+
+def changed(document: Document, name: str) -> None:
+    robot = document.robot
+    document.change("rename", robot=replace(robot, name=name))
+
+
+def settle(autosave: Autosave, now: float) -> None:
+    """A step, and the end of what it began."""
+    autosave.step(now)
+    if autosave._writer is not None:
+        autosave._writer.join()
+
+
+@pytest.fixture
+def work() -> Work:
+    return Work(robot=load_robot(gallery_folder("letter_e")))
+
+
+def test_what_a_killed_studio_leaves_is_restored(tmp_path: Path) -> None:
+    """Oracle: the change that was made before kill -9, made here again; the robot had never been saved."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", CRASHES, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    try:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"kept\n"
+        document, autosave = opened(tmp_path / "work")
+        assert autosave.left() == [], "it lives"
+        os.kill(process.pid, signal.SIGKILL)
+    finally:
+        process.kill()
+        process.communicate()
+    (left,) = autosave.left()
+    assert left.words.endswith(": letter_e")
+    autosave.restore(left)
+    robot = load_robot(gallery_folder("letter_e"))
+    assert robot.pins[0].at is not None
+    assert document.robot == replace(robot, markers=(*robot.markers, Marker(name="new", at=robot.pins[0].at)))
+    assert document.folder is None
+    assert not document.saved
+    assert autosave.left() == [], "it is kept by the studio that restored it"
+    autosave.close()
+    (again,) = autosave.left()
+    autosave.forget(again)
+    assert autosave.left() == []
+
+
+def test_work_is_kept_when_changes_pause(tmp_path: Path, work: Work) -> None:
+    """Oracle: files on the disk, at times of a clock that the test tells."""
+    document, autosave = opened(tmp_path)
+    document.open(work)
+    settle(autosave, 0.0)
+    settle(autosave, 100.0)
+    assert list(tmp_path.glob("*/*/meta.json")) == [], "what is saved needs no keeping"
+    changed(document, "first")
+    settle(autosave, 100.0)
+    settle(autosave, 100.0 + 0.9 * PATIENCE)
+    assert list(tmp_path.glob("*/*/meta.json")) == []
+    settle(autosave, 100.1 + PATIENCE)
+    assert len(list(tmp_path.glob("*/*/meta.json"))) == 1
+    for second in range(int(LONGEST) + 2):
+        changed(document, f"change {second}")
+        settle(autosave, 200.0 + second)
+    (kept,) = tmp_path.glob("*/*/work")
+    assert load_robot(kept).name == f"change {int(LONGEST)}", "without a pause it is kept now and then"
+    autosave.close()
+
+
+def test_saving_ends_keeping(tmp_path: Path, work: Work) -> None:
+    """Oracle: the folder is empty."""
+    document, autosave = opened(tmp_path / "state")
+    document.open(work, saved=False)
+    settle(autosave, 0.0)
+    settle(autosave, 3.0)
+    assert len(list((tmp_path / "state").iterdir())) == 1
+    document.mark_saved(tmp_path / "robot")
+    settle(autosave, 3.1)
+    assert list((tmp_path / "state").iterdir()) == []
+
+
+def test_closing_keeps_what_is_not_saved(tmp_path: Path, work: Work) -> None:
+    """Oracle: the last change, though there was no pause after it; and where the robot had been saved."""
+    document, autosave = opened(tmp_path)
+    document.open(work, folder=tmp_path / "robot")
+    changed(document, "last words")
+    autosave.close()
+    (left,) = opened(tmp_path)[1].left()
+    assert (left.name, left.origin) == ("last words", tmp_path / "robot")
+
+
+def test_half_written_and_foreign_things_are_not_offered(tmp_path: Path) -> None:
+    """Oracle: nothing is offered, nothing fails, and empty folders of studios that are gone are removed."""
+    for name in ("gone/3.part/work", "gone/2", "broken/1/work", "list/1/work"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "broken/1/meta.json").write_text("{")
+    (tmp_path / "list/1/meta.json").write_text("[]")
+    (tmp_path / "list/1/work/robot.toml").write_text("")
+    (tmp_path / "file").write_text("")
+    _, autosave = opened(tmp_path)
+    assert autosave.left() == []
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_disk_that_cannot_be_written_is_no_reason_to_stop(tmp_path: Path, work: Work) -> None:
+    """Oracle: no error leaves it."""
+    (tmp_path / "state").write_text("a file where the folder should be")
+    document, autosave = opened(tmp_path / "state")
+    document.open(work, saved=False)
+    settle(autosave, 0.0)
+    settle(autosave, 10.0)
+    autosave.close()
+    assert autosave.left() == []
+
+
+def test_without_a_folder_nothing_is_kept(work: Work) -> None:
+    """Oracle: nothing to offer."""
+    document, autosave = opened(None)
+    document.open(work, saved=False)
+    settle(autosave, 0.0)
+    settle(autosave, 10.0)
+    autosave.close()
+    assert autosave.left() == []

@@ -1,0 +1,182 @@
+"""Outlines drawn by hand."""
+
+from dataclasses import replace
+from math import cos, pi, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from shapely import LinearRing
+
+from hydrostat.design import Zone
+from hydrostat.errors import InputError
+from hydrostat.geometry.files.outline_file import read_outline
+from hydrostat.robot import gallery_folder, load_robot, save_robot
+from hydrostat.studio.bell import Bell
+from hydrostat.studio.document import Document
+from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.wishes import Paint, Wishes
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.starting.loops import Corner, Loop, curve, fitted, loops_svg, outline_of, read_loops, send_loops
+from hydrostat.studio.starting.outlining import Outlining, beginnings
+from hydrostat.studio.starting.starter import Starter
+
+FLAT = ("letter_e", "letter_s", "pig", "puppy", "robot", "squid", "starfish")
+SQUARE = (Corner(-50, -30), Corner(50, -30), Corner(50, 30), Corner(-50, 30))
+
+
+@pytest.mark.parametrize("name", FLAT)
+def test_few_corners_follow_the_outlines_of_the_gallery(name: str) -> None:
+    """Oracle: Hausdorff distance to the outline; 0.5 % of the size, with a twentieth of its points."""
+    outline = load_robot(gallery_folder(name)).body.outline
+    assert outline is not None
+    loops = fitted(outline)
+    assert len(loops) == len(outline.rings)
+    for loop, ring in zip(loops, outline.rings, strict=True):
+        assert LinearRing(1e-3 * curve(loop)).hausdorff_distance(LinearRing(ring)) < 0.005 * outline.size
+    assert 4 <= sum(map(len, loops)) <= sum(map(len, outline.rings)) / 18
+
+
+@pytest.mark.parametrize("corners", [6, 8, 12])
+def test_smooth_corners_on_a_circle_make_one(corners: int) -> None:
+    """Oracle: the circle's radius, to 1.5 %."""
+    places = [(100 * cos(2 * pi * k / corners), 100 * sin(2 * pi * k / corners)) for k in range(corners)]
+    radii = np.linalg.norm(curve(tuple(Corner(x, y, True) for x, y in places)), axis=1)
+    assert np.abs(radii - 100).max() < 1.5
+
+
+def test_what_is_drawn_is_what_is_read() -> None:
+    """Oracle: the loops' own outline, moved to the middle of its box; a hole stays a hole."""
+    hole = tuple(Corner(20 + 10 * cos(k), 5 + 10 * sin(k), True) for k in (0, 1.5, 3, 4.5))
+    loops: tuple[Loop, ...] = (hole, SQUARE)
+    drawing, corner = loops_svg(loops)
+    assert corner == pytest.approx((-50, 30))
+    read, drawn = read_outline(drawing, name="a.svg"), outline_of(loops)
+    assert read.area == pytest.approx(drawn.area, rel=1e-3)
+    assert len(read.holes) == 1
+    assert read.holes[0].mean(axis=0) == pytest.approx([0.020, 0.005], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("loops", "words"),
+    [
+        ((), "no outline yet"),
+        (((Corner(0, 0), Corner(100, 100), Corner(100, 0), Corner(0, 100)),), "crosses itself at (50, 50) mm"),
+        ((SQUARE, (Corner(40, 0), Corner(60, 0), Corner(60, 10))), "crossed or touched by a hole"),
+        (((Corner(0, 0), Corner(1, 0)),), "three corners at least"),
+        (((Corner(0, 0), Corner(1, 0), Corner(2, 0)),), "no area"),
+    ],
+)
+def test_faults_are_told_while_drawing(loops: tuple[Loop, ...], words: str) -> None:
+    """Oracle: the words of the outline's own check."""
+    outlining = Outlining()
+    outlining.take(send_loops(loops))
+    assert words in outlining.fault
+    with pytest.raises(InputError):
+        outlining.drawing()
+
+
+@pytest.mark.parametrize(
+    "raw",
+    [
+        None, 3, "abc", [[1, 2, 3]], [[[1, 2]]], [[["a", 2, True]]], [[[float("nan"), 0, True]]],
+        [[[1e300, 0, False]]], [[[10**400, 0, False]]], {"a": 1}, [[]] * 51, [[[0, 0, False]] * 1001],
+    ],
+)  # fmt: skip
+def test_what_is_no_outline_is_refused(raw: Any) -> None:
+    """Oracle: InputError, and the loops are as they were."""
+    outlining = Outlining((SQUARE,))
+    with pytest.raises(InputError):
+        outlining.take(raw)
+    assert outlining.loops == (SQUARE,)
+
+
+def test_loops_go_to_the_screen_and_back() -> None:
+    """Oracle: the loops; beginnings are bodies."""
+    for loops in beginnings().values():
+        assert read_loops(send_loops(loops)) == loops
+        assert Outlining(loops).fault == ""
+
+
+def starfish() -> Work:
+    wishes = Wishes(zones=((Paint.KEEP_OUT, Zone(at=(0.01, 0.02), radius=0.005)),))
+    return Work(robot=load_robot(gallery_folder("starfish")), wishes=wishes)
+
+
+def test_an_unchanged_outline_keeps_all_parts_in_their_places(tmp_path: Path) -> None:
+    """Oracle: the robot before, to the accuracy of the corners."""
+    work = starfish()
+    found = Outlining.of(work.robot).applied(work)
+    robot = found.work.robot
+    assert found.dropped == ()
+    assert robot.body.mesh.size == pytest.approx(work.robot.body.mesh.size, rel=0.01)
+    assert (robot.body.thickness, robot.body.element_size) == (work.robot.body.thickness, work.robot.body.element_size)
+    for one, other in zip(robot.cables, work.robot.cables, strict=True):
+        assert np.array(one.points) == pytest.approx(np.array(other.points), abs=2e-3)
+    save_robot(robot, tmp_path)
+    assert load_robot(tmp_path) == robot
+
+
+def test_what_lies_outside_is_named_and_goes() -> None:
+    """Oracle: a starfish without the arm that points up loses what was in it; the rest is at the same material place.
+
+    The body gets lower, so its middle moves down, and all coordinates up by as much.
+    """
+    work = starfish()
+    robot = work.robot
+    (loop,) = Outlining.of(robot).loops
+    cut = tuple(replace(corner, y=min(corner.y, 45.0)) for corner in loop)
+    kept = tuple(
+        corner
+        for k, corner in enumerate(cut)
+        if corner.y < 45.0 or cut[k - 1].y < 45.0 or cut[(k + 1) % len(cut)].y < 45.0
+    )
+    found = Outlining((tuple(replace(corner, smooth=False) for corner in kept),), robot).applied(work)
+    lost = [marker.name for marker in robot.markers if marker.at[1] > 0.046]
+    assert lost
+    assert {f"marker {name}" for name in lost} <= set(found.dropped)
+    made = found.work.robot
+    shift = np.subtract(made.pins[0].at, robot.pins[0].at)
+    assert shift[1] > 0.01
+    for marker in made.markers:
+        (before,) = [other for other in robot.markers if other.name == marker.name]
+        assert np.subtract(marker.at, before.at) == pytest.approx(shift, abs=1e-8)
+    zone = found.work.wishes.zones[0][1]
+    assert zone.at == pytest.approx(np.array([0.01, 0.02]) + shift)
+    for pose in made.poses.values():
+        assert not set(lost) & set(pose.targets)
+
+
+def test_an_outline_without_any_pin_is_refused() -> None:
+    """Oracle: InputError that says what to do; a box far from the body."""
+    work = starfish()
+    far = tuple(replace(corner, x=corner.x + 800) for corner in SQUARE)
+    with pytest.raises(InputError, match="no pin would lie"):
+        Outlining((far,), work.robot).applied(work)
+
+
+def test_editing_an_outline_is_one_change() -> None:
+    """Oracle: undo brings the robot of before."""
+    bell = Bell()
+    document = Document(bell)
+    starter = Starter(document, Jobs(bell))
+    document.open(starfish())
+    before = document.robot
+    starter.outline_open()
+    assert starter.outlining is not None
+    starter.outlining.take(
+        [[[x * 1.1, y, smooth] for x, y, smooth in loop] for loop in send_loops(starter.outlining.loops)]
+    )
+    starter.outline_apply()
+    assert starter.outlining is None
+    assert document.undo_label == "edit outline"
+    assert document.robot.body.mesh.size > 1.05 * before.body.mesh.size
+    document.undo()
+    assert document.robot is before
+
+
+def test_only_drawn_bodies_have_an_outline() -> None:
+    """Oracle: InputError."""
+    with pytest.raises(InputError, match="no outline"):
+        Outlining.of(load_robot(gallery_folder("trunk")))
