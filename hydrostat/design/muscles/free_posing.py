@@ -31,7 +31,7 @@ class FreePosing:
     """
 
     def __init__(
-        self, robot: Robot, fibres: Fibres | None = None, *, effort: float = 1e-4, strength: float = 1.5
+        self, robot: Robot, fibres: Fibres | None = None, *, effort: float = 1e-4, strength: float = 1.8
     ) -> None:
         """Begin at rest.
 
@@ -111,7 +111,11 @@ class FreePosing:
         return moved > _STILL * self._size
 
     def _wanted(self, held: Anchors, goals: Points) -> tuple[Vector, float]:
-        """Tensions that the linearised problem asks for, and the weight of their squares [m^2/N^2]."""
+        """Tensions that the linearised problem asks for, and the weight of their squares [m^2/N^2].
+
+        Effort weighs more for a goal out of reach, so that the strongest fibre pulls as hard as it can and the others
+        by their leverage; were all of them at their bounds, the body would be crushed.
+        """
         rows = self._rows(held)
         adjoint = self._stiffness.solve(rows)
         jacobian = -(self._pulls(self.nodes, self.tensions).T @ adjoint).T
@@ -119,7 +123,15 @@ class FreePosing:
         resting = held.positions(self.nodes).ravel() - adjoint.T @ gradient
         rho = self._weight(rows)
         goal = goals.ravel() - resting + jacobian @ self.tensions
-        return least_effort(jacobian, goal, rho, most=self._most()), rho
+        most = self._most()
+        wanted = least_effort(jacobian, goal, rho, most=most)
+        for _ in range(_SOFTENINGS):
+            asked = float((jacobian.T @ (goal - jacobian @ wanted)).max(initial=0.0)) / rho
+            if asked <= (1.0 + _SOFT) * self.strength:
+                break
+            rho *= asked / self.strength
+            wanted = least_effort(jacobian, goal, rho, most=most)
+        return wanted, rho
 
     def _most(self) -> Vector:
         """What each fibre can pull at its present length: all at rest, nothing when it is as short as it gets."""
@@ -188,6 +200,12 @@ _STILL = 2e-5
 
 _TRIES = 3
 """Steps tried in one update before the body stays where it is."""
+
+_SOFTENINGS = 8
+"""Times that the weight of the effort is raised in one update."""
+
+_SOFT = 0.05
+"""A fibre may be asked for so much more than it can pull."""
 
 _ITERATIONS = 1
 """Steps of Newton in an update: what they leave over, the next one takes in."""

@@ -11,13 +11,13 @@ from hydrostat.studio.posing.held import Held
 from hydrostat.studio.posing.mover import Anchored, Mover
 from hydrostat.studio.view.shape import Shape
 
-PATIENCE = 300
+PATIENCE = 150
 """So many updates are made towards targets that stay where they are."""
 
-STILL = 5e-5
+STILL = 1e-4
 """An update that moves no node farther brings it hardly nearer, in sizes of the body."""
 
-STILLS = 4
+STILLS = 3
 """After so many of them in a row nobody waits for more."""
 
 MISSED = 0.01

@@ -12,7 +12,6 @@ from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.mover import Mover
 from hydrostat.studio.posing.muscle_mover import MuscleMover
 
-
 RUBBING = "posed without friction: with it the pose depends on the way there"
 
 

@@ -18,6 +18,7 @@ from hydrostat.studio.posing.held import Held, Mode, Wish
 from hydrostat.studio.posing.mover import Anchored
 from hydrostat.studio.posing.movers import Movers, same_body
 from hydrostat.studio.posing.poses import free_name, held_of, renamed_pose, with_pose, without_pose
+from hydrostat.studio.posing.reach import Reach
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import MARKER, robot_things, target_things
 from hydrostat.studio.view.shape import Shape, rest_shape
@@ -54,11 +55,15 @@ class Poser(Stage):
     """Grab any point of the body and drag it; muscles or the robot's own cables follow (R2, R30, R36).
 
     What a person wants is one frozen `Wish` that is replaced whole; `step` reads the newest and replaces the shape.
+
+    Attributes:
+        reach: all that a marker can reach.
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
         """Poses of the robot of a document."""
-        self._document, self._jobs = document, jobs
+        self._document = document
+        self.reach = Reach(document, jobs)
         self._lock = RLock()
         self._movers = Movers(document)
         self._robot: Robot | None = None
@@ -84,6 +89,11 @@ class Poser(Stage):
         return self._fit()[1].held
 
     @property
+    def armed(self) -> bool:
+        """Whether the next click or drag moves what is chosen."""
+        return bool(self._armed)
+
+    @property
     def chosen(self) -> str:
         """Name of the held point or marker that is chosen; "" if none is."""
         return self._chosen
@@ -103,6 +113,9 @@ class Poser(Stage):
         found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, colour=GHOST)]
         if self._target is not None:
             found.append(self._target)
+        cloud = self.reach.cloud(robot)
+        if cloud is not None:
+            found.append(cloud)
         found += robot_things(robot, tensions=shape.tensions, scale=limit, chosen=keys)
         markers = {marker.name for marker in robot.markers}
         found += [

@@ -1,0 +1,82 @@
+"""`poses_card`: the poses of the robot: store, show, rename, delete."""
+
+from nicegui import ui
+
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.page import Page
+from hydrostat.studio.posing.poses import free_name
+
+
+def poses_card(page: Page) -> None:
+    """Build the list."""
+    poser, document = page.session.poser, page.session.document
+    ui.label("Poses").classes("studio-section")
+    with ui.element("div").classes("studio-card"):
+        rows = ui.column().classes("w-full").style("gap: 2px")
+        with ui.element("div").classes("studio-row"):
+            name = ui.input(placeholder="name").props('dense outlined aria-label="Name of the pose"')
+            name.classes("flex-1").mark("pose-name")
+            button = ui.button("Store", icon="bookmark_add").props("unelevated no-caps")
+            button.tooltip("Keep what is held as a pose").mark("pose-store")
+    drawn: list[object] = []
+
+    def store() -> None:
+        given = name.value or free_name(document.robot.poses, "pose")
+        before = document.serial
+        page.act(poser.store, given)
+        if document.serial != before:
+            name.set_value("")
+
+    def draw() -> None:
+        state = tuple(document.robot.poses)
+        if drawn == [state]:
+            return
+        drawn[:] = [state]
+        rows.clear()
+        with rows:
+            if not state:
+                ui.label("None yet: hold some points, then store them.").classes("studio-hint")
+            for own in state:
+                _row(page, own)
+
+    def ready() -> None:
+        button.set_enabled(bool(poser.held))
+
+    button.on_click(store)
+    name.on("keydown.enter", store)
+    page.on(Topic.ROBOT, draw)
+    page.on(Topic.THINGS, ready)
+    page.on(Topic.SHAPE, ready)
+
+
+def _row(page: Page, name: str) -> None:
+    """One pose: a click shows it."""
+    poser = page.session.poser
+    with ui.element("div").classes("studio-row").style("min-height: 32px; gap: 2px"):
+        show = ui.button(name, icon="accessibility_new", on_click=page.doing(poser.show_pose, name), color=None)
+        show.props("flat dense no-caps align=left").classes("flex-1").style("min-width: 0; color: var(--ink)")
+        show.tooltip("Go there").mark(f"pose-show-{name}")
+        rename = ui.button(icon="edit", on_click=lambda: _ask_name(page, name), color=None)
+        rename.props(f'flat round dense size=sm aria-label="Rename {name}"').style("color: var(--muted)")
+        rename.tooltip("Rename")
+        delete = ui.button(icon="delete_outline", on_click=page.doing(poser.delete_pose, name), color=None)
+        delete.props(f'flat round dense size=sm aria-label="Delete {name}"').style("color: var(--muted)")
+        delete.tooltip("Delete")
+
+
+def _ask_name(page: Page, old: str) -> None:
+    """Ask for another name of a pose."""
+    with page.panel, ui.dialog(value=True) as dialog, ui.card().classes("q-pa-md").style("min-width: 300px"):
+        ui.label(f"Rename {old}").classes("studio-title")
+        name = ui.input(value=old).props('dense outlined autofocus aria-label="New name"').classes("w-full")
+
+        def rename() -> None:
+            page.act(page.session.poser.rename_pose, old, name.value or "")
+            dialog.close()
+
+        name.on("keydown.enter", rename)
+        with ui.element("div").classes("studio-row"):
+            ui.space()
+            ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
+            ui.button("Rename", on_click=rename).props("unelevated no-caps")
+    dialog.on("hide", dialog.delete)
