@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from hydrostat.robot import Robot, find_risks
 
+_NAMED = re.compile(r"\b(winch|marker)\[\d+\](?= )")
 _PART = re.compile(r"\b(pin|winch|cable|marker|pose)\[(\d+)\]")
 
 
@@ -45,17 +46,6 @@ def look_over(robot: Robot) -> Findings:
     )
 
 
-def in_words(risk: str, robot: Robot) -> str:
-    """A risk with parts called as they are on the screen: "cable 1" for "cable[0]", "winch left" for "winch[0]"."""
-    names = {
-        "winch": [winch.name for winch in robot.winches],
-        "marker": [marker.name for marker in robot.markers],
-        "pose": list(robot.poses),
-    }
-
-    def called(match: re.Match[str]) -> str:
-        kind, number = match[1], int(match[2])
-        known = names.get(kind, [])
-        return f"{kind} {known[number] if number < len(known) else number + 1}"
-
-    return _PART.sub(called, risk)
+def in_words(risk: str) -> str:
+    """A risk with parts called as on the screen: "cable 1" for "cable[0]", "winch left" for "winch[0] left"."""
+    return _PART.sub(lambda match: f"{match[1]} {int(match[2]) + 1}", _NAMED.sub(r"\1", risk))

@@ -11,6 +11,7 @@ from hydrostat.robot import Mount, Robot, gallery_folder, load_robot
 from hydrostat.studio.editing.add import add_cable, add_marker, add_pin, add_winch, insert_via
 from hydrostat.studio.editing.change import change, rename, set_gravity
 from hydrostat.studio.editing.draft import begin_cable, end_cable
+from hydrostat.studio.editing.findings import in_words, look_over
 from hydrostat.studio.editing.follow import followed
 from hydrostat.studio.editing.inside import below_skin, inside
 from hydrostat.studio.editing.mirror import Mirror
@@ -288,3 +289,11 @@ def test_keyframes_and_wishes_follow(starfish: Robot) -> None:
     after, wishes = followed(work, gone)
     assert after.keys[0].contractions == {"left": 0.01}
     assert wishes.poses == ()
+
+
+def test_risks_are_told_in_the_words_of_the_screen(starfish: Robot) -> None:
+    alone = remove(starfish, ["cable:0"])
+    assert [in_words(risk) for risk in look_over(alone).risks] == ["winch right: pulls no cable"]
+    assert in_words("cable[0], cable[1] and cable[4]: too long (cable[4] is the worst)") == (
+        "cable 1, cable 2 and cable 5: too long (cable 5 is the worst)"
+    )

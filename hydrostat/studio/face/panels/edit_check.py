@@ -13,7 +13,7 @@ GOOD = "#00795f"
 
 def check_card(page: Page) -> None:
     """Build the card."""
-    editor, document = page.session.editor, page.session.document
+    editor = page.session.editor
     ui.label("Check").classes("studio-section")
     box = ui.column().classes("studio-card").style("gap: 6px; flex-shrink: 0").mark("edit-check")
     shown: list[Findings | None] = []
@@ -33,7 +33,7 @@ def check_card(page: Page) -> None:
             if findings is None:
                 ui.label("Looking it over").classes("studio-hint")
             else:
-                _tell(findings, [in_words(risk, document.robot) for risk in findings.risks])
+                _tell(findings, [in_words(risk) for risk in findings.risks])
 
     page.on(Topic.JOB, show)
     page.on(Topic.ROBOT, show)

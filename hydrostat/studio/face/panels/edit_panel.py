@@ -7,6 +7,7 @@ from hydrostat.studio.editing.tool import KEYS, Tool
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.edit_body import body_card
 from hydrostat.studio.face.panels.edit_check import check_card
+from hydrostat.studio.face.panels.edit_chip import chip, light
 from hydrostat.studio.face.panels.edit_number import EditNumber
 from hydrostat.studio.face.panels.edit_part import part_card
 from hydrostat.studio.face.panels.edit_parts import parts_list
@@ -70,13 +71,16 @@ def _mirror(page: Page) -> None:
         ui.icon("flip", size="20px").style("color: var(--muted)")
         ui.label("Mirror").style("font-size: 13px")
         ui.space()
-        choice = ui.toggle({"": "off", **{axis: axis for axis in axes}}, value="").props("dense no-caps unelevated")
-        choice.props('padding="2px 12px" toggle-color=primary color=transparent').mark("edit-mirror")
-        choice.tooltip("Edit both sides alike, about the plane where this coordinate is 0")
-        choice.on_value_change(lambda event: page.act(editor.mirror_about, event.value))
+        chips = {axis: chip(axis or "off", page.doing(editor.mirror_about, axis)) for axis in ("", *axes)}
+        for axis, button in chips.items():
+            button.tooltip(f"Both sides of {axis} = 0 alike" if axis else "No mirror").mark(
+                f"edit-mirror-{axis or 'off'}"
+            )
 
     def show() -> None:
-        choice.set_value("" if editor.mirror is None else "xyz"[editor.mirror.axis])
+        now = "" if editor.mirror is None else "xyz"[editor.mirror.axis]
+        for axis, button in chips.items():
+            light(button, axis == now)
 
     page.on(Topic.THINGS, show)
     if len(axes) == 3:

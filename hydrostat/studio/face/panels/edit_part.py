@@ -9,6 +9,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of, title_of
 from hydrostat.studio.editing.sheaths import sheathed_segments, sheaths
 from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.panels.edit_chip import chip, light
 from hydrostat.studio.face.panels.edit_number import EditNumber
 
 Shows = list[Callable[[Robot, Part], None]]
@@ -171,15 +172,12 @@ def _sheath(page: Page, key: str, part: Part) -> Callable[[Robot, Part], None]:
     ui.label("In a sheath of fixed length, from the winch on").classes("studio-hint")
     with ui.element("div").classes("w-full").style("display: flex; flex-wrap: wrap; gap: 4px"):
         for segment in range(len(cable.points) - 1):
-            button = ui.button(f"{segment + 1}", on_click=page.doing(toggle, segment))
-            button.props('dense unelevated padding="1px 9px" no-caps').style("font-size: 13px; border-radius: 9px")
+            button = chip(f"{segment + 1}", page.doing(toggle, segment))
             buttons.append(button.mark(f"edit-sheath-{segment}"))
 
     def show(robot: Robot, part: Part) -> None:
         inside = set(sheathed_segments(robot.cables[part.index]))
         for segment, button in enumerate(buttons):
-            on = segment in inside
-            button.props(f"color={'primary' if on else 'transparent'}")
-            button.style("color: white" if on else "color: var(--ink)")
+            light(button, segment in inside)
 
     return show

@@ -20,7 +20,7 @@ def parts_list(page: Page) -> None:
     with ui.element("div").classes("studio-row"):
         ui.label("Parts").classes("studio-section")
         ui.space()
-        count = ui.label().classes("studio-hint studio-figure")
+        count = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
     box = (
         ui.column()
         .classes("w-full")
