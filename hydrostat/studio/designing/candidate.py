@@ -93,6 +93,11 @@ class Candidate:
         return next((reach for reach in self.reaches if reach.pose.name == pose), None)
 
 
+def told_error(error: float) -> str:
+    """An error [m] as it is told; nobody builds a robot that is better than a tenth of a millimetre."""
+    return f"{1e3 * error:.2g} mm" if error >= 1e-4 else "below 0.1 mm"
+
+
 def network_words(robot: Robot) -> str:
     """How many winches and cables a robot has."""
     return f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"

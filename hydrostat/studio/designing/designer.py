@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.asked import asked_for, wished_poses
-from hydrostat.studio.designing.candidate import Candidate, Reach, network_words
+from hydrostat.studio.designing.candidate import Candidate, Reach, network_words, told_error
 from hydrostat.studio.designing.design_work import Found, Glimpse, design_work
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
@@ -96,6 +96,12 @@ class Designer(Stage):
         if self._sketch is None or self._sketch.body is not body:
             self._sketch = BodySketch(body)
         return self._sketch.network(candidate.robot)
+
+    @property
+    def trail(self) -> tuple[Mark, ...]:
+        """Networks on the way of the last design, if it was for this body."""
+        run = self.run
+        return run.trail if run is not None and run.asked.robot.body == self._document.robot.body else ()
 
     @property
     def candidate(self) -> Candidate | None:
@@ -312,7 +318,7 @@ class Designer(Stage):
         seconds = time.monotonic() - run.began
         early = "" if found.complete else "stopped early, the best so far: "
         self.outcome = (
-            f"{early}{network_words(best.robot)}, {1e3 * best.error:.2g} mm off, in {seconds:.0f} s "
+            f"{early}{network_words(best.robot)}, {told_error(best.error)} off, in {seconds:.0f} s "
             f"({found.tried} networks tried)"
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name

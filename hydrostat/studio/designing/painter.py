@@ -67,16 +67,9 @@ class Painter:
         kind, _, rest = hit.key.partition(":")
         place = hit.rest or hit.world
         zones = self._document.work.wishes.zones
-        if kind == "zone-rim" and self._there(rest):
-            index = int(rest)
-            middle = zones[index][1].at
-            assert middle is not None
-            self._begin(index, "resize", lambda end: disc(middle, end, self._size))
-        elif kind == "zone-corner" and self._there(rest.partition(":")[0]):
-            number, _, corner = rest.partition(":")
-            zone = zones[int(number)][1]
-            self._begin(int(number), "reshape", lambda end: with_corner(zone, int(corner), end))
-        elif self.paint is not None:
+        if kind in ("zone-rim", "zone-corner"):
+            return self._shape(rest)
+        if self.paint is not None:
             return hit.rest is not None and self._draw(hit.rest, free=hit.shift)
         elif kind == "zone" and self._there(rest):
             self.chosen = int(rest)
@@ -167,6 +160,21 @@ class Painter:
     def _begin(self, index: int, verb: str, shaping: Callable[[Point], Zone]) -> None:
         paint, zone = self._document.work.wishes.zones[index]
         self._draft, self._shaping, self._verb = (index, paint, zone), shaping, verb
+
+    def _shape(self, handle: str) -> bool:
+        """Take hold of a handle; the number of a polygon's corner comes after that of the zone."""
+        number, _, corner = handle.partition(":")
+        if not self._there(number):
+            return False
+        zone = self._document.work.wishes.zones[int(number)][1]
+        if zone.at is not None and not corner:
+            middle = zone.at
+            self._begin(int(number), "resize", lambda end: disc(middle, end, self._size))
+        elif corner.isdecimal() and int(corner) < len(zone.outline):
+            self._begin(int(number), "reshape", lambda end: with_corner(zone, int(corner), end))
+        else:
+            return False
+        return True
 
     def _draw(self, place: Point, *, free: bool) -> bool:
         self._corners = ()

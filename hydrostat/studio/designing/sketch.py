@@ -33,7 +33,7 @@ class BodySketch:
             colour = colours[cable.winch]
             parts.append(f'<path d="{_path(places)}" class="sketch-cable" stroke="{colour}"/>')
             x, y = places[-1]
-            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.4" fill="{colour}"/>')
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.2" fill="{colour}"/>')
         for winch in robot.winches:
             x, y = self._places(np.array([winch.at]))[0]
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" class="sketch-winch" fill="{colours[winch.name]}"/>')

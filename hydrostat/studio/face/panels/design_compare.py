@@ -3,7 +3,7 @@
 from nicegui import ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.designing.candidate import Candidate
+from hydrostat.studio.designing.candidate import Candidate, told_error
 from hydrostat.studio.designing.front_chart import front_chart
 from hydrostat.studio.face.page import Page
 from hydrostat.units import counted
@@ -37,9 +37,10 @@ def design_compare(page: Page) -> None:
 
 
 def _front(page: Page, candidates: tuple[Candidate, ...]) -> None:
+    designer = page.session.designer
     with ui.element("div").classes("design-front"):
         ui.label("What more cables gain").classes("studio-section").style("margin: 0 0 8px")
-        ui.html(front_chart(candidates, page.session.designer.chosen), sanitize=False).classes("w-full")
+        ui.html(front_chart(candidates, designer.trail, designer.chosen), sanitize=False).classes("w-full")
 
 
 def _head(page: Page, own: tuple[int, ...]) -> None:
@@ -53,7 +54,7 @@ def _head(page: Page, own: tuple[int, ...]) -> None:
             with ui.element("div").classes("row flex-1").style("gap: 6px; min-width: 0"):
                 _pose_chip(page, chosen, None, "rest")
                 for reach in chosen.reaches:
-                    _pose_chip(page, chosen, reach.pose.name, f"{reach.pose.name}  {1e3 * reach.error:.2g} mm")
+                    _pose_chip(page, chosen, reach.pose.name, f"{reach.pose.name}  {told_error(reach.error)}")
         clear = ui.button("Clear", on_click=page.doing(designer.clear)).props("flat no-caps dense")
         clear.props('data-testid="design-clear"').tooltip("Forget all that was found")
         accept = ui.button("Accept", icon="check", on_click=page.doing(designer.accept)).props("unelevated no-caps")
@@ -94,7 +95,7 @@ def _words(one: Candidate, own: tuple[int, ...]) -> str:
     robot = one.robot
     note = " · in the robot" if one.number in own else "" if one.complete else " · stopped early"
     return (
-        f"<b>{1e3 * one.error:.2g} mm</b><span>{note}</span><br>"
+        f"<b>{told_error(one.error)}</b><span>{note}</span><br>"
         f"<span>{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}<br>"
         f"{1e3 * one.length:.0f} mm, {one.tension:.2g} N</span>"
     )

@@ -6,6 +6,7 @@ from nicegui import ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.asked import wished_poses
+from hydrostat.studio.designing.candidate import told_error
 from hydrostat.studio.designing.growth_chart import growth_chart
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.design_compare import design_compare
@@ -141,7 +142,7 @@ def _progress(page: Page) -> None:
         if not designer.running or run is None or state is None:
             return
         best = run.trail[-1] if run.trail else None
-        error.set_text("Searching" if best is None else f"{1e3 * best.error:.2g} mm off")
+        error.set_text("Searching" if best is None else f"{told_error(best.error)} off")
         count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm off at rest")
         chart.set_content(growth_chart(run, designer.seconds))
         bar.set_value(state.done / state.total if state.total else 0.0)

@@ -1,0 +1,88 @@
+"""Wishes as a design is asked for. Oracle: the fields of `Constraints`, its own messages."""
+
+from dataclasses import replace
+
+import pytest
+
+from hydrostat.design import Constraints, RouteOptions, Zone
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.studio.designing.asked import asked_for, wished_constraints, wished_poses
+from hydrostat.studio.records.wishes import Paint, Wishes
+
+
+@pytest.fixture(scope="module")
+def starfish() -> Robot:
+    return load_robot(gallery_folder("starfish"))
+
+
+DISC, TRIANGLE = Zone(at=(0.0, 0.0), radius=0.02), Zone(outline=((0.0, 0.0), (0.04, 0.0), (0.02, 0.03)))
+
+
+def test_every_wish_is_a_constraint(starfish: Robot) -> None:
+    wishes = Wishes(
+        zones=((Paint.KEEP_OUT, DISC), (Paint.STILL, TRIANGLE), (Paint.WINCH_ZONES, DISC), (Paint.KEEP_OUT, TRIANGLE)),
+        mirror="x",
+        tension=12.0,
+        clearance=0.004,
+        cables_per_winch=3,
+        slack=0.01,
+        stepped=True,
+        torque=0.2,
+        kept_winches=("left",),
+        kept_cables=(1,),
+    )
+    assert wished_constraints(starfish, wishes) == Constraints(
+        keep_out=(DISC, TRIANGLE), still=(TRIANGLE,), winch_zones=(DISC,), mirror="x", tension=12.0, clearance=0.004,
+        cables_per_winch=3, slack=0.01, spool_ratio=2.0, torque=0.2, locked_winches=("left",), locked_cables=(1,),
+    )  # fmt: skip
+
+
+def test_no_wish_is_no_constraint(starfish: Robot) -> None:
+    assert wished_constraints(starfish, Wishes()) == Constraints()
+
+
+def test_what_is_kept_but_gone_is_passed_over(starfish: Robot) -> None:
+    constraints = wished_constraints(starfish, Wishes(kept_winches=("left", "nobody"), kept_cables=(0, 99)))
+    assert constraints == Constraints(locked_winches=("left",), locked_cables=(0,))
+
+
+def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
+    every = tuple(starfish.poses.values())
+    assert wished_poses(starfish, Wishes()) == every
+    assert wished_poses(starfish, Wishes(poses=("star_jump", "gone"))) == (starfish.pose("star_jump"),)
+    assert wished_poses(starfish, Wishes(poses=("gone",))) == every
+
+
+def test_as_few_winches_as_will_do(starfish: Robot) -> None:
+    asked = asked_for(starfish, Wishes(winches=0, cables=4, tolerance=0.003, improve=True))
+    assert (asked.winches, asked.cables, asked.improve) == ("auto", 4, True)
+    assert asked.options == RouteOptions(tolerance=0.003)
+    assert asked_for(starfish, Wishes(winches=3)).winches == 3
+
+
+def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
+    far = Wishes(zones=((Paint.KEEP_OUT, Zone(at=(9.0, 9.0), radius=0.01)),))
+    with pytest.raises(InputError, match="does not touch the body"):
+        asked_for(starfish, far)
+    with pytest.raises(InputError, match="mirror"):
+        asked_for(starfish, replace(far, zones=(), mirror="z"))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"winches": -1}, "winches must be from 0 to 20, not -1"),
+        ({"cables": 61}, "cables must be from 1 to 60, not 61"),
+        ({"cables_per_winch": 0}, "cables per winch must be from 1 to 60, not 0"),
+        ({"tension": 0.0}, "tension must be above 0 and at most 1000 N, not 0 N"),
+        ({"clearance": -0.001}, "clearance must be above 0 and at most 1000 mm, not -1 mm"),
+        ({"tolerance": float("inf")}, "tolerance must be above 0 and at most 1000 mm, not inf mm"),
+        ({"slack": -0.002}, "slack must be at least 0 and at most 1000 mm, not -2 mm"),
+        ({"torque": float("nan")}, "torque must be above 0 and at most 100 N m, not nan N m"),
+    ],
+)
+def test_numbers_out_of_range(wrong: dict[str, float], words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        Wishes(**wrong)  # type: ignore[arg-type]
+    assert str(caught.value) == words

@@ -1,0 +1,135 @@
+"""Small pictures and charts. Oracles: coordinates worked out by hand, XML that parses, fronts by their definition."""
+
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.design import Constraints, RouteOptions
+from hydrostat.robot import gallery_folder, load_robot
+from hydrostat.studio.designing.asked import Asked
+from hydrostat.studio.designing.candidate import Candidate
+from hydrostat.studio.designing.chart import Chart, ticks
+from hydrostat.studio.designing.ease import DURATION, Ease
+from hydrostat.studio.designing.front_chart import front, front_chart
+from hydrostat.studio.designing.growth_chart import growth_chart
+from hydrostat.studio.designing.run import Mark, Run
+from hydrostat.studio.designing.sketch import EDGE, MARGIN, BodySketch
+
+
+def parsed(svg: str) -> ElementTree.Element:
+    return ElementTree.fromstring(svg)
+
+
+def all_of(svg: str, name: str, kind: str) -> list[ElementTree.Element]:
+    return [part for part in parsed(svg).iter(name) if part.get("class") == kind]
+
+
+def test_a_sketch_has_the_body_and_each_cable_where_it_runs() -> None:
+    """A strip of 200 x 50 mm: its longest side fills the picture, y points down."""
+    robot = strip_robot(columns=10, rows=3)
+    svg = BodySketch(robot.body).network(robot)
+    cables = all_of(svg, "path", "sketch-cable")
+    assert len(cables) == len(robot.cables)
+    nodes = robot.body.mesh.nodes
+    low, high = nodes.min(axis=0), nodes.max(axis=0)
+    scale = (EDGE - 2 * MARGIN) / (high - low).max()
+    expected = scale * (np.array(robot.cables[0].points) - low) + MARGIN
+    expected[:, 1] = scale * (high - low)[1] + 2 * MARGIN - expected[:, 1]
+    drawn = [tuple(map(float, pair.split())) for pair in (cables[0].get("d") or "")[1:].split("L")]
+    np.testing.assert_allclose(drawn, expected, atol=0.051)
+    (body,) = all_of(svg, "path", "sketch-body")
+    assert (body.get("d") or "").count("M") == 1
+    assert len(all_of(svg, "circle", "sketch-winch")) == len(robot.winches)
+
+
+def test_a_body_in_space_is_one_small_silhouette() -> None:
+    robot = load_robot(gallery_folder("fish_tail"))
+    svg = BodySketch(robot.body).network(robot)
+    assert len(svg) < 20_000
+    assert len(all_of(svg, "path", "sketch-body")) == 1
+
+
+@pytest.mark.parametrize(
+    ("largest", "most", "expected"),
+    [(10.0, 5, [0, 2, 4, 6, 8, 10]), (0.9, 3, [0, 0.5]), (33.0, 3, [0, 20]), (6.6, 6, [0, 2, 4, 6])],
+)
+def test_ticks_are_round(largest: float, most: int, expected: list[float]) -> None:
+    assert ticks(largest, most=most) == expected
+
+
+def test_counts_have_whole_ticks() -> None:
+    assert ticks(2.6, most=6, least=1.0) == [0, 1, 2]
+
+
+def test_a_chart_is_as_large_as_its_values() -> None:
+    chart = Chart(width=300, height=120, across=10, up=4, name="a", below="b")
+    assert chart.x(10) == 290
+    assert chart.y(0) > chart.y(4) == 20
+    assert parsed(chart.drawn("", label="words")).get("aria-label") == "words"
+
+
+def marks(*errors: float) -> tuple[Mark, ...]:
+    return tuple(Mark(seconds=1.0 + n, error=error, winches=1, cables=n + 1) for n, error in enumerate(errors))
+
+
+def run(*errors: float) -> Run:
+    robot = strip_robot(columns=10, rows=3)
+    asked = Asked(
+        robot=robot, poses=(), winches=1, cables=2, constraints=Constraints(), options=RouteOptions(), improve=False
+    )
+    return Run(asked=asked, began=0.0, rest=0.02, trail=marks(*errors))
+
+
+def test_the_error_falls_in_steps_from_rest_to_now() -> None:
+    svg = growth_chart(run(0.01, 0.005), 4.0)
+    (line,) = all_of(svg, "polyline", "chart-line")
+    points = [tuple(map(float, pair.split(","))) for pair in (line.get("points") or "").split()]
+    assert len(points) == 6
+    (across, heights) = zip(*points, strict=True)
+    assert list(across) == sorted(across)
+    floor = Chart(width=316, height=132, across=4, up=21, name="", below="").y(0.0)
+    levels = (floor - np.array(heights)) / (floor - heights[0])
+    np.testing.assert_allclose(levels, [1, 1, 0.5, 0.5, 0.25, 0.25], atol=0.01)
+    assert "now 5 mm" in svg
+
+
+def test_a_design_that_has_found_nothing_yet_has_a_chart() -> None:
+    assert parsed(growth_chart(run(), 0.0)) is not None
+
+
+def test_the_front_is_what_is_better_than_all_with_fewer_cables() -> None:
+    assert front([(3, 2.0), (1, 5.0), (2, 6.0), (3, 1.0), (4, 1.0), (1, 7.0)]) == [(1, 5.0), (3, 1.0)]
+    assert front([]) == []
+
+
+def test_each_candidate_is_a_dot_and_the_chosen_one_has_a_ring() -> None:
+    robot = strip_robot(columns=10, rows=3)
+    candidates = [
+        Candidate(number=n, source=robot, robot=robot, reaches=(), error=1e-3 * n, complete=True, best=n == 1)
+        for n in (1, 2, 3)
+    ]
+    svg = front_chart(candidates, marks(0.01), 2)
+    assert len(all_of(svg, "circle", "chart-dot")) == 3
+    assert len(all_of(svg, "circle", "chart-ring")) == 1
+    assert len(all_of(svg, "circle", "chart-way")) == 1
+
+
+def test_a_body_glides_and_arrives() -> None:
+    start, goal, pulled = np.zeros((4, 2)), np.ones((4, 2)), np.array([3.0])
+    ease = Ease(start, np.zeros(1))
+    assert not ease.step(0.0)
+    ease.go(goal, pulled)
+    assert ease.step(10.0)
+    np.testing.assert_array_equal(ease.nodes, start)
+    assert ease.step(10.0 + DURATION / 2)
+    np.testing.assert_allclose(ease.nodes, 0.5)
+    np.testing.assert_allclose(ease.tensions, 1.5)
+    assert not ease.step(10.01 + DURATION)
+    assert ease.nodes is goal
+    np.testing.assert_array_equal(ease.tensions, pulled)
+    ease.go(goal, pulled)
+    assert not ease.moving
+    ease.go(goal, np.array([1.0, 2.0]))
+    np.testing.assert_array_equal(ease.tensions, [1.0, 2.0])
