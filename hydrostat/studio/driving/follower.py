@@ -7,6 +7,12 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.view.shape import Shape, rest_shape
 
+ROUGH = 1e-3
+"""Force that may be left over while it moves, as a share of the largest: 2 micrometres off, in half the time."""
+
+FEW = 6
+"""Steps of Newton in which a body that moves should get there; else it is solved with all care."""
+
 
 class Follower:
     """Solves for the newest contractions, from the last good pose; where there is none, the last good one stays.
@@ -20,11 +26,19 @@ class Follower:
         self._simulation: Simulation | None = None
         self._last: SolvedPose | None = None
 
-    def follow(self, simulation: Simulation, contractions: Vector) -> Shape:
-        """The body at these contractions [m], or as it was last; `failure` tells which."""
+    def follow(self, simulation: Simulation, contractions: Vector, *, rough: bool = False) -> Shape:
+        """The body at these contractions [m], or as it was last; `failure` tells which.
+
+        Args:
+            simulation: of the robot.
+            contractions: of its winches [m].
+            rough: whether it moves on at once, so that the last digits do not matter.
+        """
         if simulation is not self._simulation:
             self._simulation, self._last = simulation, None
-        pose = simulation.solve(contractions, start=self._last, strict=False)
+        pose = self._roughly(simulation, contractions) if rough else None
+        if pose is None:
+            pose = simulation.solve(contractions, start=self._last, strict=False)
         if pose.result.converged and upright(simulation.robot, pose):
             self._last, self.failure = pose, ""
         else:
@@ -33,6 +47,15 @@ class Follower:
         if self._last is None:
             return rest_shape(simulation.robot)
         return Shape(nodes=self._last.nodes, tensions=self._last.tensions, contractions=self._last.contractions)
+
+    def _roughly(self, simulation: Simulation, contractions: Vector) -> SolvedPose | None:
+        """From the last pose in a few steps; None if that does not do, or friction makes the way matter."""
+        last = self._last
+        if last is None or simulation.friction is not None:
+            return None
+        near = simulation.stiffness(last)
+        found = simulation.relax(last.nodes, contractions, near, iterations=FEW, tolerance=ROUGH)
+        return simulation.posed(contractions, found) if found.converged else None
 
 
 def upright(robot: Robot, pose: SolvedPose) -> bool:

@@ -35,6 +35,7 @@ class Machine:
         self._follower = Follower()
         self._posed: tuple[Robot, Shape] | None = None
         self._timeline: Timeline | None = None
+        self._rough = False
 
     def shape(self) -> Shape:
         """The body as the motors pull it."""
@@ -83,10 +84,12 @@ class Machine:
             self._play(now)
             moved = self._drive(now)
             fresh = self._posed is None or self._posed[0] is not simulation.robot
-            places = self.motors.places
-        if moved or fresh:
-            self._follow(simulation, places)
-        return moved or fresh or playing != self.player.playing or time != self.player.time
+            places, rough = self.motors.places, self.busy
+        new = moved or fresh or (self._rough and not rough)
+        if new:
+            self._rough = rough
+            self._follow(simulation, places, rough)
+        return new or playing != self.player.playing or time != self.player.time
 
     @property
     def busy(self) -> bool:
@@ -117,9 +120,9 @@ class Machine:
             self.halt(f"motors stopped: {error}")
             raise
 
-    def _follow(self, simulation: Simulation, places: Vector) -> None:
+    def _follow(self, simulation: Simulation, places: Vector, rough: bool) -> None:
         """Solve for where the motors are; what cannot be solved ends the playing."""
-        shape = self._follower.follow(simulation, places)
+        shape = self._follower.follow(simulation, places, rough=rough)
         with self.lock:
             if self._follower.failure:
                 self.halt(self._follower.failure)
