@@ -11,7 +11,7 @@ def poses_card(page: Page) -> None:
     """Build the list."""
     poser, document = page.session.poser, page.session.document
     ui.label("Poses").classes("studio-section")
-    with ui.element("div").classes("studio-card"):
+    with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column"):
         rows = ui.column().classes("w-full").style("gap: 2px")
         with ui.element("div").classes("studio-row"):
             name = ui.input(placeholder="name").props('dense outlined aria-label="Name of the pose"')
