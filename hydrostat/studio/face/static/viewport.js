@@ -8,6 +8,7 @@ export default {
   template: `
     <div ref="root" tabindex="-1" role="img" aria-label="The body"
          style="position:relative;width:100%;height:100%;overflow:hidden;touch-action:none;user-select:none;outline:none">
+      <canvas ref="under" style="${FILL}"></canvas>
       <canvas ref="body" style="${FILL}"></canvas>
       <canvas ref="over" style="${FILL}"></canvas>
       <div v-if="failure" style="position:absolute;inset:0;display:grid;place-items:center;padding:24px;text-align:center">
@@ -23,9 +24,9 @@ export default {
   data: () => ({ connected: true, met: false, failure: "" }),
 
   mounted() {
-    const { root, body, over } = this.$refs;
+    const { root, under, body, over } = this.$refs;
     const options = { stream: this.stream, palette: this.palette, dark: this.isDark(), brush: this.brush };
-    this.view_ = new View(root, [body, over], options, (name, value) => this.hear(name, value));
+    this.view_ = new View(root, [under, body, over], options, (name, value) => this.hear(name, value));
     this.slow = setTimeout(() => (this.connected = this.connected && this.met), 1500);
     this.page = new MutationObserver(() => this.view_.dress(this.isDark()));
     this.page.observe(document.body, { attributes: true, attributeFilter: ["class"] });

@@ -124,15 +124,20 @@ export class Cover {
     return (uy * vz - uz * vy) * wx + (uz * vx - ux * vz) * wy + (ux * vy - uy * vx) * wz < 0;
   }
 
+  /** How far beyond the section a node is; less than nothing if it is shown. */
+  side(node) {
+    const { nodes, cut } = this;
+    return cut[0] * nodes[3 * node] + cut[1] * nodes[3 * node + 1] + cut[2] * nodes[3 * node + 2] - cut[3];
+  }
+
   /** Calls `draw` with the ends in pixels of each piece of the section's rim. */
   section(camera, draw) {
-    const { faces, nodes, cut } = this;
+    const { faces, nodes } = this;
     const ends = [[0, 0, 0], [0, 0, 0]];
-    const side = (n) => cut[0] * nodes[3 * n] + cut[1] * nodes[3 * n + 1] + cut[2] * nodes[3 * n + 2] - cut[3];
     for (let f = 0; f < faces.length; f += 3) {
       let found = 0;
       for (let k = 0; k < 3 && found < 2; k++) {
-        const a = faces[f + k], b = faces[f + ((k + 1) % 3)], p = side(a), q = side(b);
+        const a = faces[f + k], b = faces[f + ((k + 1) % 3)], p = this.side(a), q = this.side(b);
         if (p > 0 === q > 0) continue;
         const share = p / (p - q);
         const at = (i) => nodes[3 * a + i] + share * (nodes[3 * b + i] - nodes[3 * a + i]);

@@ -102,6 +102,62 @@ export function drawFelt(pen, view) {
   }
 }
 
+/** All triangles that face the camera as one path. */
+function facesPath({ faces, spots, front }) {
+  const path = new Path2D();
+  for (let f = 0; f < faces.length; f += 3) {
+    if (front[f / 3] < 0) continue;
+    const a = 3 * faces[f], b = 3 * faces[f + 1], c = 3 * faces[f + 2];
+    path.moveTo(spots[a], spots[a + 1]);
+    path.lineTo(spots[b], spots[b + 1]);
+    path.lineTo(spots[c], spots[c + 1]);
+  }
+  return path;
+}
+
+/** Field and outline of a ghost in space; kept until the camera moves. */
+function ghostPaths(view, ghost) {
+  const { camera } = view;
+  const seen = [camera.width, camera.height, ...camera.matrix.elements].join();
+  if (ghost.seen !== seen) {
+    const { cover } = ghost;
+    const rim = new Path2D();
+    cover.see(ghost.array, camera, null);
+    cover.outline((ax, ay, bx, by) => {
+      rim.moveTo(ax, ay);
+      rim.lineTo(bx, by);
+    });
+    Object.assign(ghost, { seen, rim, field: facesPath(cover) });
+  }
+  return ghost;
+}
+
+/** Other shapes of a body in space, on the sheet under it. */
+export function drawGhostsInSpace(pen, view) {
+  pen.lineWidth = 1.2;
+  pen.lineCap = "round";
+  for (const ghost of Object.values(view.ghosts)) {
+    const { field, rim } = ghostPaths(view, ghost);
+    const colour = view.ghostColour(ghost.thing);
+    pen.fillStyle = veil(colour, 0.2);
+    pen.fill(field);
+    pen.strokeStyle = veil(colour, 0.75);
+    pen.stroke(rim);
+  }
+}
+
+/** The outline of what is sought, seen through the body. */
+function drawSought(pen, view) {
+  pen.lineWidth = 1.2;
+  pen.setLineDash([4, 3]);
+  for (const ghost of Object.values(view.ghosts)) {
+    if (ghost.thing.colour === view.palette.ghost) continue;
+    pen.strokeStyle = veil(view.ghostColour(ghost.thing), 0.55);
+    pen.stroke(ghostPaths(view, ghost).rim);
+  }
+  pen.setLineDash([]);
+}
+
 /** What of a body in space is drawn with a pen: its outline, its mesh, the rim of its section. */
 export function drawOutline(pen, view) {
   const { cover, palette, camera } = view;
@@ -121,6 +177,7 @@ export function drawOutline(pen, view) {
   pen.strokeStyle = palette.seam;
   pen.lineWidth = 1.6;
   pen.stroke();
+  drawSought(pen, view);
   if (!view.cut) return;
   pen.beginPath();
   cover.section(camera, add);

@@ -6,14 +6,14 @@ import { Cover } from "./cover.js";
 import { Field, ramp256 } from "./field.js";
 import { same } from "./packet.js";
 import { Skin } from "./skin.js";
-import { Ghost, Surface } from "./surface.js";
+import { Surface } from "./surface.js";
 import { mix, theme } from "./theme.js";
 
 export class Shown {
   /** @param palette colours by name, and `tension`, a row of them */
   constructor(palette, dark) {
     Object.assign(this, { palette, ink: palette.ink, theme: theme(dark) });
-    this.world = new THREE.Scene(); // what WebGL draws: skins of bodies in space
+    this.world = new THREE.Scene(); // what WebGL draws: a body in space
     this.camera = new Camera();
     this.ramp = ramp256(palette.tension);
     this.field = new Field(this.ramp);
@@ -64,22 +64,16 @@ export class Shown {
     this.add(this.surface);
   }
 
-  /** Keep ghosts that are the same, make those that are not; of flat bodies only the pen draws them. */
+  /** Take the ghosts of a scene; what was found out of the same ones is kept. */
   takeGhosts(head, arrays) {
     const fresh = named(head, arrays, "ghost");
     const { faces } = this;
     for (const [name, ghost] of Object.entries(fresh)) {
       const old = this.ghosts[name];
-      if (old?.skin && old.faces === faces && same(old.array, ghost.array)) {
-        ghost.skin = old.skin;
-        delete old.skin;
-      } else if (!this.camera.flat) {
-        ghost.skin = new Ghost(ghost.array, faces, 3);
-        this.add(ghost.skin);
-      }
-      ghost.faces = faces;
+      const kept = old?.cover?.faces === faces && same(old.array, ghost.array);
+      ghost.cover = kept ? old.cover : this.camera.flat ? null : new Cover(faces, ghost.array.length / 3);
+      if (kept) Object.assign(ghost, { seen: old.seen, rim: old.rim, field: old.field });
     }
-    for (const old of Object.values(this.ghosts)) this.drop(old.skin);
     this.ghosts = fresh;
   }
 
@@ -113,9 +107,6 @@ export class Shown {
     surface.colour(palette, mix(palette.seam, palette.dark, 0.12));
     surface.see(this.opacity);
     surface.section(this.cut);
-    for (const { thing, skin } of Object.values(this.ghosts)) {
-      skin?.colour(this.ghostColour(thing), thing.colour === palette.ghost ? 0.6 : 0.8);
-    }
   }
 
   /** Cut the body across an axis at a share of its extent; the side that faces the viewer goes away. */

@@ -1,4 +1,4 @@
-// What WebGL draws: the surface of a body in space, of felt or coloured by values, and ghosts of it.
+// What WebGL draws: the surface of a body in space, of felt or coloured by values.
 
 import { THREE } from "nicegui-scene";
 import { rgb } from "./theme.js";
@@ -59,16 +59,6 @@ void main() {
   gl_FragColor = vec4(1.0);
 }`;
 
-const GHOST = `
-varying vec3 facing;
-varying vec3 toward;
-uniform vec3 tint;
-uniform float opacity;
-void main() {
-  float edge = 1.0 - abs(dot(normalize(facing), normalize(toward)));
-  gl_FragColor = vec4(tint, opacity * (0.16 + 0.7 * edge * edge));
-}`;
-
 function smooth(position, faces, normal) {
   normal.fill(0);
   for (let f = 0; f < faces.length; f += 3) {
@@ -83,12 +73,11 @@ function smooth(position, faces, normal) {
   }
 }
 
-function surface(rest, faces, dynamic) {
+function surface(rest, faces) {
   const geometry = new THREE.BufferGeometry();
-  const usage = dynamic ? THREE.DynamicDrawUsage : THREE.StaticDrawUsage;
   for (const [name, columns] of [["position", 3], ["normal", 3], ["value", 1]]) {
     const attribute = new THREE.BufferAttribute(new Float32Array((rest.length / 3) * columns), columns);
-    geometry.setAttribute(name, attribute.setUsage(usage));
+    geometry.setAttribute(name, attribute.setUsage(THREE.DynamicDrawUsage));
   }
   geometry.attributes.position.array.set(rest);
   geometry.setIndex(new THREE.BufferAttribute(faces, 1));
@@ -106,7 +95,7 @@ function shown(geometry, material, order) {
 export class Surface {
   constructor(rest, faces, ramp, order) {
     this.faces = faces;
-    this.geometry = surface(rest, faces, true);
+    this.geometry = surface(rest, faces);
     const texture = new THREE.DataTexture(ramp, 256, 1);
     texture.magFilter = texture.minFilter = THREE.LinearFilter;
     texture.needsUpdate = true;
@@ -161,27 +150,5 @@ export class Surface {
     this.uniforms.ramp.value.dispose();
     this.geometry.dispose();
     for (const object of this.objects) object.material.dispose();
-  }
-}
-
-/** A body in space in another shape: a skin of glass. Where it is the same as the body it lies behind it. */
-export class Ghost {
-  constructor(nodes, faces, order) {
-    this.geometry = surface(nodes, faces, false);
-    this.uniforms = { tint: { value: new THREE.Vector3() }, opacity: { value: 1 } };
-    this.objects = [shown(this.geometry, new THREE.ShaderMaterial({
-      vertexShader: VERTEX.replace(/}$/, "gl_Position.z += 0.004 * gl_Position.w; }"),
-      fragmentShader: GHOST, uniforms: this.uniforms, transparent: true, depthWrite: false,
-    }), order)];
-  }
-
-  colour(fill, opacity) {
-    this.uniforms.tint.value.set(...rgb(fill));
-    this.uniforms.opacity.value = opacity;
-  }
-
-  dispose() {
-    this.geometry.dispose();
-    this.objects[0].material.dispose();
   }
 }

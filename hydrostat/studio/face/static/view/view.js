@@ -1,6 +1,7 @@
 // The view: takes scenes and frames, and paints when something has changed.
 
 import { THREE } from "nicegui-scene";
+import { drawGhostsInSpace } from "./felt.js";
 import { Link } from "./link.js";
 import { Overlay } from "./overlay.js";
 import { opened } from "./packet.js";
@@ -16,16 +17,16 @@ const MARGIN = { flat: [84, 44, 44, 56], space: [84, 44, 44, 72] };
 export class View extends Shown {
   /**
    * @param element that is filled
-   * @param canvases for the body and for what is drawn on top
+   * @param canvases three, one over the other: for ghosts in space, for the body in space, for all else
    * @param options {stream, dark, palette: colours by name and `tension`, a row of them, brush}
    * @param tell (name, value) is told "connected" and "note"
    */
   constructor(element, canvases, options, tell) {
     super(options.palette, options.dark);
-    Object.assign(this, { element, tell, brush: options.brush, sheet: canvases[0] });
+    Object.assign(this, { element, tell, brush: options.brush, under: canvases[0], sheet: canvases[1] });
     this.renderer = null; // made for the first body in space: flat ones need no WebGL
     this.slow = hasNoCard();
-    this.overlay = new Overlay(canvases[1], this.slow);
+    this.overlay = new Overlay(canvases[2], this.slow);
     this.font = getComputedStyle(element).fontFamily || "sans-serif";
     this.dirty = new Set();
     this.pixel = new Uint8Array(4);
@@ -35,8 +36,8 @@ export class View extends Shown {
     this.pointer = new Pointer(this);
     this.watch = new ResizeObserver(() => this.mark("size"));
     this.watch.observe(element);
-    canvases[0].addEventListener("webglcontextlost", (event) => event.preventDefault());
-    canvases[0].addEventListener("webglcontextrestored", () => this.mark("camera"));
+    this.sheet.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    this.sheet.addEventListener("webglcontextrestored", () => this.mark("camera"));
     const receive = (buffer) => this.guarded(() => this.receive(buffer));
     this.link = new Link(options.stream, receive, (connected) => this.linked(connected));
     document.fonts?.ready.then(() => this.mark("camera")); // labels that were written before the page's letters came
@@ -131,18 +132,17 @@ export class View extends Shown {
   openRenderer() {
     if (this.renderer) return;
     try {
-      this.renderer = new THREE.WebGLRenderer({ canvas: this.sheet, powerPreference: "high-performance" });
+      this.renderer = new THREE.WebGLRenderer({ canvas: this.sheet, alpha: true, powerPreference: "high-performance" });
     } catch (error) {
       this.tell("failure", "Bodies in space need WebGL, which this browser does not have. Switch it on, or use another.");
       throw error;
     }
-    this.renderer.setClearColor(this.theme.back, 1);
+    this.renderer.setClearColor(0, 0);
     this.resize();
   }
 
   dress(dark) {
     this.theme = theme(dark);
-    this.renderer?.setClearColor(this.theme.back, 1);
     this.element.style.background = this.theme.back;
     this.applyLook();
     this.mark("camera");
@@ -190,8 +190,9 @@ export class View extends Shown {
     const { camera, overlay, surface, renderer } = this;
     if (!this.ratio) return;
     camera.place();
-    this.sheet.style.visibility = surface ? "visible" : "hidden";
+    this.under.style.visibility = this.sheet.style.visibility = surface ? "visible" : "hidden";
     if (surface) {
+      this.paintUnder();
       renderer.render(this.world, camera.now);
       this.cover.see(this.nodes, camera, this.cut);
     }
@@ -203,6 +204,18 @@ export class View extends Shown {
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
     }
     if (this.slow) overlay.pen.getImageData(0, 0, 1, 1);
+  }
+
+  /** Ghosts in space stay where they are until the camera moves. */
+  paintUnder() {
+    const { under, ratio } = this;
+    const now = [this.overlay.canvas.width, this.overlay.canvas.height, this.theme.back, ...this.camera.matrix.elements].join();
+    if (this.underOf === this.ghosts && this.underAs === now) return;
+    Object.assign(this, { underOf: this.ghosts, underAs: now });
+    [under.width, under.height] = [this.overlay.canvas.width, this.overlay.canvas.height];
+    const pen = under.getContext("2d", { willReadFrequently: this.slow });
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    drawGhostsInSpace(pen, this);
   }
 
   // What the page may ask for.
@@ -244,8 +257,9 @@ export class View extends Shown {
     pen.fillStyle = this.theme.back;
     pen.fillRect(0, 0, sheet.width, sheet.height);
     if (this.surface) {
+      pen.drawImage(this.under, 0, 0);
       this.renderer.render(this.world, this.camera.now);
-      pen.drawImage(this.renderer.domElement, 0, 0);
+      pen.drawImage(this.sheet, 0, 0);
     }
     pen.drawImage(this.overlay.canvas, 0, 0);
     return sheet.toDataURL("image/png");
@@ -259,7 +273,6 @@ export class View extends Shown {
     cancelAnimationFrame(this.ticket);
     clearTimeout(this.bare);
     this.drop(this.surface);
-    for (const { skin } of Object.values(this.ghosts)) this.drop(skin);
     this.renderer?.dispose();
     if (window.__app === this.probe) delete window.__app;
   }
