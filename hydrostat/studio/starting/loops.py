@@ -141,9 +141,9 @@ def _fitted(rim: Ring, size: float) -> Loop:
             Corner(round(float(ring[knot, 0]), 2), round(float(ring[knot, 1]), 2), not sharp[knot]) for knot in knots
         )
         dense = curve(loop)
-        missed = distance(places, LinearRing(dense))
+        missed = np.asarray(distance(places, LinearRing(dense)))
         missed[knots] = 0.0
-        strayed = distance(shapely_points(dense), whole)
+        strayed = np.asarray(distance(shapely_points(dense), whole))
         if max(missed.max(), strayed.max()) < _GOOD_FIT * size or len(knots) >= min(_MOST_KNOTS, len(ring)):
             return loop
         stretches = [part[1:] for part in np.split(np.arange(len(ring)), knots[1:])]

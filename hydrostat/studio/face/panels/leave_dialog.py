@@ -14,11 +14,13 @@ async def may_leave(page: Page) -> bool:
         ui.label(f"{document.robot.name} is not saved").classes("studio-title")
         ui.label("Another robot takes its place, and what was changed is lost.").classes("studio-hint")
         with ui.row().classes("w-full justify-end"):
-            ui.button("Keep it", on_click=lambda: dialog.submit(False)).props("flat no-caps").mark("leave-no")
+            ui.button("Keep it", on_click=lambda: dialog.submit(False)).props("flat no-caps").props(
+                'data-testid="leave-no"'
+            )
             leave = ui.button("Leave it", on_click=lambda: dialog.submit(True)).props(
                 "unelevated no-caps color=negative"
             )
-            leave.mark("leave-yes")
+            leave.props('data-testid="leave-yes"')
     answer = bool(await dialog)
     dialog.delete()
     return answer

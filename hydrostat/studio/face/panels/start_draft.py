@@ -5,6 +5,7 @@ from typing import Any
 
 from nicegui import ui
 
+from hydrostat.errors import HydrostatError
 from hydrostat.robot import MATERIALS
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.leave_dialog import may_leave
@@ -53,7 +54,7 @@ def _state(page: Page) -> Callable[[], None]:
         ui.button("Stop", on_click=page.doing(starter.stop)).props("flat no-caps dense padding='2px 12px'")
     with ui.element("div").classes("start-card") as wrong, ui.element("div").classes("start-problem"):
         ui.icon("error_outline").classes("text-lg")
-        problem = ui.label().mark("problem")
+        problem = ui.label().props('data-testid="problem"')
 
     def refresh() -> None:
         busy.set_visibility(starter.meshing)
@@ -68,10 +69,10 @@ def _state(page: Page) -> Callable[[], None]:
 def _pictures() -> Callable[[Sketch | None], None]:
     """The robot at rest, and what was mended."""
     with ui.element("div").classes("start-card") as card:
-        words = ui.label().classes("start-small studio-figure").mark("sketch-words")
+        words = ui.label().classes("start-small studio-figure").props('data-testid="sketch-words"')
         picture = ui.html("", sanitize=False).classes("start-figure")
     with ui.element("div").classes("start-card") as report:
-        head = ui.label().classes("start-head").mark("report-head")
+        head = ui.label().classes("start-head").props('data-testid="report-head"')
         lines = ui.column().classes("gap-1 w-full")
         repair = ui.html("", sanitize=False).classes("start-figure")
     shown: Sketch | None = None
@@ -117,7 +118,12 @@ def _fields(page: Page) -> Callable[[Draft, Sketch | None], None]:
     starter = page.session.starter
 
     def ask(**changes: Any) -> None:
-        page.act(lambda: starter.revise(**changes))
+        try:
+            starter.revise(**changes)
+            wrong.set_text("")
+        except HydrostatError as error:
+            wrong.set_text(str(error))
+        make.set_enabled(not wrong.text and starter.is_current and not starter.meshing)
 
     with ui.element("div").classes("start-fields"):
         name = ui.input("Name", on_change=lambda event: ask(name=str(event.value or ""))).props(
@@ -129,9 +135,17 @@ def _fields(page: Page) -> Callable[[Draft, Sketch | None], None]:
         fine = ui.toggle(["Coarse", "Medium", "Fine"]).props("no-caps spread unelevated").classes("w-full")
         element = _Length("Element size", lambda value: ask(element_size=value, nodes=None), "element-size")
         options = {key: f"{key}, {young_words(found)}" for key, found in MATERIALS.items()}
-        material = ui.select(options, label="Material", with_input=False).props("outlined dense").mark("material")
+        material = (
+            ui.select(options, label="Material", with_input=False)
+            .props("outlined dense")
+            .props('data-testid="material"')
+        )
         words = ui.label().classes("start-small")
-        make = ui.button("Make robot", icon="check").props("unelevated no-caps size=md").mark("make-robot")
+        wrong = ui.label().classes("start-problem").props('data-testid="wrong-number"')
+        wrong.bind_visibility_from(wrong, "text", bool)
+        make = (
+            ui.button("Make robot", icon="check").props("unelevated no-caps size=md").props('data-testid="make-robot"')
+        )
 
     def choose(kind_name: str) -> None:
         draft = starter.draft
@@ -166,7 +180,7 @@ def _fields(page: Page) -> Callable[[Draft, Sketch | None], None]:
         thick.set_visibility(draft.is_drawing)
         _quietly(material, draft.material)
         words.set_text(material_words(MATERIALS[draft.material]))
-        make.set_enabled(starter.is_current and not starter.meshing)
+        make.set_enabled(not wrong.text and starter.is_current and not starter.meshing)
         fine.set_value(_level(draft, flat))
         body = None if sketch is None else sketch.robot.body
         size.show(draft.size or (None if body is None else body.mesh.size))
@@ -198,7 +212,11 @@ class _Length:
 
     def __init__(self, label: str, ask: Callable[[float], None], mark: str) -> None:
         self._ask, self._shown = ask, None
-        self._field = ui.number(label, suffix="mm", format="%.4g").props("outlined dense debounce=700").mark(mark)
+        self._field = (
+            ui.number(label, suffix="mm", format="%.4g")
+            .props("outlined dense debounce=700")
+            .props(f'data-testid="{mark}"')
+        )
         self._field.on_value_change(lambda event: self._typed(event.value))
 
     def show(self, value: float | None) -> None:

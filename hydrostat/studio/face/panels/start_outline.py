@@ -30,13 +30,13 @@ def outline_view(page: Page) -> Callable[[], None]:
         done = (
             ui.button("Next" if robot is None else "Apply", icon="check")
             .props("unelevated no-caps")
-            .mark("outline-done")
+            .props('data-testid="outline-done"')
         )
     with ui.element("div").classes("start-outline"):
         editor = OutlineEditor(outlining.loops, lambda raw: take(raw)).style("width: 100%; height: 100%")
     with ui.row().classes("items-center no-wrap w-full gap-2"):
         sign = ui.icon("check_circle").classes("text-lg")
-        words = ui.label().classes("start-small studio-figure").mark("outline-words")
+        words = ui.label().classes("start-small studio-figure").props('data-testid="outline-words"')
         ui.space()
         ui.label("Click: corner. Drag: move. Double click: round or sharp. Delete: remove. Wheel: zoom.").classes(
             "start-small"
@@ -83,7 +83,9 @@ def _tools(editor: OutlineEditor, *, new: bool) -> None:
     _tool("add_circle_outline", "Another loop: a hole, if inside", editor.add_loop)
     _tool("delete_outline", "Remove the chosen corner (Delete)", editor.remove_corner)
     _tool("fit_screen", "Fit", editor.fit)
-    ui.switch("Mirror", on_change=lambda event: editor.set_mirror(bool(event.value))).mark("outline-mirror")
+    ui.switch("Mirror", on_change=lambda event: editor.set_mirror(bool(event.value))).props(
+        'data-testid="outline-mirror"'
+    )
     ui.switch("Snap", value=True, on_change=lambda event: editor.set_snap(bool(event.value)))
 
 
@@ -101,7 +103,7 @@ async def _agreed(page: Page, found: Reshaped) -> bool:
         with ui.row().classes("w-full justify-end"):
             ui.button("Go on drawing", on_click=lambda: dialog.submit(False)).props("flat no-caps")
             remove = ui.button("Remove them", on_click=lambda: dialog.submit(True)).props("unelevated no-caps")
-            remove.mark("outline-agree")
+            remove.props('data-testid="outline-agree"')
     answer = bool(await dialog)
     dialog.delete()
     return answer

@@ -48,9 +48,17 @@ async def open_with(page: Page, button: ui.element, action: Callable[[], None]) 
     serial = page.session.document.serial
     button.classes(add="start-busy")
     await page.act_slowly(action)
-    button.classes(remove="start-busy")
+    _rest(button)
     if page.session.document.serial != serial:
         page.go(StageName.POSE)
+
+
+def _rest(card: ui.element) -> bool:
+    """Show that it works no more; whether it is still there."""
+    if card.is_deleted:
+        return False
+    card.classes(remove="start-busy")
+    return True
 
 
 def _left(page: Page, left: Left) -> None:
@@ -59,7 +67,9 @@ def _left(page: Page, left: Left) -> None:
         ui.icon("history").classes("text-xl")
         ui.label(f"Work of {left.words} was not saved.")
         ui.space()
-        restore = ui.button("Restore").props("unelevated no-caps dense padding='4px 14px'").mark("restore")
+        restore = (
+            ui.button("Restore").props("unelevated no-caps dense padding='4px 14px'").props('data-testid="restore"')
+        )
         restore.on_click(lambda: open_with(page, row, partial(autosave.restore, left)))
 
         async def forget() -> None:
@@ -96,14 +106,14 @@ def _drop(page: Page) -> None:
         with ui.element("div").classes("start-kinds"):
             for kind in KINDS:
                 ui.label(kind).classes("start-kind")
-        upload = ui.upload(max_file_size=MOST_BYTES, max_files=1, auto_upload=True).mark("upload")
+        upload = ui.upload(max_file_size=MOST_BYTES, max_files=1, auto_upload=True).props('data-testid="upload"')
 
     async def brought(event: events.UploadEventArguments) -> None:
         card.classes(add="start-busy")
         content = await event.file.read()
         await page.act_slowly(page.session.starter.bring, event.file.name, content)
-        card.classes(remove="start-busy")
-        upload.reset()
+        if _rest(card):
+            upload.reset()
 
     upload.on_upload(brought)
     upload.on_rejected(lambda: page.tell(f"one file of at most {MOST_BYTES // 10**6} MB at a time", Tone.BAD))
@@ -119,10 +129,10 @@ def _draw(page: Page) -> None:
         ui.label("Set corners, make them round, cut holes: the outline of a flat, stuffed body.").classes("start-small")
         ui.space()
         new = ui.button("New outline", icon="add", on_click=page.doing(starter.outline_new))
-        new.props("unelevated no-caps").mark("outline-new")
+        new.props("unelevated no-caps").props('data-testid="outline-new"')
         if document.is_open and document.robot.body.outline is not None:
             edit = ui.button(f"Edit that of {document.robot.name}", on_click=page.doing_slowly(starter.outline_open))
-            edit.props("outline no-caps").mark("outline-edit")
+            edit.props("outline no-caps").props('data-testid="outline-edit"')
 
 
 def _folder(page: Page) -> None:
@@ -130,14 +140,19 @@ def _folder(page: Page) -> None:
         _head("folder_open", "Open a folder")
         ui.label("With robot.toml in it, such as one made by hydrostat new.").classes("start-small")
         ui.space()
-        path = ui.input("Folder", autocomplete=suggestions("")).props("outlined dense").classes("w-full").mark("folder")
+        path = (
+            ui.input("Folder", autocomplete=suggestions(""))
+            .props("outlined dense")
+            .classes("w-full")
+            .props('data-testid="folder"')
+        )
         path.on_value_change(lambda event: path.set_autocomplete(suggestions(str(event.value or ""))))
 
         async def go() -> None:
             await open_with(page, card, lambda: page.session.starter.open_folder(str(path.value or "")))
 
         path.on("keydown.enter", go)
-        ui.button("Open", on_click=go).props("unelevated no-caps").mark("folder-open")
+        ui.button("Open", on_click=go).props("unelevated no-caps").props('data-testid="folder-open"')
 
 
 def _chip(page: Page, card: Card) -> None:
@@ -151,7 +166,10 @@ def _chip(page: Page, card: Card) -> None:
 def _robot(page: Page, card: Card) -> None:
     shown = card.name.replace("_", " ")
     with (
-        ui.element("button").classes("start-robot").props(f'aria-label="{shown}"').mark(f"gallery-{card.name}") as tile
+        ui.element("button")
+        .classes("start-robot")
+        .props(f'aria-label="{shown}"')
+        .props(f'data-testid="gallery-{card.name}"') as tile
     ):
         if card.picture is not None:
             ui.element("img").props(f'src="{_inline(card.picture)}" alt=""')
