@@ -38,12 +38,13 @@ def test_a_tracker_follows_a_point_that_moves() -> None:
     points = {"grip": (0.15, 0.01)}
     start = np.array(points["grip"])
     tracker = Tracker(FLAT)
-    reached = None
-    for share in np.linspace(0, 1, 25)[1:]:
-        goal = PointGoal(points=points, targets={"grip": tuple((start + share * np.array([-0.005, 0.03])).tolist())})
-        for _ in range(3):
-            reached = tracker.update(seconds=0.03, objectives=[goal])
-    assert reached is not None
+    shares = np.linspace(0, 1, 25)[1:]
+    goals = [
+        PointGoal(points=points, targets={"grip": tuple((start + share * np.array([-0.005, 0.03])).tolist())})
+        for share in shares
+    ]
+    reached = [tracker.update(seconds=0.03, objectives=[goal]) for goal in goals for _ in range(3)][-1]
+    goal = goals[-1]
     best = solve_ik(FLAT, objectives=[goal])
     assert reached.errors["grip"] < best.errors["grip"] + 1e-4
 

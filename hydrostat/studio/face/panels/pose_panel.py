@@ -28,7 +28,7 @@ def pose_panel(page: Page) -> None:
         rest.props("flat dense no-caps").style("color: var(--accent)")
         rest.tooltip("No targets, all cable let out (R)").mark("pose-rest")
     choice = ui.toggle(MODES, value=poser.mode).props("spread no-caps unelevated toggle-color=primary")
-    choice.classes("w-full").style("border-radius: 10px; overflow: hidden; border: 1px solid var(--line)")
+    choice.classes("w-full").style("flex: none; border-radius: 10px; overflow: hidden; border: 1px solid var(--line)")
     choice.mark("pose-mode")
     hint = ui.label().classes("studio-hint").style("min-height: 38px")
 
