@@ -48,6 +48,15 @@ def check_film(timeline: Timeline, kind: FilmKind) -> None:
         find_ffmpeg()
 
 
+def film_kinds() -> list[FilmKind]:
+    """What can be written on this machine; an MP4 only where ffmpeg is."""
+    try:
+        find_ffmpeg()
+    except InputError:
+        return [FilmKind.GIF, FilmKind.GLB]
+    return list(FilmKind)
+
+
 def record_film(report: Report, robot: Robot, timeline: Timeline, kind: FilmKind) -> bytes:
     """The film, as the bytes of its file.
 

@@ -11,7 +11,7 @@ from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
-from hydrostat.studio.driving.record_work import FilmKind, check_film, film_frames, record_film
+from hydrostat.studio.driving.record_work import FilmKind, check_film, film_frames, film_kinds, record_film
 from hydrostat.studio.driving.recorder import Recorder
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.timeline import Key, Timeline
@@ -76,6 +76,9 @@ def test_what_cannot_be_filmed_is_told_at_once(starfish: Robot, monkeypatch: pyt
     monkeypatch.setattr("shutil.which", lambda program: None)
     with pytest.raises(InputError, match="needs the program ffmpeg"):
         check_film(SHORT, FilmKind.MP4)
+    assert film_kinds() == [FilmKind.GIF, FilmKind.GLB]
+    monkeypatch.setattr("shutil.which", lambda program: f"/usr/bin/{program}")
+    assert film_kinds() == [*FilmKind]
 
 
 def test_a_film_is_made_in_another_process(starfish: Robot) -> None:

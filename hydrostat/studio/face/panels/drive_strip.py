@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.driving.record_work import FilmKind
+from hydrostat.studio.driving.record_work import FilmKind, film_kinds
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.sent_number import sent_number
 from hydrostat.studio.face.timeline import TimelineView
@@ -15,7 +15,11 @@ from hydrostat.studio.session import Tone
 
 SPEEDS = {0.1: "0.1x", 0.25: "0.25x", 0.5: "0.5x", 1.0: "1x", 2.0: "2x", 4.0: "4x"}
 
-FILMS = {FilmKind.GIF: "GIF, for pages", FilmKind.MP4: "MP4, a film", FilmKind.GLB: "GLB, for Blender and 3D viewers"}
+FILMS = {
+    FilmKind.GIF: "GIF, for pages",
+    FilmKind.MP4: "MP4 (where the program ffmpeg is)",
+    FilmKind.GLB: "GLB, for Blender and 3D viewers",
+}
 
 Part = TypeVar("Part", bound=ui.element)
 
@@ -157,7 +161,8 @@ def _films(page: Page) -> None:
 
     with button, _menu():
         for kind, title in FILMS.items():
-            ui.menu_item(title, on_click=partial(start, kind)).mark(f"film-{kind}")
+            item = ui.menu_item(title, on_click=partial(start, kind)).mark(f"film-{kind}")
+            item.set_enabled(kind in film_kinds())
         again = ui.menu_item("", on_click=save)
 
     def show() -> None:
