@@ -188,6 +188,7 @@ def test_a_killed_process_is_told_of(heard: Heard) -> None:
 
 
 def test_closing_ends_all(heard: Heard) -> None:
+    others = set(active_children())
     heard.jobs.warm()
     heard.begin(works.wait)
     heard.jobs.warm()
@@ -197,7 +198,7 @@ def test_closing_ends_all(heard: Heard) -> None:
     assert not lives(heard.parts[0])
     with pytest.raises(InputError, match="closing"):
         heard.jobs.start("Other", works.add)
-    assert active_children() == []
+    assert set(active_children()) <= others
 
 
 def test_a_process_that_was_warmed_has_its_modules(heard: Heard) -> None:

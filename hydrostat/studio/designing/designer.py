@@ -16,7 +16,7 @@ from hydrostat.studio.designing.candidate import Candidate, Reach, network_words
 from hydrostat.studio.designing.design_work import Found, Glimpse, design_work
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
-from hydrostat.studio.designing.run import Mark, Run, error_at_rest
+from hydrostat.studio.designing.run import Mark, Run, beginning, error_at_rest
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -30,6 +30,9 @@ TITLE = "Designing cables"
 
 MOST = 60
 """So many candidates are kept; the oldest go."""
+
+MOST_RINGS = 12
+"""More targets than these at once say nothing."""
 
 MODULE = "hydrostat.studio.designing.design_work"
 
@@ -157,7 +160,9 @@ class Designer(Stage):
         robot = self._document.robot
         asked = asked_for(robot, self.wishes, self._options)
         before = self.run, self._running, self.outcome
-        self.run = Run(asked=asked, began=time.monotonic(), rest=error_at_rest(robot, asked.poses))
+        self.run = Run(
+            asked=asked, began=time.monotonic(), rest=error_at_rest(robot, asked.poses), best=beginning(asked)
+        )
         self._running, self.outcome = True, ""
         calls: dict[str, Any] = {"on_part": self._glimpsed, "on_done": self._found, "on_end": self._ended}
         try:
@@ -259,7 +264,7 @@ class Designer(Stage):
         candidate, run, robot = self.candidate, self.run, self._document.robot
         if candidate is not None:
             return candidate.robot
-        if self.running and run is not None and run.best is not None and run.best.body == robot.body:
+        if self.running and run is not None and run.best.body == robot.body:
             return run.best
         return robot
 
@@ -277,7 +282,8 @@ class Designer(Stage):
             return [reach.pose.targets]
         if self.painter.busy or not robot.poses:
             return []
-        return [pose.targets for pose in wished_poses(robot, self.wishes)]
+        wished = [pose.targets for pose in wished_poses(robot, self.wishes)]
+        return wished if sum(map(len, wished)) <= MOST_RINGS else []
 
     def _glimpsed(self, glimpse: Glimpse) -> None:
         """A better network was found; called in a thread of the jobs."""

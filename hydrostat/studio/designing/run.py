@@ -33,7 +33,7 @@ class Run:
         asked: what it began with.
         began: when, on a clock that only runs forward [s].
         rest: error if nothing moved [m].
-        best: the robot with the best network so far; None before the first.
+        best: the robot with the best network so far; with what stays of its own before the first.
         words: what was done last.
         trail: of the best network, in time.
     """
@@ -41,9 +41,19 @@ class Run:
     asked: Asked
     began: float
     rest: float
-    best: Robot | None = None
+    best: Robot
     words: str = ""
     trail: tuple[Mark, ...] = field(default=())
+
+
+def beginning(asked: Asked) -> Robot:
+    """The robot with what a search begins with: its own network if that is improved, else what is kept of it."""
+    robot, limits = asked.robot, asked.constraints
+    if asked.improve:
+        return robot
+    cables = [robot.cables[number] for number in limits.locked_cables]
+    kept = {*limits.locked_winches, *(cable.winch for cable in cables)}
+    return robot.with_network([winch for winch in robot.winches if winch.name in kept], cables)
 
 
 def error_at_rest(robot: Robot, poses: tuple[Pose, ...]) -> float:

@@ -8,6 +8,7 @@ from hydrostat.design import Constraints, RouteOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.studio.designing.asked import asked_for, wished_constraints, wished_poses
+from hydrostat.studio.designing.run import beginning
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 
@@ -86,3 +87,16 @@ def test_numbers_out_of_range(wrong: dict[str, float], words: str) -> None:
     with pytest.raises(InputError) as caught:
         Wishes(**wrong)  # type: ignore[arg-type]
     assert str(caught.value) == words
+
+
+def test_a_search_begins_with_what_stays(starfish: Robot) -> None:
+    """Oracle: the names and numbers that were wished for."""
+
+    def begun(**wishes: object) -> Robot:
+        return beginning(asked_for(starfish, Wishes(**wishes)))  # type: ignore[arg-type]
+
+    assert (begun().winches, begun().cables) == ((), ())
+    assert begun(improve=True) is starfish
+    kept = begun(kept_winches=("feet",), kept_cables=(0,))
+    assert kept.cables == starfish.cables[:1]
+    assert {winch.name for winch in kept.winches} == {"feet", starfish.cables[0].winch}

@@ -4,10 +4,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from builders import strip_robot
+from builders import box_robot, strip_robot
 
 from hydrostat.design import Constraints, RouteOptions
-from hydrostat.robot import gallery_folder, load_robot
 from hydrostat.studio.designing.asked import Asked
 from hydrostat.studio.designing.candidate import Candidate
 from hydrostat.studio.designing.chart import Chart, ticks
@@ -45,7 +44,7 @@ def test_a_sketch_has_the_body_and_each_cable_where_it_runs() -> None:
 
 
 def test_a_body_in_space_is_one_small_silhouette() -> None:
-    robot = load_robot(gallery_folder("fish_tail"))
+    robot = box_robot()
     svg = BodySketch(robot.body).network(robot)
     assert len(svg) < 20_000
     assert len(all_of(svg, "path", "sketch-body")) == 1
@@ -79,7 +78,7 @@ def run(*errors: float) -> Run:
     asked = Asked(
         robot=robot, poses=(), winches=1, cables=2, constraints=Constraints(), options=RouteOptions(), improve=False
     )
-    return Run(asked=asked, began=0.0, rest=0.02, trail=marks(*errors))
+    return Run(asked=asked, began=0.0, rest=0.02, best=robot, trail=marks(*errors))
 
 
 def test_the_error_falls_in_steps_from_rest_to_now() -> None:

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from builders import box_robot
 
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
@@ -218,7 +219,7 @@ def test_a_zone_that_is_undone_while_it_is_carried_is_let_go(painter: Painter, w
 
 
 def test_in_space_zones_are_balls() -> None:
-    robot = load_robot(gallery_folder("fish_tail"))
+    robot = box_robot()
     document = Document(Bell())
     document.open(Work(robot=robot))
     painter = Painter(document)
