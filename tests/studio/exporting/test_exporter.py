@@ -52,6 +52,12 @@ def starfish() -> Robot:
 
 
 @pytest.fixture(scope="module")
+def waving(starfish: Robot) -> Robot:
+    """The starfish with one pose."""
+    return replace(starfish, poses={"wave": starfish.poses["wave"]})
+
+
+@pytest.fixture(scope="module")
 def kit(starfish: Robot) -> tuple[KitMade, Told]:
     told = Told()
     return make_kit(told, starfish, KitOptions()), told
@@ -155,11 +161,11 @@ def test_the_robot_reads_back_the_same(exporter: Exporter, tmp_path: Path) -> No
     assert exporter.robot_zip().content == download.content
 
 
-def test_pictures_open_and_the_same_robot_gives_the_same(starfish: Robot) -> None:
-    pictures = make_pictures(Told(), starfish)
+def test_pictures_open_and_the_same_robot_gives_the_same(waving: Robot) -> None:
+    pictures = make_pictures(Told(), waving)
     names = [picture.name for picture in pictures]
     assert len(names) == len(set(names))
-    for pose in starfish.poses:
+    for pose in waving.poses:
         assert f"starfish_pose_{pose}.png" in names
     for picture in pictures:
         if picture.name.endswith(".png"):
@@ -167,16 +173,17 @@ def test_pictures_open_and_the_same_robot_gives_the_same(starfish: Robot) -> Non
                 opened.verify()
         else:
             assert ET.fromstring(picture.content).tag.endswith("svg")
-    first = [picture for picture in pictures if "rest" in picture.name]
-    again = [picture for picture in make_pictures(Told(), replace(starfish, poses={})) if "rest" in picture.name]
-    assert [picture.content for picture in first] == [picture.content for picture in again]
+    first = {picture.name: picture.content for picture in pictures}
+    again = make_pictures(Told(), replace(waving, poses={}))
+    assert again
+    assert all(picture.content == first[picture.name] for picture in again)
 
 
-def test_a_report_tells_errors_and_tensions(starfish: Robot) -> None:
-    report = make_report(Told(), starfish)
+def test_a_report_tells_errors_and_tensions(waving: Robot) -> None:
+    report = make_report(Told(), waving)
     text = report.content.decode()
-    for pose in starfish.poses.values():
-        reached = hs.solve_ik(hs.Simulation(starfish), pose)
+    for pose in waving.poses.values():
+        reached = hs.solve_ik(hs.Simulation(waving), pose)
         for error in reached.errors.values():
             assert f"{1e3 * error:.2f}" in text
         assert f"{max(reached.pose.tensions):.2f}" in text

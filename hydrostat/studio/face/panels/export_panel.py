@@ -142,7 +142,7 @@ def _maker(
 def _result(page: Page, export: Export, find: Callable[[], object], build: Callable[[], None]) -> None:
     """What was made, drawn anew when it is another."""
     exporter = page.session.exporter
-    room = ui.column().classes("w-full gap-2").props(f'data-testid="result-{export}"')
+    room = ui.column().classes("export-room w-full gap-2").props(f'data-testid="result-{export}"')
     drawn: list[object] = [object()]
 
     def show() -> None:
