@@ -110,7 +110,7 @@ def _place(page: Page, key: str) -> Callable[[Robot, Part], None]:
 
     with ui.element("div").classes("studio-row"):
         for axis, name in enumerate("xyz"[: document.robot.body.mesh.dim]):
-            boxes.append(EditNumber(name, "mm", lambda value, axis=axis: take(axis, value), mark=f"edit-{name}"))
+            boxes.append(EditNumber(f"{name}, mm", "", lambda value, axis=axis: take(axis, value), mark=f"edit-{name}"))
     return show
 
 
