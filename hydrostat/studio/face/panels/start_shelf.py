@@ -5,11 +5,11 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from nicegui import events, ui
+from nicegui import events, run, ui
 
+from hydrostat.errors import HydrostatError
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.leave_dialog import may_leave
-from hydrostat.studio.session import Tone
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.autosave import Left
 from hydrostat.studio.starting.draft import MOST_BYTES
@@ -17,11 +17,14 @@ from hydrostat.studio.starting.shelf import Card, gallery_cards, suggestions
 
 KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF")
 
+MOST_LEFT = 4
+"""So many works that a crash left are offered at once, the newest."""
+
 
 def shelf_view(page: Page) -> Callable[[], None]:
     """Build it."""
     starter = page.session.starter
-    for left in starter.autosave.left():
+    for left in starter.autosave.left()[:MOST_LEFT]:
         _left(page, left)
     ui.label("Begin with a shape").classes("start-title")
     with ui.element("div").classes("start-ways"):
@@ -102,21 +105,32 @@ def _drop(page: Page) -> None:
         ui.label(
             "Drop a file here, or click to choose one. It is meshed and mended, and you see what was done."
         ).classes("start-small")
+        wrong = ui.label().classes("start-problem").props('data-testid="upload-wrong"')
+        wrong.bind_visibility_from(wrong, "text", bool)
         ui.space()
         with ui.element("div").classes("start-kinds"):
             for kind in KINDS:
                 ui.label(kind).classes("start-kind")
         upload = ui.upload(max_file_size=MOST_BYTES, max_files=1, auto_upload=True).props('data-testid="upload"')
 
-    async def brought(event: events.UploadEventArguments) -> None:
-        card.classes(add="start-busy")
-        content = await event.file.read()
-        await page.act_slowly(page.session.starter.bring, event.file.name, content)
+    def complain(words: str) -> None:
         if _rest(card):
             upload.reset()
+            wrong.set_text(words)
+
+    async def brought(event: events.UploadEventArguments) -> None:
+        card.classes(add="start-busy")
+        wrong.set_text("")
+        content = await event.file.read()
+        try:
+            await run.io_bound(page.session.starter.bring, event.file.name, content)
+        except HydrostatError as error:
+            complain(str(error))
+        else:
+            complain("")
 
     upload.on_upload(brought)
-    upload.on_rejected(lambda: page.tell(f"one file of at most {MOST_BYTES // 10**6} MB at a time", Tone.BAD))
+    upload.on_rejected(lambda: complain(f"one file of at most {MOST_BYTES // 10**6} MB at a time is read"))
     pick = f"() => getElement({upload.id}).$refs.qRef.pickFiles()"
     card.on("click", js_handler=pick)
     card.on("keydown.enter", js_handler=pick)
