@@ -19,7 +19,7 @@ from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
-from hydrostat.studio.view.colouring import Colouring, node_values
+from hydrostat.studio.view.colouring import Colouring, Scale, node_values, scale
 from hydrostat.studio.view.shape import rest_shape
 from hydrostat.studio.view.show import Show, Shown
 from hydrostat.studio.work_folder import open_work, save_work
@@ -141,6 +141,7 @@ class Session:
             if self._holder is not None and self._holder != screen:
                 self.tell("another window is holding something; wait until it lets go", Tone.PLAIN)
                 return False
+            self._let_go()
             held = self._try(lambda: self.document.is_open and self.current.grab(hit))
             self._holder = screen if held else None
             self._stamp = stamp
@@ -201,10 +202,15 @@ class Session:
         self.document.mark_saved(folder)
         self.tell(f"saved in {folder}", Tone.GOOD)
 
+    @property
+    def legend(self) -> Scale | None:
+        """What the colours of the body mean; None for plain felt."""
+        return scale(self.document.robot, self.colouring) if self.document.is_open else None
+
     def colour_by(self, colouring: Colouring) -> None:
         """Choose what the colours of the body mean."""
         self.colouring = colouring
-        self.bell.ring(Topic.SHAPE)
+        self.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
         """Leave a note for the person."""

@@ -2,9 +2,12 @@
 
 from nicegui import ui
 
+from hydrostat.plot import palette
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.view.colouring import Colouring
+
+RAMP = palette.TENSION
 
 AXES = {"off": None, "x": "x", "y": "y", "z": "z"}
 
@@ -12,7 +15,8 @@ COLOURINGS = {Colouring.FELT: "Felt", Colouring.STRAIN: "Strain", Colouring.STRE
 
 
 def view_bar(page: Page) -> None:
-    """Buttons in a corner of the view."""
+    """Buttons in a corner of the view, and the legend in another."""
+    _legend(page)
     view = page.viewport
     with ui.element("div").classes("studio-view-bar"):
         _button("fit_screen", "Fit", view.fit)
@@ -45,12 +49,32 @@ def view_bar(page: Page) -> None:
     page.on(Topic.ROBOT, show, lasting=True)
 
 
+def _legend(page: Page) -> None:
+    """What the colours of the body mean, in another corner."""
+    with ui.element("div").classes("studio-legend") as box:
+        title = ui.label()
+        ui.element("div").classes("studio-legend-bar").style(f"background: linear-gradient(90deg, {', '.join(RAMP)})")
+        with ui.element("div").classes("studio-row"):
+            low = ui.label()
+            ui.space()
+            high = ui.label()
+
+    def show() -> None:
+        scale = page.session.legend
+        box.set_visibility(scale is not None)
+        if scale is not None:
+            for label, text in ((title, scale.title), (low, scale.low), (high, scale.high)):
+                label.set_text(text)
+
+    page.on(Topic.THINGS, show, lasting=True)
+
+
 def _space_menu(page: Page) -> None:
     view = page.viewport
     with ui.menu(), ui.column().classes("q-pa-md gap-2").style("min-width: 220px"):
         ui.switch("Perspective", value=True, on_change=lambda event: view.orthographic(not event.value))
         ui.label("See through").classes("studio-section")
-        ui.slider(min=0.1, max=1.0, step=0.05, value=0.75, on_change=lambda event: view.opacity(event.value or 1.0))
+        ui.slider(min=0.1, max=1.0, step=0.05, value=1.0, on_change=lambda event: view.opacity(event.value or 1.0))
         ui.label("Section").classes("studio-section")
         share = ui.slider(min=0.0, max=1.0, step=0.01, value=0.5)
         axis = ui.toggle(list(AXES), value="off").props("dense no-caps")
@@ -63,7 +87,7 @@ def _colour_menu(page: Page) -> None:
     with ui.menu(), ui.column().classes("q-pa-md gap-2"):
         choice = ui.radio(COLOURINGS, value=session.colouring)
         choice.on_value_change(lambda event: session.colour_by(Colouring(event.value)))
-    page.on(Topic.SHAPE, lambda: choice.set_value(session.colouring), lasting=True)
+    page.on(Topic.THINGS, lambda: choice.set_value(session.colouring), lasting=True)
 
 
 def _toggle_mesh(page: Page, button: ui.button) -> None:

@@ -18,7 +18,7 @@ from hydrostat.studio.face.save_dialog import save_dialog
 from hydrostat.studio.face.theme import dress
 from hydrostat.studio.face.tour import Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
-from hydrostat.studio.face.viewport import Viewport
+from hydrostat.studio.face.viewport import Side, Viewport
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
 
@@ -123,18 +123,22 @@ async def _switch(dark: ui.dark_mode) -> None:
     dark.set_value(not await ui.run_javascript("Quasar.Dark.isActive", timeout=10.0))
 
 
-def _key(page: Page, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> None:
-    """What a key does; see `keys.KEYS`."""
+SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
+
+
+def _key(page: Page, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> Any:
+    """What a key does; see `keys.KEYS`. Returns what is still to be waited for, if anything."""
     if not event.action.keydown:
-        return
+        return None
     name = str(event.key.name)
-    if name in ("1", "3", "7") and not event.modifiers.ctrl:
-        page.viewport.view({"1": "front", "3": "side", "7": "top"}[name])
+    if name in SIDES and not event.modifiers.ctrl:
+        page.viewport.view(SIDES[name])
     elif name.lower() == "z":
         page.session.redo() if event.modifiers.shift else page.session.undo()
     elif name.lower() == "s" and (event.modifiers.ctrl or event.modifiers.meta):
-        ask_save()
+        return ask_save()
     elif name == "?":
-        ask_help()
+        return ask_help()
     elif not (event.modifiers.ctrl or event.modifiers.meta or event.modifiers.alt):
         page.session.key({" ": "space", "Backspace": "delete"}.get(name, name.lower()))
+    return None
