@@ -72,7 +72,7 @@ def ready(page: Page, address: str, mode: str) -> None:
     """Open the page, make the view as large as it shall be, choose a mode, and wait for the first pictures."""
     page.set_default_timeout(PATIENCE)
     page.set_viewport_size({"width": VIEW[0] + 348, "height": VIEW[1] + 52})
-    page.add_init_script("localStorage.setItem('hydrostat-tour', 'seen')")
+    page.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
     page.goto(address)
     page.wait_for_function("window.__app && window.__app.painted > 0")
     page.locator(f"[data-marker=mode-{mode}], .mode-{mode}").first.click()

@@ -71,7 +71,7 @@ def window(browser: "Browser") -> Iterator[Open]:
         context = browser.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True)
         contexts.append(context)
         if not tour:
-            context.add_init_script("localStorage.setItem('hydrostat-tour', 'seen')")
+            context.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
         page = context.new_page()
         page.set_default_timeout(PATIENCE)
         page.goto(address)
