@@ -14,6 +14,9 @@ EDGE = 200.0
 
 MARGIN = 12.0
 
+SPECK = 12.0
+"""A hole of less area is none: triangles that are seen edge-on leave such."""
+
 SIGHT = np.array([[0.905, -0.426, 0.0], [0.168, 0.357, 0.919]])
 """A body in space is seen from the front, a little from the right and from above: picture axes, (2, 3)."""
 
@@ -37,8 +40,16 @@ class BodySketch:
         for winch in robot.winches:
             x, y = self._places(np.array([winch.at]))[0]
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" class="sketch-winch" fill="{colours[winch.name]}"/>')
-        wide, high = self._size
-        return f'<svg viewBox="0 0 {wide:.0f} {high:.0f}" class="sketch" role="img">{"".join(parts)}</svg>'
+        left, top, wide, high = self._frame(robot)
+        box = f"{left:.0f} {top:.0f} {wide:.0f} {high:.0f}"
+        return f'<svg viewBox="{box}" class="sketch" role="img">{"".join(parts)}</svg>'
+
+    def _frame(self, robot: Robot) -> tuple[float, float, float, float]:
+        """Left, top, width and height of the body with all winches, which may stand beside it."""
+        places = self._places(np.array([winch.at for winch in robot.winches]).reshape(-1, self.body.mesh.dim))
+        corners = np.concatenate([places - MARGIN, places + MARGIN, [(0.0, 0.0), self._size]])
+        (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+        return float(left), float(top), float(right - left), float(bottom - top)
 
     @property
     def _size(self) -> tuple[float, float]:
@@ -65,7 +76,7 @@ class BodySketch:
 
     @cached_property
     def _outline(self) -> str:
-        from shapely import polygons, union_all
+        from shapely import Polygon, polygons, union_all
 
         mesh = self.body.mesh
         places = self._places(mesh.nodes)
@@ -74,7 +85,8 @@ class BodySketch:
         areas = spans[:, 0, 0] * spans[:, 1, 1] - spans[:, 0, 1] * spans[:, 1, 0]
         whole = union_all(polygons(corners[np.abs(areas) > 1e-6]), grid_size=0.05).simplify(0.3)
         pieces = getattr(whole, "geoms", [whole])
-        rings = [ring for piece in pieces for ring in (piece.exterior, *piece.interiors)]
+        holes = [hole for piece in pieces for hole in piece.interiors if Polygon(hole).area > SPECK]
+        rings = [*(piece.exterior for piece in pieces), *holes]
         return "".join(_path(np.array(ring.coords)) + "Z" for ring in rings)
 
 
