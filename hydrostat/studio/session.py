@@ -22,7 +22,7 @@ from hydrostat.studio.starting.starter import Starter
 from hydrostat.studio.view.colouring import Colouring, Scale, node_values, scale
 from hydrostat.studio.view.shape import rest_shape
 from hydrostat.studio.view.show import Show, Shown
-from hydrostat.studio.work_folder import open_work, save_work
+from hydrostat.studio.work_folder import open_note, save_work
 
 MOST_NOTES = 50
 """So many notes are kept."""
@@ -120,14 +120,16 @@ class Session:
             self.current.enter()
         self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.THINGS)
 
-    def open_folder(self, folder: Path) -> None:
+    def open_folder(self, folder: Path | str) -> None:
         """Open the robot in a folder and show it.
 
         Raises:
             InputError: as for `load_robot`.
         """
-        self.document.open(open_work(folder), folder=folder)
+        self.starter.open_folder(str(folder))
         self.go(StageName.POSE)
+        if self.document.folder is not None and (note := open_note(self.document.folder)):
+            self.tell(note, Tone.BAD)
 
     def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:
         """A screen's pointer takes hold of something; whether it did.

@@ -67,7 +67,16 @@ def build_window(session: Session) -> Page:
         page.whole.set_visibility(start)
         page.show_panel(PANELS[session.stage])
 
+    brush = [False]
+
+    def follow_brush() -> None:
+        wanted = session.stage is StageName.DESIGN and session.designer.painter.paint is not None
+        if brush != [wanted]:
+            brush[:] = [wanted]
+            page.viewport.set_brush(wanted)
+
     page.on(Topic.STAGE, show_stage, lasting=True)
+    page.on(Topic.THINGS, follow_brush, lasting=True)
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
     ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
     ui.timer(HEARTBEAT, page.beat)
