@@ -244,13 +244,19 @@ export default {
     begin() { this.open = []; this.chosen = null; this.$el.focus(); },
     close() {
       if (!this.open) return;
-      let loop = this.open;
-      if (this.mirror) loop = [...loop, ...loop.filter(([x]) => Math.abs(x) > 1e-6).reverse().map(([x, y, s]) => [-x, y, s])];
-      if (loop.length < 3) return;
+      const made = this.mirrored(this.open);
+      if (made.some((loop) => loop.length < 3)) return;
       this.remember(this.state());
-      this.loops.push(loop);
+      this.loops.push(...made);
       this.open = this.cursor = null;
       this.tell();
+    },
+    mirrored(loop) { // a half from the line to the line is joined to its other half, a hole beside the line has a twin
+      const other = ([x]) => Math.abs(x) > 1e-6, twin = ([x, y, smooth]) => [-x, y, smooth];
+      const oneSided = loop.every(([x]) => x > -1e-6) || loop.every(([x]) => x < 1e-6);
+      if (!this.mirror || !oneSided) return [loop];
+      if (this.loops.length && (other(loop[0]) || other(loop[loop.length - 1]))) return [loop, loop.map(twin)];
+      return [[...loop, ...loop.filter(other).reverse().map(twin)]];
     },
     insert([l, c], place) {
       const loop = this.loops[l], next = (c + 1) % loop.length;
@@ -265,6 +271,11 @@ export default {
         loop.splice(c + 1, 0, corner);
         loop.splice(b[1] + 1, 0, twin);
         return [l, c + 2];
+      }
+      if (a && b && a[0] === b[0] && a[0] !== l) { // of a twin, which runs the same way round its list
+        const twins = this.loops[a[0]], first = Math.min(a[1], b[1]), step = Math.abs(a[1] - b[1]);
+        if (step === 1) twins.splice(first + 1, 0, [round(-place[0]), place[1], smooth]);
+        else if (step === twins.length - 1) twins.push([round(-place[0]), place[1], smooth]);
       }
       loop.splice(c + 1, 0, corner);
       return [l, c + 1];
