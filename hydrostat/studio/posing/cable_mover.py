@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import InverseReason, Limits, PointGoal, Tracker
+from hydrostat.ik import Closeness, InverseReason, Limits, PointGoal, Tracker
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.posing.held import Held
 from hydrostat.studio.posing.mover import Anchored, Mover
@@ -13,6 +13,10 @@ from hydrostat.studio.view.shape import Shape
 
 PATIENCE = 150
 """So many updates are made towards targets that stay where they are."""
+
+CALM = 0.05
+"""What a metre of the whole body away from rest counts beside a metre of error: what is not held should rather stay, or
+all fingers of a hand move for a hair that they gain for one."""
 
 STILL = 1e-4
 """An update that moves no node farther brings it hardly nearer, in sizes of the body."""
@@ -82,16 +86,16 @@ class CableMover(Mover):
         self._still = self._still + 1 if moved < STILL else 0
         more = reached.reason not in ENDS and self._still < STILLS and self._updates < PATIENCE
         notes = reached.held
-        if reached.reason not in (*ENDS, InverseReason.ITERATION_LIMIT):
-            notes = (*notes, str(reached.reason))
-        far = max(reached.errors.values()) > MISSED * self.robot.body.mesh.size
-        if not more and far and not notes:
-            notes = (str(InverseReason.OPTIMAL),)
+        if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
+            stopped = reached.reason is not InverseReason.ITERATION_LIMIT
+            notes = (*notes, str(reached.reason if stopped else InverseReason.OPTIMAL))
         return self._shape(dict(reached.errors), notes), more
 
     def _begin(self, pose: SolvedPose) -> None:
         self._pose, self._held, self._updates, self._still = pose, {}, 0, 0
-        self._tracker = Tracker(self._simulation, limits=Limits(tension=self.tension), start=pose)
+        calm = Closeness(pose=self._simulation.rest, of="nodes", weight=CALM)
+        limits = Limits(tension=self.tension)
+        self._tracker = Tracker(self._simulation, limits=limits, objectives=[calm], start=pose)
 
     def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> Shape:
         pose = self._pose
