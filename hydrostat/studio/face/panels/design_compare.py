@@ -54,7 +54,7 @@ def _head(page: Page, own: tuple[int, ...]) -> None:
             with ui.element("div").classes("row flex-1").style("gap: 6px; min-width: 0"):
                 _pose_chip(page, chosen, None, "rest")
                 for reach in chosen.reaches:
-                    _pose_chip(page, chosen, reach.pose.name, f"{reach.pose.name}  {told_error(reach.error)}")
+                    _pose_chip(page, chosen, reach.pose.name, f"{reach.pose.name}, {told_error(reach.error)}")
         clear = ui.button("Clear", on_click=page.doing(designer.clear)).props("flat no-caps dense")
         clear.props('data-testid="design-clear"').tooltip("Forget all that was found")
         accept = ui.button("Accept", icon="check", on_click=page.doing(designer.accept)).props("unelevated no-caps")
@@ -71,7 +71,8 @@ def _pose_chip(page: Page, chosen: Candidate, pose: str | None, words: str) -> N
         .props('role="button" tabindex="0"')
     )
     chip.props(f'data-testid="design-show-{"rest" if pose is None else "pose"}"')
-    chip.on("click", page.doing(designer.show, chosen.number, pose))
+    for event in ("click", "keydown.enter"):
+        chip.on(event, page.doing(designer.show, chosen.number, pose))
     with chip:
         ui.label(words)
 
@@ -84,7 +85,8 @@ def _cards(page: Page, candidates: tuple[Candidate, ...], own: tuple[int, ...]) 
             card = ui.element("div").classes("design-card" + (" design-card-on" if now else ""))
             card.props('role="button" tabindex="0" data-testid="design-card"')
             pose = designer.pose if now or designer.pose in {reach.pose.name for reach in one.reaches} else None
-            card.on("click", page.doing(designer.show, one.number, pose))
+            for event in ("click", "keydown.enter"):
+                card.on(event, page.doing(designer.show, one.number, pose))
             with card:
                 ui.html(designer.sketch(one), sanitize=False).classes("w-full")
                 ui.html(_words(one, own), sanitize=False)

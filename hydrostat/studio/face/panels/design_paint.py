@@ -26,7 +26,8 @@ def design_paint(page: Page) -> None:
         for paint, words in SHORT.items():
             button = ui.element("div").classes("design-paint").style(f"--tint: {COLOURS[paint]}")
             button.props(f'role="button" tabindex="0" data-testid="paint-{paint}"')
-            button.on("click", partial(_take, page, paint))
+            for event in ("click", "keydown.enter"):
+                button.on(event, partial(_take, page, paint))
             with button:
                 ui.element("span").classes("design-spot")
                 ui.label(words)
