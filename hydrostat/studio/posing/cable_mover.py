@@ -14,9 +14,10 @@ from hydrostat.studio.view.shape import Shape
 PATIENCE = 150
 """So many updates are made towards targets that stay where they are."""
 
-CALM = 0.05
-"""What a metre of the whole body away from rest counts beside a metre of error: what is not held should rather stay, or
-all fingers of a hand move for a hair that they gain for one."""
+CALM, CALMEST = 4.0, 0.3
+"""What is not held should rather stay, or all fingers of a hand move for a hair that they gain for one: a metre of the
+whole body away from rest counts beside a metre of error by so many times the error in sizes of the body, at most the
+second. So it hides no target: it fades as one is reached."""
 
 STILL = 1e-4
 """An update that moves no node farther brings it hardly nearer, in sizes of the body."""
@@ -77,7 +78,7 @@ class CableMover(Mover):
             targets={name: point.target for name, point in held.items()},
         )
         try:
-            reached = self._tracker.update(seconds=TICK, objectives=[goal])
+            reached = self._tracker.update(seconds=TICK, objectives=[goal, self._calm(held)])
         except HydrostatError as error:
             self._begin(self._pose)
             return self._shape(self._anchored.errors(held, self._pose.nodes), (str(error),)), False
@@ -91,11 +92,14 @@ class CableMover(Mover):
             notes = (*notes, str(reached.reason if stopped else InverseReason.OPTIMAL))
         return self._shape(dict(reached.errors), notes), more
 
+    def _calm(self, held: Mapping[str, Held]) -> Closeness:
+        """That the rest of the body stays, the more the farther the targets are."""
+        error = max(self._anchored.errors(held, self._pose.nodes).values()) / self.robot.body.mesh.size
+        return Closeness(pose=self._simulation.rest, of="nodes", weight=min(CALM * error, CALMEST))
+
     def _begin(self, pose: SolvedPose) -> None:
         self._pose, self._held, self._updates, self._still = pose, {}, 0, 0
-        calm = Closeness(pose=self._simulation.rest, of="nodes", weight=CALM)
-        limits = Limits(tension=self.tension)
-        self._tracker = Tracker(self._simulation, limits=limits, objectives=[calm], start=pose)
+        self._tracker = Tracker(self._simulation, limits=Limits(tension=self.tension), start=pose)
 
     def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> Shape:
         pose = self._pose
