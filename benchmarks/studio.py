@@ -40,10 +40,10 @@ VIEW = (800, 500)
 EVENTS = 60
 """Of the pointer in a second."""
 
-FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist",
+FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader",
          "--enable-precise-memory-info", "--js-flags=--expose-gc"]  # fmt: skip
 
-MARKERS = {"cupping_hand": "index tip", "starfish": "right"}
+MARKERS = {"cupping_hand": "index", "starfish": "right"}
 """That is dragged; the first of others."""
 
 PATIENCE = 120_000
@@ -75,7 +75,7 @@ def ready(page: Page, address: str, mode: str) -> None:
     page.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
     page.goto(address)
     page.wait_for_function("window.__app && window.__app.painted > 0")
-    page.locator(f"[data-marker=mode-{mode}], .mode-{mode}").first.click()
+    page.get_by_role("button", name=mode.capitalize(), exact=True).click()
 
 
 def marker(page: Page, robot: str) -> dict[str, float]:

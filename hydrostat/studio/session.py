@@ -65,6 +65,7 @@ class Session:
         stage: that is shown.
         colouring: of the body.
         notes: the last ones, for the person.
+        answered: stamp of the drag that the present shape answers.
     """
 
     def __init__(self, state: Path | None = None) -> None:
@@ -95,7 +96,7 @@ class Session:
         self.notes: deque[Note] = deque(maxlen=MOST_NOTES)
         self._told = 0
         self._holder: str | None = None
-        self._stamp = self._answered = 0.0
+        self._stamp = self.answered = 0.0
         self._complaint = ""
         self._show = Show()
         self._lock = RLock()
@@ -236,7 +237,7 @@ class Session:
             complaint = str(error)
         if complaint and complaint != self._complaint:  # a step is tried again and again: it complains once
             self.tell(complaint, Tone.BAD)
-        self._complaint, self._answered = complaint, asked
+        self._complaint, self.answered = complaint, asked
         return more
 
     def shown(self) -> Shown | None:
@@ -247,7 +248,7 @@ class Session:
             robot, shape, things = self.document.robot, self.current.shape(), self.current.things()
         if len(shape.nodes) != len(robot.body.mesh.nodes):
             shape = rest_shape(robot)  # the body was changed at this very moment; the next one is right
-        head = {"stage": str(self.stage), "stamp": self._answered, "errors": shape.errors, "notes": list(shape.notes)}
+        head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}
         return self._show.moment(robot, shape, things, head, node_values(robot, shape.nodes, self.colouring))
 
     def left(self, screen: str) -> None:

@@ -39,9 +39,10 @@ class Release(_Message):
 
 
 class Seen(_Message):
-    """A frame or scene is on the screen: the next may come."""
+    """The last of `count` frames that came is on the screen: others may come."""
 
     kind: Literal["seen"]
+    count: Annotated[int, Field(ge=1, le=1000)] = 1
 
 
 Message = Pointer | Release | Seen

@@ -10,7 +10,7 @@ from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.view.show import Shown
 
 SHORTEST = 1 / 60
-"""Screens are not handed more than one picture in this time [s]."""
+"""Screens are handed one picture in this time [s], and one more for each drag that is answered."""
 
 PATIENCE = 0.25
 """The session is looked at at least so often [s]."""
@@ -52,19 +52,18 @@ class Pulse:
         self._wake.set()
 
     def _run(self) -> None:
-        shown_at = 0.0
+        shown_at = answered = 0.0
         while not self._ended:
             self._wake.clear()
             more = self._guarded(lambda: self._session.step(time.monotonic()))
-            if self._stale or more:
+            self._stale = self._stale or more
+            wait = shown_at + SHORTEST - time.monotonic()
+            if self._stale and (wait <= 0 or self._session.answered != answered):
                 self._stale = False
-                wait = shown_at + SHORTEST - time.monotonic()
-                if wait > 0:
-                    time.sleep(wait)
-                shown_at = time.monotonic()
+                shown_at, answered = time.monotonic(), self._session.answered
                 self._guarded(self._hand_over)
             if not more:
-                self._wake.wait(PATIENCE)
+                self._wake.wait(max(wait, 1e-3) if self._stale else PATIENCE)
 
     def _hand_over(self) -> bool:
         shown = self._session.shown()

@@ -18,6 +18,9 @@ from hydrostat.studio.view.show import Shown
 MOST_MISTAKES = 20
 """A screen that says so much that is not understood is sent away."""
 
+MOST_FLYING = 2
+"""So many pictures may be on their way to a screen: one that is painted, and one that comes next."""
+
 PATIENCE = 2.0
 """A screen that has not painted for so long [s] is sent the next picture all the same."""
 
@@ -86,7 +89,7 @@ class Stream:
     def _heed(self, name: str, screen: "_Screen", text: str) -> None:
         message = read_message(text)
         if isinstance(message, Seen):
-            screen.seen.set()
+            screen.saw(message.count)
         elif isinstance(message, Release):
             self._session.release(name)
         else:
@@ -112,28 +115,36 @@ class Stream:
 
 
 class _Screen:
-    """One screen: it is sent the latest picture when it has painted the one before."""
+    """One screen: a few pictures may be on their way to it, then it is sent the latest when it has painted one."""
 
     def __init__(self, socket: WebSocket) -> None:
         self.socket = socket
-        self.fresh, self.seen = asyncio.Event(), asyncio.Event()
+        self.fresh, self._room = asyncio.Event(), asyncio.Event()
         self.fresh.set()
-        self.seen.set()
+        self._flying = 0
         self._serial = -1
+
+    def saw(self, count: int) -> None:
+        """So many pictures have arrived."""
+        self._flying = max(0, self._flying - count)
+        self._room.set()
 
     async def write(self, latest: Callable[[], Shown | None]) -> None:
         """Send pictures until the connection ends."""
         while True:
             await self.fresh.wait()
-            with suppress(TimeoutError):
-                await asyncio.wait_for(self.seen.wait(), PATIENCE)
+            while self._flying >= MOST_FLYING:
+                self._room.clear()
+                try:
+                    await asyncio.wait_for(self._room.wait(), PATIENCE)
+                except TimeoutError:
+                    self._flying = 0
             self.fresh.clear()
-            self.seen.clear()
             shown = latest()
             if shown is None:
-                self.seen.set()
                 continue
             if shown.serial != self._serial:
                 self._serial = shown.serial
                 await self.socket.send_bytes(shown.scene)
+            self._flying += 1
             await self.socket.send_bytes(shown.frame)

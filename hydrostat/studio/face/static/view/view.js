@@ -29,6 +29,7 @@ export class View extends Shown {
     this.overlay = new Overlay(canvases[2], this.slow);
     this.font = getComputedStyle(element).fontFamily || "sans-serif";
     this.dirty = new Set();
+    this.unseen = 0; // frames that came since the last one was painted
     this.pixel = new Uint8Array(4);
     this.probe = new Probe(this);
     window.__app = this.probe;
@@ -75,6 +76,7 @@ export class View extends Shown {
     } else if (head.kind === "frame") {
       this.probe.frames += 1;
       this.latest = { head, arrays };
+      this.unseen += 1;
       this.mark("frame");
     } else if (head.kind === "note") {
       this.tell("note", head);
@@ -106,7 +108,8 @@ export class View extends Shown {
     if (!only("hover", "drag")) this.point();
     this.paint();
     if (!dirty.has("frame") && !dirty.has("bare")) return;
-    this.send({ kind: "seen" });
+    if (this.unseen) this.send({ kind: "seen", count: this.unseen });
+    this.unseen = 0;
     if (fresh) this.probe.saw(this.stamp ?? 0, performance.now() - start);
   }
 
