@@ -17,6 +17,9 @@ from hydrostat.studio.work_folder import folder_stamp
 MOST_STEPS = 500
 """So many changes can be undone; older ones are forgotten."""
 
+KEPT = 2
+"""So many states before, and after, keep the physics that were made for them."""
+
 
 @dataclass(frozen=True, eq=False)
 class Change:
@@ -146,8 +149,9 @@ class Document:
             if merge and len(self._past) > 1 and self._past[-1].merge == merge:
                 self._past.pop()
             self._past.append(change)
-            del self._past[1 : max(1, len(self._past) - MOST_STEPS)]
+            del self._past[: -MOST_STEPS - 1]
             self._future = []
+            self._forget_physics()
             self.serial += 1
         self.bell.ring(Topic.ROBOT, Topic.THINGS)
 
@@ -167,10 +171,12 @@ class Document:
         """Do again what was undone last; whether there was something."""
         return self._move(self._future, self._past, least=1)
 
-    def mark_saved(self, folder: Path) -> None:
-        """The work is saved in this folder."""
+    def mark_saved(self, folder: Path, work: Work) -> None:
+        """This work is saved in this folder; nothing happens if another robot was opened meanwhile."""
         with self._lock:
-            self.folder, self._saved, self.stamp = folder, self.work, folder_stamp(folder)
+            if not any(change.work is work for change in (*self._past, *self._future)):
+                return
+            self.folder, self._saved, self.stamp = folder, work, folder_stamp(folder)
         self.bell.ring(Topic.ROBOT)
 
     def _move(self, source: list[Change], goal: list[Change], *, least: int) -> bool:
@@ -178,9 +184,15 @@ class Document:
             if len(source) < least:
                 return False
             goal.append(source.pop())
+            self._forget_physics()
             self.serial += 1
         self.bell.ring(Topic.ROBOT, Topic.SHAPE, Topic.THINGS)
         return True
+
+    def _forget_physics(self) -> None:
+        """Physics take megabytes: only the last few states keep theirs."""
+        for change in (*self._past[:-KEPT], *self._future[:-KEPT]):
+            change.__dict__.pop("simulation", None)
 
     @property
     def _now(self) -> Change:

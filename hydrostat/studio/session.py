@@ -201,9 +201,15 @@ class Session:
         folder = folder or self.document.folder
         if folder is None:
             raise InputError("choose a folder to save this robot in")
-        save_work(self.document.work, folder)
-        self.document.mark_saved(folder)
+        work = self.document.work  # it may be changed while it is written
+        save_work(work, folder)
+        self.document.mark_saved(folder, work)
         self.tell(f"saved in {folder}", Tone.GOOD)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether a drag waits for its answer."""
+        return self._stamp != self.answered
 
     @property
     def legend(self) -> Scale | None:
@@ -257,6 +263,8 @@ class Session:
 
     def close(self) -> None:
         """End all work; what is not saved is there next time."""
+        self.driver.leave()
+        self.driver.motors.link.close()
         self.jobs.close()
         self.starter.autosave.close()
 

@@ -1,6 +1,7 @@
 """The open robot with undo. The oracle is the list of states that were made."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -91,7 +92,7 @@ def test_timeline_and_wishes_are_undone_too(document: Document) -> None:
     assert document.work.timeline == Timeline()
 
 
-def test_saved_follows_undo(document: Document, starfish: Robot, tmp_path: object) -> None:
+def test_saved_follows_undo(document: Document, starfish: Robot) -> None:
     assert document.saved
     document.change("one", robot=named(starfish, "one"))
     assert not document.saved
@@ -115,8 +116,35 @@ def test_the_past_does_not_grow_without_end(document: Document, starfish: Robot)
     undone = 0
     while document.undo():
         undone += 1
+        assert document.robot.name == f"n_{MOST_STEPS + 49 - undone}"
     assert undone == MOST_STEPS
-    assert document.robot is starfish
+
+
+def test_only_the_last_states_keep_their_physics(document: Document, starfish: Robot) -> None:
+    made = []
+    for step in range(6):
+        document.change(f"{step}", robot=named(starfish, f"n_{step}"))
+        made.append(document.simulation)
+    document.undo()
+    assert document.simulation is made[-2]
+    for _ in range(4):
+        document.undo()
+    assert document.robot.name == "n_0"
+    assert document.simulation is not made[0]
+
+
+def test_what_changes_while_it_is_written_is_not_saved(document: Document, starfish: Robot, tmp_path: Path) -> None:
+    document.change("one", robot=named(starfish, "one"))
+    written = document.work
+    document.change("two", robot=named(starfish, "two"))
+    document.mark_saved(tmp_path, written)
+    assert not document.saved
+    document.undo()
+    assert document.saved
+    document.open(Work(robot=named(starfish, "other")), saved=False)
+    document.mark_saved(tmp_path, written)
+    assert document.folder is None
+    assert not document.saved
 
 
 def test_the_bell_rings_for_every_change(document: Document, starfish: Robot) -> None:

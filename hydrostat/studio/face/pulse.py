@@ -10,7 +10,7 @@ from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.view.show import Shown
 
 SHORTEST = 1 / 60
-"""Screens are handed one picture in this time [s], and one more for each drag that is answered."""
+"""One step is taken in this time [s], and one more for each drag that waits for its answer."""
 
 PATIENCE = 0.25
 """The session is looked at at least so often [s]."""
@@ -52,18 +52,24 @@ class Pulse:
         self._wake.set()
 
     def _run(self) -> None:
-        shown_at = answered = 0.0
         while not self._ended:
+            begun = time.monotonic()
             self._wake.clear()
-            more = self._guarded(lambda: self._session.step(time.monotonic()))
-            self._stale = self._stale or more
-            wait = shown_at + SHORTEST - time.monotonic()
-            if self._stale and (wait <= 0 or self._session.answered != answered):
+            more = self._guarded(lambda: self._session.step(begun))
+            if self._stale or more:
                 self._stale = False
-                shown_at, answered = time.monotonic(), self._session.answered
                 self._guarded(self._hand_over)
-            if not more:
-                self._wake.wait(max(wait, 1e-3) if self._stale else PATIENCE)
+            self._pause(begun + SHORTEST)
+            if not more and not self._stale:
+                self._wake.wait(PATIENCE)
+
+    def _pause(self, until: float) -> None:
+        """Sleep until a time, or until a drag waits for its answer."""
+        while (left := until - time.monotonic()) > 0:
+            self._wake.clear()
+            if self._session.waiting or self._ended:
+                return
+            self._wake.wait(left)
 
     def _hand_over(self) -> bool:
         shown = self._session.shown()

@@ -324,7 +324,7 @@ def test_a_document_knows_how_its_folder_was(robot: Robot, tmp_path: Path) -> No
     (tmp_path / "robot.toml").write_text((tmp_path / "robot.toml").read_text() + "# mine\n")
     assert changed_outside(tmp_path, document.stamp)
     save_work(document.work, tmp_path)
-    document.mark_saved(tmp_path)
+    document.mark_saved(tmp_path, document.work)
     assert doubts(document.work, tmp_path, document.stamp) == []
     assert "# mine" in (tmp_path / "robot.toml").read_text()
     document.open(Work(robot=robot))

@@ -115,7 +115,7 @@ def test_saving_ends_keeping(tmp_path: Path, work: Work) -> None:
     settle(autosave, 0.0)
     settle(autosave, 3.0)
     assert len(list((tmp_path / "state").iterdir())) == 1
-    document.mark_saved(tmp_path / "robot")
+    document.mark_saved(tmp_path / "robot", document.work)
     settle(autosave, 3.1)
     assert list((tmp_path / "state").iterdir()) == []
 
