@@ -3,6 +3,7 @@
 import logging
 import time
 from collections.abc import Callable
+from functools import partial
 from threading import Event, Thread
 
 from hydrostat.studio.bell import Topic
@@ -55,7 +56,7 @@ class Pulse:
         while not self._ended:
             begun = time.monotonic()
             self._wake.clear()
-            more = self._guarded(lambda: self._session.step(begun))
+            more = self._guarded(partial(self._session.step, begun))
             if self._stale or more:
                 self._stale = False
                 self._guarded(self._hand_over)
@@ -83,6 +84,8 @@ class Pulse:
             return action()
         except Exception as error:
             logging.getLogger("hydrostat").exception("the studio stumbled")
-            self._session.tell(f"something went wrong: {type(error).__name__}: {error}", Tone.BAD)
+            words = f"something went wrong: {type(error).__name__}: {error}"
+            if not self._session.notes or self._session.notes[-1].text != words:
+                self._session.tell(words, Tone.BAD)
             time.sleep(PATIENCE)
             return False

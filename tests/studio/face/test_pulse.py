@@ -1,0 +1,90 @@
+"""The thread that lets a session work. The oracle is a stage that counts its steps."""
+
+import time
+from threading import Event
+
+import pytest
+
+from hydrostat.robot import gallery_folder, load_robot
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.pulse import SHORTEST, Pulse
+from hydrostat.studio.records.work import Work
+from hydrostat.studio.session import Session
+from hydrostat.studio.stage import Hit, Stage, StageName
+from hydrostat.studio.view.robot_things import robot_things
+from hydrostat.studio.view.shape import Shape, rest_shape
+from hydrostat.studio.view.show import Shown
+from hydrostat.studio.view.things import Thing
+
+
+class Busy(Stage):
+    """Always has more to do, and rings with every step, as players do."""
+
+    def __init__(self, session: Session) -> None:
+        self.session, self.steps, self.enough = session, 0, Event()
+        self.fails = False
+
+    def shape(self) -> Shape:
+        return rest_shape(self.session.document.robot)
+
+    def things(self) -> list[Thing]:
+        return robot_things(self.session.document.robot)
+
+    def grab(self, hit: Hit) -> bool:
+        return True
+
+    def step(self, now: float) -> bool:
+        self.steps += 1
+        self.session.bell.ring(Topic.SHAPE)
+        if self.steps >= 12:
+            self.enough.set()
+        if self.fails:
+            raise ZeroDivisionError("a slip")
+        return True
+
+
+@pytest.fixture
+def session() -> Session:
+    made = Session()
+    made.document.open(Work(robot=load_robot(gallery_folder("starfish"))))
+    made.stages = {name: Busy(made) for name in StageName}
+    made.go(StageName.POSE)
+    return made
+
+
+def test_work_without_end_does_not_spin(session: Session) -> None:
+    stage, shown = session.current, list[Shown]()
+    assert isinstance(stage, Busy)
+    pulse = Pulse(session, shown.append)
+    begun = time.monotonic()
+    pulse.start()
+    assert stage.enough.wait(60.0)
+    took = time.monotonic() - begun  # a busy machine only makes it longer
+    steps = stage.steps
+    pulse.stop()
+    assert steps <= took / SHORTEST + 2
+    assert shown
+
+
+def test_a_drag_that_waits_is_stepped_at_once(session: Session) -> None:
+    session.grab("a", Hit(key="body", world=(0.0, 0.0)), 1.0)
+    assert session.waiting
+    session.step(0.0)
+    assert not session.waiting
+    session.drag("a", Hit(world=(0.0, 0.0)), 2.0)
+    assert session.waiting
+
+
+def test_a_stage_that_stumbles_does_not_end_the_studio(session: Session, caplog: pytest.LogCaptureFixture) -> None:
+    stage = session.current
+    assert isinstance(stage, Busy)
+    stage.fails = True
+    pulse = Pulse(session, lambda shown: None)
+    pulse.start()
+    while stage.steps < 3:
+        time.sleep(0.01)
+    stage.fails = False
+    assert stage.enough.wait(60.0)
+    pulse.stop()
+    assert any("something went wrong" in note.text for note in session.notes)
+    assert "a slip" in caplog.text
