@@ -297,20 +297,31 @@ class Driver(Stage):
         self._tell()
 
     def leave(self) -> None:
-        """Motors stop."""
+        """Motors stop, and all is let go."""
         with self._lock:
             self._machine.halt()
             self._pull = None
             self.motors.hold()
+            self.keyframes.drop()
+            self.keyframes.choose(None)
 
     def step(self, now: float) -> bool:
-        """Command the motors, see where they are, and let the body follow; whether there is more to do."""
+        """Command the motors, see where they are, and let the body follow; whether there is more to do.
+
+        Whatever goes wrong, the motors hold and nothing plays any more.
+
+        Raises:
+            HydrostatError: of the link, or of the physics.
+        """
         if not self._document.robot.cables:
             return False
+        if not self._machine.due(now):
+            return True
         try:
             changed = self._machine.run(now)
-        except Exception:
-            self._tell()
+        except Exception as error:
+            if self._machine.fail(error):  # told once, though it may be tried again and again
+                self._tell()
             raise
         if changed:
             self._tell()

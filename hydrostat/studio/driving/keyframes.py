@@ -1,10 +1,11 @@
 """`Keyframes`: the timeline of the open robot, edited by hand."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import isfinite
 
 from hydrostat.errors import InputError
+from hydrostat.robot import Robot
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.timeline import LONGEST, Key, Timeline
 
@@ -12,13 +13,28 @@ APART = 0.5
 """A copy of a key is put so much later [s]."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Held:
+    """A key that is dragged.
+
+    Attributes:
+        index: its number before.
+        before: the timeline then.
+        made: the timeline that its last move has made; if the robot has another by now, the drag is over.
+    """
+
+    index: int
+    before: Timeline
+    made: Timeline
+
+
 class Keyframes:
     """Adds, moves, copies and removes keys; every change can be undone, and a drag is one change."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self._chosen: float | None = None
-        self._held: tuple[int, Timeline] | None = None
+        self._chosen: tuple[Robot, float] | None = None
+        self._held: _Held | None = None
 
     @property
     def timeline(self) -> Timeline:
@@ -27,8 +43,11 @@ class Keyframes:
 
     @property
     def chosen(self) -> int | None:
-        """Number of the key that is selected; it follows the knobs."""
-        return None if self._chosen is None else self.timeline.index_at(self._chosen)
+        """Number of the key that is selected; it follows the knobs, and is one of this robot."""
+        chosen = self._chosen
+        if chosen is None or chosen[0] is not self._document.robot:
+            return None
+        return self.timeline.index_at(chosen[1])
 
     def choose(self, index: int | None) -> None:
         """Select a key, or none.
@@ -36,7 +55,7 @@ class Keyframes:
         Raises:
             InputError: there is no such key.
         """
-        self._chosen = None if index is None else self._key(index).time
+        self._choose(None if index is None else self._key(index).time)
 
     def put(self, time: float, contractions: Mapping[str, float]) -> None:
         """Add a key and select it; one that is at the same time is replaced.
@@ -46,7 +65,7 @@ class Keyframes:
         """
         timeline = self.timeline.with_key(Key(time=time, contractions=dict(contractions)))
         self._document.change(f"add keyframe at {time:.2f} s", timeline=timeline)
-        self._chosen = time
+        self._choose(time)
 
     def adjust(self, contractions: Mapping[str, float]) -> None:
         """Let the key that is selected have other contractions; changes in a row are one."""
@@ -68,17 +87,17 @@ class Keyframes:
         """
         if not isfinite(time):
             raise InputError("the time of a keyframe must be a number of seconds")
-        if self._held is None or self._held[0] != index:
+        held = self._held
+        if held is None or held.index != index or held.made is not self.timeline:  # not what this drag has made
             self._key(index)
             self._document.seal()
-            self._held = (index, self.timeline)
-        before = self._held[1]
+            held = _Held(index=index, before=self.timeline, made=self.timeline)
+        before = held.before
         time = min(max(time, 0.0), before.seconds)
-        timeline = before.moved(index, time)
-        self._document.change(
-            f"move keyframe to {time:.2f} s", timeline=replace(timeline, length=before.seconds), merge="move key"
-        )
-        self._chosen = time
+        timeline = replace(before.moved(index, time), length=before.seconds)
+        self._held = replace(held, made=timeline)
+        self._document.change(f"move keyframe to {time:.2f} s", timeline=timeline, merge="move key")
+        self._choose(time)
         return time
 
     def drop(self) -> None:
@@ -99,7 +118,7 @@ class Keyframes:
         if time > LONGEST:
             raise InputError(f"there is no room for another keyframe before {LONGEST:g} s; move some first")
         self._document.change("duplicate keyframe", timeline=self.timeline.with_key(replace(key, time=time)))
-        self._chosen = time
+        self._choose(time)
         return time
 
     def delete(self) -> None:
@@ -136,6 +155,9 @@ class Keyframes:
         if seconds != self.timeline.length:
             timeline = replace(self.timeline, length=seconds)
             self._document.change(f"set length to {seconds:g} s", timeline=timeline, merge="set length")
+
+    def _choose(self, time: float | None) -> None:
+        self._chosen = None if time is None else (self._document.robot, time)
 
     def _key(self, index: int | None) -> Key:
         if index is None:

@@ -13,8 +13,8 @@ class Link(ABC):
 
     The stage that drives is the only one to use a link, from one thread at a time. While anything shall move it calls
     `send` and `read` in turn, about 60 times a second, and less often where solving is slow; only the newest command
-    counts, none is queued. A link that fails raises a `HydrostatError` that says what to do; the stage then calls
-    `stop` and plays no further.
+    counts, none is queued. A link that fails raises a `HydrostatError` that says what to do. On that, on any other
+    error, and where the body would have no shape, the stage calls `stop` and plays no further.
 
     Whoever puts real motors behind this keeps three promises: they stop `SILENCE` seconds after the last `send`, even
     if this process has died, so the watch is on the side of the motors; they stop on any error of theirs, and on

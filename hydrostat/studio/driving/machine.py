@@ -1,11 +1,13 @@
 """`Machine`: the motors, the body that follows them, and the playhead that commands them."""
 
 from dataclasses import replace
+from math import inf
 from threading import RLock
 
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
@@ -16,9 +18,12 @@ from hydrostat.studio.driving.player import Player
 from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.view.shape import Shape, rest_shape
 
+TICK = 1 / 70
+"""Motors are told and read once in this time [s], however often there is a step: about 60 times a second."""
+
 
 class Machine:
-    """The open robot at work. All but `shape` and `run` are called with its lock held.
+    """The open robot at work. All but `shape`, `due`, `run` and `fail` are called with its lock held.
 
     Attributes:
         player: the playhead.
@@ -36,6 +41,8 @@ class Machine:
         self._posed: tuple[Robot, Shape] | None = None
         self._timeline: Timeline | None = None
         self._rough = False
+        self._ran = -inf
+        self._good = self.motors.places
 
     def shape(self) -> Shape:
         """The body as the motors pull it."""
@@ -54,6 +61,7 @@ class Machine:
         """The robot, the one that is open if left out, may be another one than before."""
         if self.motors.meet(robot or self._document.robot):
             self.halt()
+            self._good = np.zeros(len(self.motors.names))
 
     def halt(self, why: str = "") -> None:
         """Play no further."""
@@ -74,15 +82,19 @@ class Machine:
     def run(self, now: float) -> bool:
         """Command the motors, see where they are, and let the body follow; whether anything has changed.
 
+        Whoever calls it tells `fail` of all that it raises.
+
         Raises:
-            HydrostatError: of the link; nothing plays any more then.
+            HydrostatError: of the link.
         """
+        self._ran = now
         simulation = self._document.simulation
         with self.lock:
             self.meet(simulation.robot)
             playing, time = self.player.playing, self.player.time
             self._play(now)
-            moved = self._drive(now)
+            self._stay_where_shapes_are()
+            moved = self.motors.drive(now)
             fresh = self._posed is None or self._posed[0] is not simulation.robot
             places, rough = self.motors.places, self.busy
         new = moved or fresh or (self._rough and not rough)
@@ -90,6 +102,19 @@ class Machine:
             self._rough = rough
             self._follow(simulation, places, rough)
         return new or playing != self.player.playing or time != self.player.time
+
+    def due(self, now: float) -> bool:
+        """Whether it is time for the next `run`."""
+        return not 0 <= now - self._ran < TICK
+
+    def fail(self, error: Exception) -> bool:
+        """Something went wrong, whatever it was: motors hold, and nothing plays. Whether that is news."""
+        words = str(error) if isinstance(error, HydrostatError) else f"{type(error).__name__}: {error}"
+        with self.lock:
+            before = self.busy, self.notice
+            self.motors.hold()
+            self.halt(f"motors stopped: {words}")
+            return before != (False, self.notice)
 
     @property
     def busy(self) -> bool:
@@ -112,21 +137,27 @@ class Machine:
         """Command what the keys say; what of it cannot be done, "" if all can."""
         return self.motors.ask(self._keyframes.timeline.profile(self.motors.names).at(time))
 
-    def _drive(self, now: float) -> bool:
-        """Tell the motors, and hear whether they have moved."""
-        try:
-            return self.motors.drive(now)
-        except Exception as error:
-            self.halt(f"motors stopped: {error}")
-            raise
-
     def _follow(self, simulation: Simulation, places: Vector, rough: bool) -> None:
-        """Solve for where the motors are; what cannot be solved ends the playing."""
+        """Solve for where the motors are; what cannot be solved ends the playing, and motors go no further."""
         shape = self._follower.follow(simulation, places, rough=rough)
         with self.lock:
-            if self._follower.failure:
-                self.halt(self._follower.failure)
             self._posed = (simulation.robot, shape)
+            if not self._follower.failure:
+                self._good = places
+                return
+            self.halt(self._follower.failure)
+            self._stay_where_shapes_are()
+
+    def _stay_where_shapes_are(self) -> None:
+        """Once the body has no shape, motors only go back to where it had one, or let out: none is driven blind."""
+        motors = self.motors
+        if not self._follower.failure or len(self._good) != len(motors.places):
+            return
+        further = (motors.command - motors.places) * (motors.places - self._good)
+        pulling = np.abs(motors.command) > np.abs(motors.places)
+        if self.player.playing or (pulling & (further > 0)).any():
+            self.halt(self._follower.failure)
+            motors.hold()
 
 
 def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:

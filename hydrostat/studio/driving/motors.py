@@ -89,18 +89,14 @@ class Motors:
         self.command = self._within(command)
 
     def drive(self, now: float) -> bool:
-        """Send the command and read where they are; whether any has moved. On any error they are stopped.
+        """Send the command and read where they are; whether any has moved. After any error they must `hold`.
 
         Raises:
             HydrostatError: of the link.
         """
         before = self.places
-        try:
-            self.link.send(self.command, now)
-            self.places = self.link.read(now)
-        except Exception:
-            self.hold()
-            raise
+        self.link.send(self.command, now)
+        self.places = self.link.read(now)
         return bool(np.abs(self.places - before).max(initial=0.0) > NEAR)
 
     def hold(self) -> None:

@@ -9,9 +9,10 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import Simulation
-from hydrostat.studio.bell import Bell
+from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.driver import Driver
+from hydrostat.studio.driving.follower import Follower
 from hydrostat.studio.driving.link import Link
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.timeline import Key, Timeline
@@ -184,6 +185,81 @@ def test_on_an_error_of_the_motors_they_are_stopped(driver: Driver) -> None:
     assert driver.shape().notes == ("motors stopped: the cable to the motors is unplugged",)
 
 
+class Counted(Link):
+    """Motors that are where they shall be at once, and count what they are told."""
+
+    def __init__(self, count: int) -> None:
+        self.sent: list[Vector] = []
+        self.stops = self.closes = 0
+        self._places = np.zeros(count)
+
+    def send(self, contractions: Vector, now: float) -> None:
+        self.sent.append(contractions)
+        self._places = contractions
+
+    def read(self, now: float) -> Vector:
+        return self._places
+
+    def stop(self) -> None:
+        self.stops += 1
+
+    def close(self) -> None:
+        self.closes += 1
+
+
+@pytest.mark.parametrize("place", ["follow", "physics", "timeline"])
+def test_on_any_error_motors_hold_and_nothing_plays(
+    driver: Driver, document: Document, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    put_keys(driver, (0.0, {}), (1.0, {"left": 0.02}))
+    settle(driver)
+    driver.motors.link = link = Counted(3)
+    driver.play()
+    driver.step(10.0)
+    driver.step(10.2)
+
+    def refuse(*arguments: object, **options: object) -> None:
+        raise ZeroDivisionError("by nothing")
+
+    if place == "follow":
+        monkeypatch.setattr(Follower, "follow", refuse)
+    elif place == "physics":
+        monkeypatch.setattr(Document, "simulation", property(refuse))
+    else:
+        monkeypatch.setattr(Timeline, "profile", refuse)
+    with pytest.raises(ZeroDivisionError):
+        driver.step(10.4)
+    assert not driver.player.playing
+    assert link.stops == 1
+    assert driver.commands() == driver.places()
+    assert driver.shape().notes == ("motors stopped: ZeroDivisionError: by nothing",)
+
+
+def test_an_error_that_stays_rings_once(driver: Driver, document: Document) -> None:
+    settle(driver)
+    driver.motors.link = Broken()
+    rung: list[Topic] = []
+    document.bell.listen(rung.append)
+    for now in (1.0, 2.0, 3.0):
+        with pytest.raises(HydrostatError, match="unplugged"):
+            driver.step(now)
+    assert rung.count(Topic.DRIVE) == 1
+
+
+def test_motors_are_told_sixty_times_a_second_at_most(driver: Driver) -> None:
+    put_keys(driver, (0.0, {"left": 0.01}), (1.0, {"left": 0.01}))
+    settle(driver)
+    driver.motors.link = link = Counted(3)
+    driver.play()
+    assert all(driver.step(10.0) for _ in range(20))
+    assert len(link.sent) == 1
+    assert all(driver.step(10.0 + 1e-3 * number) for number in range(1001))
+    assert 50 <= len(link.sent) <= 70
+    driver.stop()
+    settle(driver, 20.0)
+    assert driver.player.time == pytest.approx(1.0, abs=0.02)
+
+
 def test_where_no_shape_is_found_the_last_one_stays(
     driver: Driver, document: Document, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -205,6 +281,15 @@ def test_where_no_shape_is_found_the_last_one_stays(
     assert np.array_equal(driver.shape().nodes, before)
     assert "inside out" in driver.shape().notes[0]
     assert not driver.player.playing
+    assert driver.commands() == driver.places()
+    there = driver.places()["left"]
+    driver.turn("left", 0.05)  # on into what has no shape
+    settle(driver, 11.0)
+    assert driver.places()["left"] == there
+    assert "inside out" in driver.shape().notes[0]
+    driver.turn("left", 0.005)  # back, past where there was one
+    settle(driver, 12.0)
+    assert driver.places()["left"] == pytest.approx(0.005)
     monkeypatch.undo()
     driver.rest()
     settle(driver, 20.0)
@@ -263,6 +348,40 @@ def test_a_drag_of_a_key_is_one_change(driver: Driver, document: Document) -> No
     assert [key.time for key in document.work.timeline.keys] == [0.0, 3.0, 4.0]
     document.undo()
     assert [key.time for key in document.work.timeline.keys] == [0.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize("between", ["leave", "undo", "change", "open"])
+def test_a_drag_that_was_never_dropped_brings_nothing_old_back(
+    driver: Driver, document: Document, starfish: Robot, between: str
+) -> None:
+    put_keys(driver, (0.0, {}), (2.0, {"left": 0.02}))
+    driver.move_key(1, 2.5)
+    if between == "leave":
+        driver.leave()
+        keys = (Key(time=0.0, contractions={}), Key(time=1.0, contractions={}))
+        document.change("by another way", timeline=Timeline(keys=keys))
+    elif between == "undo":
+        document.undo()
+    elif between == "change":
+        driver.keyframes.put(1.0, {"feet": 0.01})
+    else:
+        document.open(
+            Work(robot=replace(starfish, name="other"), timeline=Timeline(keys=(Key(time=1.0, contractions={}),)))
+        )
+        driver.keyframes.put(3.0, {"left": 0.01})
+    before = driver.keyframes.timeline
+    driver.move_key(1, 3.5)
+    assert driver.keyframes.timeline == replace(before.moved(1, 3.5), length=before.seconds)
+
+
+def test_a_selected_key_is_one_of_this_robot(driver: Driver, document: Document, starfish: Robot) -> None:
+    keys = (Key(time=0.0, contractions={}), Key(time=2.0, contractions={"left": 0.02}))
+    put_keys(driver, (0.0, {}), (2.0, {"left": 0.02}))
+    driver.choose(1)
+    document.open(Work(robot=replace(starfish, name="other"), timeline=Timeline(keys=keys)))
+    assert driver.keyframes.chosen is None
+    driver.turn("left", 0.03)
+    assert driver.keyframes.timeline.keys == keys
 
 
 def test_keys_are_copied_and_deleted(driver: Driver, document: Document) -> None:
