@@ -1,6 +1,7 @@
 """`CableMover`: inverse kinematics on the robot's own cables follows what is held."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,6 +29,13 @@ STILLS = 3
 MISSED = 0.01
 """From this distance on a target counts as out of reach, in sizes of the body."""
 
+ROUGH = 1e-3
+"""Force that may be left over while something moves, as a share of the largest tension: nobody sees a micrometre, and
+updates take little more than half the time. What comes to rest is followed to the end."""
+
+LAST = 10
+"""So many updates are made at most where that was done roughly before."""
+
 TICK = 1 / 30
 """Seconds that an update stands for; nothing here limits the rate."""
 
@@ -50,6 +58,7 @@ class CableMover(Mover):
         """
         self.robot, self.tension, self._notes = simulation.robot, tension, notes
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
+        self._rough = Simulation(simulation.robot, options=replace(simulation.options, tolerance=ROUGH))
         self._begin(start or simulation.rest)
 
     @property
@@ -72,6 +81,8 @@ class CableMover(Mover):
             return self._shape({}, ()), False
         if held is not self._held:
             self._held, self._updates, self._still = held, 0, 0
+            if self._exact:
+                self._follow(self._rough)
         self._updates += 1
         goal = PointGoal(
             points={name: point.at for name, point in held.items()},
@@ -86,6 +97,9 @@ class CableMover(Mover):
         self._pose = reached.pose
         self._still = self._still + 1 if moved < STILL else 0
         more = reached.reason not in ENDS and self._still < STILLS and self._updates < PATIENCE
+        if not more and not self._exact:
+            self._follow(self._simulation)
+            self._still, self._updates, more = 0, PATIENCE - LAST, True
         notes = reached.held
         if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
             stopped = reached.reason is not InverseReason.ITERATION_LIMIT
@@ -99,7 +113,12 @@ class CableMover(Mover):
 
     def _begin(self, pose: SolvedPose) -> None:
         self._pose, self._held, self._updates, self._still = pose, {}, 0, 0
-        self._tracker = Tracker(self._simulation, limits=Limits(tension=self.tension), start=pose)
+        self._follow(self._rough)
+
+    def _follow(self, simulation: Simulation) -> None:
+        """Track from the pose on with these physics: rough ones, or the robot's own."""
+        self._exact = simulation is self._simulation
+        self._tracker = Tracker(simulation, limits=Limits(tension=self.tension), start=self._pose)
 
     def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> Shape:
         pose = self._pose
