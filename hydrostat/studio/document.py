@@ -110,12 +110,19 @@ class Document:
         """What would be done again; "" if nothing can be."""
         return self._future[-1].label if self._future else ""
 
-    def open(self, work: Work, *, folder: Path | None = None, saved: bool = True) -> None:
-        """Begin with a robot; what was open before is left as it was."""
+    def open(self, work: Work, *, folder: Path | None = None, saved: bool = True, stamp: str | None = None) -> None:
+        """Begin with a robot; what was open before is left as it was.
+
+        Args:
+            work: to begin with.
+            folder: where it is saved; None: nowhere yet.
+            saved: whether the folder has all of it.
+            stamp: of the folder when the work was read from it; None: it was read just now.
+        """
         with self._lock:
             self._past, self._future = [Change("open", work)], []
             self.folder, self._saved = folder, work if saved else None
-            self.stamp = "" if folder is None else folder_stamp(folder)
+            self.stamp = "" if folder is None else folder_stamp(folder) if stamp is None else stamp
             self.serial += 1
         self.bell.ring(Topic.ROBOT, Topic.STAGE, Topic.SHAPE, Topic.THINGS)
 

@@ -1,10 +1,11 @@
 """`save_work`, `open_work`: a robot's folder, as the studio keeps it."""
 
 import hashlib
+import tomllib
 from pathlib import Path
 
 from hydrostat.errors import InputError
-from hydrostat.robot import load_robot, robot_text, save_robot
+from hydrostat.robot import Source, load_robot, robot_text, save_robot
 from hydrostat.robot.merge import lost_comments, merged_text
 from hydrostat.robot.read import FILE
 from hydrostat.robot.tables_file import read_text
@@ -54,14 +55,20 @@ def save_work(work: Work, folder: Path) -> None:
 
 
 def folder_stamp(folder: Path) -> str:
-    """Changes when robot.toml or studio.json do; "" for a folder without a robot."""
-    files = [_home(folder) / FILE, _home(folder) / studio_file.FILE]
-    if not files[0].is_file():
+    """Changes when robot.toml, studio.json or the body's file do; "" for a folder without a robot."""
+    home = _home(folder)
+    if not (home / FILE).is_file():
         return ""
+    body = _body_file(home)
+    files = [home / FILE, home / studio_file.FILE, *([home / body] if body else [])]
+    stamp = hashlib.sha256()
     try:
-        return hashlib.sha256(b"\0".join(file.read_bytes() for file in files if file.is_file())).hexdigest()
+        for file in files:
+            stamp.update(file.read_bytes() if file.is_file() else b"")
+            stamp.update(b"\0")
     except OSError:
         return "cannot be read"
+    return stamp.hexdigest()
 
 
 def changed_outside(folder: Path, stamp: str) -> bool:
@@ -92,10 +99,13 @@ def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
     asked = []
     if changed_outside(folder, stamp):
         asked.append(
-            "robot.toml or studio.json was changed by another program since it was opened; saving replaces that."
+            "Files of the robot were changed by another program since it was opened; saving replaces that."
             if stamp
             else "There is a robot in this folder already; saving replaces it."
         )
+    file = _home(folder) / work.robot.body.file
+    if work.robot.body.file != _body_file(_home(folder)) and _is_other(file, work.robot.body.content):
+        asked.append(f"There is another {file.name} in this folder, not of this robot; saving replaces it.")
     lost = comments_lost(work, folder)
     if lost:
         told = lost if len(lost) <= MOST_TOLD else [*lost[:MOST_TOLD], f"and {len(lost) - MOST_TOLD} more"]
@@ -104,6 +114,23 @@ def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
     if note:
         asked.append(f"{studio_file.FILE} cannot be read and would be replaced.")
     return asked
+
+
+def _body_file(home: Path) -> str:
+    """Name of the body's file in a robot.toml; "" where none is said."""
+    try:
+        body = tomllib.loads(read_text(home / FILE))["body"]
+        return next(str(body[kind.value]) for kind in Source if isinstance(body.get(kind.value), str))
+    except (InputError, tomllib.TOMLDecodeError, KeyError, AttributeError, StopIteration):
+        return ""
+
+
+def _is_other(file: Path, content: bytes) -> bool:
+    """Whether there is a file of other content; also one that cannot be read."""
+    try:
+        return file.exists() and file.read_bytes() != content
+    except OSError:
+        return True
 
 
 def _text(work: Work, folder: Path) -> str:

@@ -1,4 +1,8 @@
-"""`Autosave`: keeps work that is not saved, so that a crash loses two seconds of it at most."""
+"""`Autosave`: keeps work that is not saved, so that a crash loses little of it.
+
+Lost is what was done in the last `PATIENCE`; of changes without a pause, what was done in the last `LONGEST`; and in
+both cases what was done while a copy is written.
+"""
 
 import json
 import logging
@@ -18,8 +22,11 @@ from hydrostat.studio.work_folder import open_work, save_work
 PATIENCE = 2.0
 """Work is kept when nothing has changed for so long [s]."""
 
-LONGEST = 20.0
-"""And at least so often while changes go on [s]."""
+LONGEST = 5.0
+"""And so often while changes go on [s]."""
+
+AGAIN = 10.0
+"""What could not be written is tried again after so long [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,12 +38,14 @@ class Left:
         name: of the robot.
         time: when it was kept.
         origin: where the robot had been saved before; None: nowhere.
+        stamp: of that folder when the robot was opened or saved last.
     """
 
     folder: Path
     name: str
     time: datetime
     origin: Path | None
+    stamp: str = ""
 
     @property
     def words(self) -> str:
@@ -51,6 +60,9 @@ class Autosave:
     A studio has a folder ID/ with a lock, and in it ID/N/ with meta.json and work/, N counting. A new one is written
     beside the last under another name and renamed when it is whole, then the last is removed: at any moment one whole
     copy is there.
+
+    Attributes:
+        problem: why the work cannot be kept, a line; "" if it can.
     """
 
     def __init__(self, document: Document, folder: Path | None) -> None:
@@ -64,6 +76,7 @@ class Autosave:
         self._held: HeldFolder | None = None
         self._seen = self._kept = (0, True)
         self._changed = self._asked = 0.0
+        self.problem = ""
         self._count = 0
         self._writer: Thread | None = None
         self._lock = Lock()
@@ -76,12 +89,15 @@ class Autosave:
         """
         state = self._state()
         if state != self._seen:
-            if self._seen == self._kept:
+            if self._seen == self._kept and not self.problem:
                 self._asked = now
             self._seen, self._changed = state, now
         if self._folder is None or state == self._kept or (self._writer is not None and self._writer.is_alive()):
             return
-        if state[1] or now - self._changed >= PATIENCE or now - self._asked >= LONGEST:
+        if self.problem and now - self._asked < AGAIN:
+            return
+        if state[1] or self.problem or now - self._changed >= PATIENCE or now - self._asked >= LONGEST:
+            self._asked = now
             self._writer = Thread(target=self._keep, name="autosave", daemon=True)
             self._writer.start()
 
@@ -107,7 +123,7 @@ class Autosave:
             InputError: it cannot be read any more.
         """
         work = open_work(left.folder / "work")
-        self._document.open(work, folder=left.origin, saved=False)
+        self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp)
         if self._keep():
             self.forget(left)
 
@@ -131,11 +147,12 @@ class Autosave:
                     self._remove()
                 else:
                     self._write(self._folder, self._document.work)
-            except (OSError, HydrostatError):
-                logging.getLogger("hydrostat").exception("the work cannot be kept for restoring")
+            except (OSError, HydrostatError) as error:
+                if not self.problem:
+                    logging.getLogger("hydrostat").exception("the work cannot be kept for restoring")
+                self.problem = f"unsaved work cannot be kept for restoring: {error}".splitlines()[0]
                 return False
-            finally:
-                self._kept = state  # tried again after the next change, not four times a second
+            self._kept, self.problem = state, ""
         return True
 
     def _write(self, folder: Path, work: Work) -> None:
@@ -145,16 +162,19 @@ class Autosave:
         home = self._held.path
         part, whole = home / f"{self._count}.part", home / str(self._count)
         save_work(work, part / "work")
-        origin = self._document.folder
+        origin, stamp = self._document.folder, self._document.stamp
         meta = {
             "name": work.robot.name,
             "time": datetime.now().astimezone().isoformat(),
             "origin": None if origin is None else str(origin.resolve()),
+            "stamp": stamp,
             "process": os.getpid(),
         }
         (part / "meta.json").write_text(json.dumps(meta), encoding="utf-8")
         part.rename(whole)
-        rmtree(home / str(self._count - 1), ignore_errors=True)
+        for path in home.iterdir():  # the one before, and what could not be written whole
+            if path.is_dir() and path != whole:
+                rmtree(path, ignore_errors=True)
 
     def _remove(self) -> None:
         if self._held is not None:
@@ -184,4 +204,5 @@ def _read(path: Path) -> Left:
         name=str(meta["name"])[:60],
         time=datetime.fromisoformat(meta["time"]),
         origin=None if origin is None else Path(origin),
+        stamp=str(meta.get("stamp", "")),
     )

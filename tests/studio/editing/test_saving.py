@@ -304,6 +304,31 @@ def test_what_others_wrote_is_asked_about(robot: Robot, tmp_path: Path) -> None:
     assert "another program" in doubts(work, tmp_path, stamp)[0]
 
 
+def test_a_file_that_is_not_of_the_robot_is_asked_about(robot: Robot, tmp_path: Path) -> None:
+    """Oracle: a drawing of a person's own that has the name of the body's file, with and without a robot.toml."""
+    work = Work(robot=robot)
+    (tmp_path / "body.svg").write_bytes(robot.body.content)
+    assert doubts(work, tmp_path) == []
+    (tmp_path / "body.svg").write_text("mine")
+    assert "body.svg" in doubts(work, tmp_path)[0]
+    save_work(work, tmp_path)
+    stamp = folder_stamp(tmp_path)
+    (tmp_path / "other.svg").write_text("mine")
+    other = Work(robot=replace(robot, body=replace(robot.body, file="other.svg")))
+    assert "other.svg" in doubts(other, tmp_path, stamp)[0]
+
+
+def test_a_body_that_others_changed_is_asked_about_but_not_a_new_outline(robot: Robot, tmp_path: Path) -> None:
+    """Oracle: the file of the body as it was when the robot was opened."""
+    work = Work(robot=robot)
+    save_work(work, tmp_path)
+    stamp = folder_stamp(tmp_path)
+    drawn = Work(robot=replace(robot, body=replace(robot.body, content=BODY.replace("40", "42").encode())))
+    assert doubts(drawn, tmp_path, stamp) == []
+    (tmp_path / "body.svg").write_text(BODY.replace("40", "41"))
+    assert "another program" in doubts(drawn, tmp_path, stamp)[0]
+
+
 def test_names_that_the_file_does_not_allow_are_refused(robot: Robot, tmp_path: Path) -> None:
     wrong = replace(robot, winches=(*robot.winches, Winch(name="a/b", at=(0.0, 0.0))))
     with pytest.raises(InputError, match="letters"):

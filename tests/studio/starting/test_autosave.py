@@ -13,7 +13,8 @@ from hydrostat.robot import Marker, gallery_folder, load_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.work import Work
-from hydrostat.studio.starting.autosave import LONGEST, PATIENCE, Autosave
+from hydrostat.studio.starting.autosave import AGAIN, LONGEST, PATIENCE, Autosave
+from hydrostat.studio.work_folder import doubts, save_work
 
 CRASHES = """
 import sys
@@ -152,6 +153,56 @@ def test_a_disk_that_cannot_be_written_is_no_reason_to_stop(tmp_path: Path, work
     settle(autosave, 10.0)
     autosave.close()
     assert autosave.left() == []
+
+
+def test_why_nothing_is_kept_is_told_and_tried_again(tmp_path: Path, work: Work) -> None:
+    """Oracle: the problem while a file is where the folder should be; none, and a copy, soon after it is gone."""
+    state = tmp_path / "state"
+    state.write_text("a file where the folder should be")
+    document, autosave = opened(state)
+    document.open(work, saved=False)
+    settle(autosave, 0.0)
+    settle(autosave, PATIENCE)
+    assert autosave.problem
+    assert "\n" not in autosave.problem
+    state.unlink()
+    settle(autosave, PATIENCE + 0.9 * AGAIN)
+    assert autosave.problem
+    settle(autosave, PATIENCE + AGAIN)
+    assert autosave.problem == ""
+    assert len(list(state.glob("*/*/meta.json"))) == 1
+    autosave.close()
+
+
+def test_work_goes_on_and_is_kept_as_often_as_said(tmp_path: Path, work: Work) -> None:
+    """Oracle: changes four times a second for 60 s; a copy each `LONGEST`."""
+    document, autosave = opened(tmp_path)
+    document.open(work, saved=False)
+    kept = set()
+    for beat in range(240):
+        changed(document, f"change_{beat}")
+        settle(autosave, beat / 4)
+        kept |= {path.parent.name for path in tmp_path.glob("*/*/meta.json")}
+    assert 60 / LONGEST - 2 <= len(kept) <= 60 / LONGEST + 1
+    autosave.close()
+
+
+@pytest.mark.parametrize("touched", [False, True])
+def test_what_others_wrote_after_a_crash_is_asked_about(tmp_path: Path, work: Work, touched: bool) -> None:
+    """Oracle: doubts about the folder of the robot; none if nobody touched it."""
+    home = tmp_path / "robot"
+    save_work(work, home)
+    document, autosave = opened(tmp_path / "state")
+    document.open(work, folder=home)
+    changed(document, "mine")
+    autosave.close()
+    if touched:
+        (home / "robot.toml").write_text((home / "robot.toml").read_text() + "# theirs\n")
+    again, autosave = opened(tmp_path / "state")
+    autosave.restore(autosave.left()[0])
+    assert again.folder == home
+    assert any("another program" in words for words in doubts(again.work, home, again.stamp)) == touched
+    autosave.close()
 
 
 def test_without_a_folder_nothing_is_kept(work: Work) -> None:
