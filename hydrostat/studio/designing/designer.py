@@ -20,6 +20,7 @@ from hydrostat.studio.designing.run import Mark, Run, beginning, error_at_rest
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.follow import after_design
 from hydrostat.studio.records.wishes import Paint, Wishes
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things, target_things
@@ -187,7 +188,8 @@ class Designer(Stage):
         if candidate is None:
             raise InputError("choose one of the networks first; those of another body cannot be accepted")
         robot = self._document.robot.with_network(candidate.robot.winches, candidate.robot.cables)
-        self._document.change(f"accept design, {candidate.counts}", robot=robot)
+        wishes = after_design(self._document.work, robot)
+        self._document.change(f"accept design, {candidate.counts}", robot=robot, wishes=wishes)
 
     def clear(self) -> None:
         """Forget all candidates."""

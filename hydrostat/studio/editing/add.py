@@ -1,11 +1,11 @@
 """`add_pin`, `add_marker`, `add_winch`, `add_cable`, `insert_via`: a robot with one more part."""
 
-from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
 
 from hydrostat.robot import Cable, Marker, Pin, Point, Robot, Winch
+from hydrostat.studio.records.fresh_name import fresh_name
 
 PIN_SHARE = 0.06
 """Radius of a robot's first pin as a share of the body."""
@@ -86,11 +86,3 @@ def nearest_segment(points: tuple[Point, ...], at: Point) -> int:
     share = np.einsum("sd,sd->s", np.array(at) - corners[:, 0], along) / np.einsum("sd,sd->s", along, along)
     feet = corners[:, 0] + np.clip(share, 0.0, 1.0)[:, None] * along
     return int(np.argmin(np.linalg.norm(feet - np.array(at), axis=1)))
-
-
-def fresh_name(stem: str, taken: Collection[str]) -> str:
-    """The first of stem_1, stem_2 ... that is not taken."""
-    number = 1
-    while f"{stem}_{number}" in taken:
-        number += 1
-    return f"{stem}_{number}"

@@ -14,7 +14,6 @@ from hydrostat.studio.editing.add import add_marker, add_pin, add_winch
 from hydrostat.studio.editing.change import change, rename, set_gravity
 from hydrostat.studio.editing.draft import Draft, begin_cable, end_cable
 from hydrostat.studio.editing.findings import Findings, look_over
-from hydrostat.studio.editing.follow import followed
 from hydrostat.studio.editing.hold import Hold, take_hold
 from hydrostat.studio.editing.inside import below_skin, inside
 from hydrostat.studio.editing.mirror import Mirror
@@ -25,6 +24,7 @@ from hydrostat.studio.editing.remesh import remesh
 from hydrostat.studio.editing.remove import remove
 from hydrostat.studio.editing.tool import KEYS, Tool
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.follow import followed
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.shape import Shape, rest_shape
@@ -183,9 +183,17 @@ class Editor(Stage):
         Raises:
             InputError: a number out of its range, or parts that no longer fit; then nothing has changed.
         """
+        before = self._document.robot.body
         body = remesh(self._document.robot, **values)
         words = " and ".join(key.replace("_", " ") for key in values)
-        self._change(f"change {words}", replace(self._document.robot, body=body))
+        while True:
+            robot = self._document.robot  # parts of it may have been changed meanwhile
+            if robot.body is not before:
+                raise InputError(f"{words}: the body is another one by now, so nothing was changed; ask for it again")
+            changed = replace(robot, body=body)
+            if self._document.robot is robot:
+                self._change(f"change {words}", changed)
+                return
 
     def finish(self) -> None:
         """End the cable at its last point.

@@ -9,7 +9,7 @@ from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.robot import Body, Cable, Mount, Pin, Point, Pose, Robot, outline_body
-from hydrostat.studio.records.timeline import Timeline
+from hydrostat.studio.records.follow import followed
 from hydrostat.studio.records.work import Work
 from hydrostat.units import counted
 
@@ -55,8 +55,8 @@ def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshape
     def move(point: Point) -> Point:
         return tuple(float(value) for value in np.round(np.array(point) - middle, 9))
 
-    robot, dropped = _fitted(_moved(work.robot, move), work.robot, body)
-    return Reshaped(work=_matching(work, robot, move), dropped=dropped)
+    robot, numbers, dropped = _fitted(_moved(work.robot, move), work.robot, body)
+    return Reshaped(work=_matching(work, robot, numbers, move), dropped=dropped)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,8 +89,8 @@ def _moved(robot: Robot, move: Move) -> _Parts:
     )
 
 
-def _fitted(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, tuple[str, ...]]:
-    """The robot with all parts that lie in the body, and the others in words."""
+def _fitted(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, dict[int, int], tuple[str, ...]]:
+    """The robot with all parts that lie in the body, new numbers of its cables by their old ones, the rest in words."""
     dropped: list[str] = []
 
     def fits(words: str, points: tuple[Point, ...]) -> bool:
@@ -113,18 +113,18 @@ def _fitted(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, tuple[str, 
         winch for winch in parts.rest["winches"] if winch.name in worlds or fits(f"winch {winch.name}", (winch.at,))
     ]
     standing = {winch.name for winch in winches}
-    cables: list[Cable] = []
-    for number, cable in enumerate(parts.rest["cables"], start=1):
+    cables: dict[int, Cable] = {}
+    for number, cable in enumerate(parts.rest["cables"]):
         inside = cable.points[1:] if cable.winch in worlds else cable.points
         if cable.winch not in standing:
-            dropped.append(f"cable {number}")
-        elif fits(f"cable {number}", inside):
-            cables.append(cable)
+            dropped.append(f"cable {number + 1}")
+        elif fits(f"cable {number + 1}", inside):
+            cables[number] = cable
     markers = [marker for marker in parts.rest["markers"] if fits(f"marker {marker.name}", (marker.at,))]
     poses = _poses(parts.poses, {marker.name for marker in markers}, dropped)
     options = {"pins": tuple(pins), "markers": tuple(markers), "poses": poses}
-    made = replace(robot, body=body, winches=tuple(winches), cables=tuple(cables), **options)
-    return made, tuple(dropped)
+    made = replace(robot, body=body, winches=tuple(winches), cables=tuple(cables.values()), **options)
+    return made, {old: new for new, old in enumerate(cables)}, tuple(dropped)
 
 
 def _poses(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) -> dict[str, Pose]:
@@ -140,7 +140,7 @@ def _poses(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) -> di
     return kept
 
 
-def _matching(work: Work, robot: Robot, move: Move) -> Work:
+def _matching(work: Work, robot: Robot, cables: dict[int, int], move: Move) -> Work:
     """Wishes and keyframes that fit the robot."""
 
     def zone_moved(zone: Zone) -> Zone:
@@ -149,11 +149,5 @@ def _matching(work: Work, robot: Robot, move: Move) -> Work:
         return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
 
     zones = tuple((paint, zone_moved(zone)) for paint, zone in work.wishes.zones)
-    wished = tuple(name for name in work.wishes.poses if name in robot.poses)
-    names = {winch.name for winch in robot.winches}
-    keys = tuple(
-        replace(key, contractions={name: value for name, value in key.contractions.items() if name in names})
-        for key in work.timeline.keys
-    )
-    timeline: Timeline = replace(work.timeline, keys=keys)
-    return replace(work, robot=robot, timeline=timeline, wishes=replace(work.wishes, zones=zones, poses=wished))
+    timeline, wishes = followed(work, robot, cables=cables)
+    return replace(work, robot=robot, timeline=timeline, wishes=replace(wishes, zones=zones))

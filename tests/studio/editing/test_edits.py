@@ -12,7 +12,6 @@ from hydrostat.studio.editing.add import add_cable, add_marker, add_pin, add_win
 from hydrostat.studio.editing.change import change, rename, set_gravity
 from hydrostat.studio.editing.draft import begin_cable, end_cable
 from hydrostat.studio.editing.findings import in_words, look_over
-from hydrostat.studio.editing.follow import followed
 from hydrostat.studio.editing.inside import below_skin, inside
 from hydrostat.studio.editing.mirror import Mirror
 from hydrostat.studio.editing.move import move
@@ -20,6 +19,7 @@ from hydrostat.studio.editing.part import find_part, keys_of, place_of
 from hydrostat.studio.editing.remesh import remesh
 from hydrostat.studio.editing.remove import remove
 from hydrostat.studio.editing.sheaths import sheathed_segments, sheaths
+from hydrostat.studio.records.follow import after_design, followed
 from hydrostat.studio.records.timeline import Key, Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
@@ -289,6 +289,32 @@ def test_keyframes_and_wishes_follow(starfish: Robot) -> None:
     after, wishes = followed(work, gone)
     assert after.keys[0].contractions == {"left": 0.01}
     assert wishes.poses == ()
+
+
+def test_what_is_kept_follows(starfish: Robot) -> None:
+    """Oracle: the cables and winches themselves, wherever they are now."""
+    work = Work(robot=starfish, wishes=Wishes(kept_winches=("feet", "left"), kept_cables=(0, 3)))
+    gone = remove(starfish, ["cable:1"])
+    wishes = followed(work, gone)[1]
+    assert [gone.cables[number] for number in wishes.kept_cables] == [starfish.cables[0], starfish.cables[3]]
+    assert wishes.kept_winches == ("feet", "left")
+    assert followed(work, remove(starfish, ["cable:3"]))[1].kept_cables == (0,)
+    renamed = followed(work, rename(starfish, "winch:feet", "legs"), {"feet": "legs"})[1]
+    assert (renamed.kept_winches, renamed.kept_cables) == (("legs", "left"), (0, 3))
+    assert followed(work, remove(starfish, ["via:0:2"]))[1] is work.wishes
+    bare = remove(starfish, ["winch:feet"])
+    assert followed(work, bare)[1].kept_winches == ("left",)
+
+
+def test_a_design_keeps_what_it_has_kept(starfish: Robot) -> None:
+    """Oracle: a network in another order, in which one winch has an old name at another place."""
+    work = Work(robot=starfish, wishes=Wishes(kept_winches=("feet", "left"), kept_cables=(0, 3)))
+    winches = [replace(winch, at=(0.0, -0.03)) if winch.name == "feet" else winch for winch in starfish.winches]
+    changed = replace(starfish.cables[0], slack=0.002)
+    made = starfish.with_network(winches, [starfish.cables[3], changed, *starfish.cables[1:3]])
+    wishes = after_design(work, made)
+    assert wishes.kept_winches == ("left",)
+    assert [made.cables[number] for number in wishes.kept_cables] == [starfish.cables[3]]
 
 
 def test_risks_are_told_in_the_words_of_the_screen(starfish: Robot) -> None:
