@@ -105,8 +105,8 @@ class _Limb:
         """The elements across the limb at a share of its length: those that hang together with the way there."""
         away = self.away[mesh.elements].mean(axis=1)
         width = _BAND
-        while not (near := np.abs(away - share) < width).any():
-            width *= 2
+        while not np.isin(self.path, mesh.elements[near := np.abs(away - share) < width]).any():
+            width *= 2  # in a stout body the way has few nodes, with none in a narrow band
         ends = mesh.elements[near]
         joins = coo_array(
             (np.ones(3 * len(ends)), (np.repeat(ends[:, 0], 3), ends[:, 1:].ravel())), shape=2 * (len(mesh.nodes),)

@@ -178,3 +178,16 @@ def test_distances_count_from_the_surface(tmp_path: Path) -> None:
     body = load_robot(_folder(tmp_path, TEXT)).body
     points = np.array([[0.06, 0.015, 0.01], [0.06, 0.015, 0.027], [-0.03, -0.04, 0.01], [0.0001, 0.0001, 0.0001]])
     np.testing.assert_allclose(body.distances(points), [0, 0.007, 0.05, 0], atol=1e-9)
+
+
+def test_a_ball_is_held_and_reached(tmp_path: Path) -> None:
+    """A stout body, where the way from what is held is short: found by a scan of a ball."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.03)
+    sketch = sketch_surface(write_ply(Surface(ball.vertices, ball.faces)), file="ball.ply", name="ball")
+    (cable,) = sketch.robot.cables
+    assert 0.0 < cable.length < 0.06
+    assert (sketch.robot.body.distances(np.array(cable.points)) <= 0).all()
+    save_robot(sketch.robot, tmp_path)
+    assert load_robot(tmp_path) == sketch.robot
