@@ -17,6 +17,9 @@ FIELDS = {
 }
 """What can be changed of a part."""
 
+RANGES = {"radius": (1e-4, 20.0), "spool_radius": (1e-4, 20.0), "travel": (0.0, 20.0), "slack": (0.0, 20.0)}
+"""Least and most of each length that a person may ask for [m]."""
+
 
 def rename(robot: Robot, key: str, name: str) -> Robot:
     """The same robot with another name of a winch or marker; its cables and poses follow.
@@ -52,6 +55,9 @@ def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
     Raises:
         InputError: no such part, or a number that it cannot have.
     """
+    for name, value in values.items():
+        if name in RANGES and value is not None:
+            check_range(name, value, *RANGES[name])
     pins, winches, cables = list(robot.pins), list(robot.winches), list(robot.cables)
     for key in keys:
         part = find_part(robot, key)
@@ -74,6 +80,17 @@ def set_gravity(robot: Robot, direction: str) -> Robot:
         InputError: no direction of this body.
     """
     return replace(robot, gravity=gravity_along(direction, robot.body.mesh.dim) if direction else None)
+
+
+def check_range(name: str, value: float, least: float, most: float) -> None:
+    """Check a length that a person asks for [m].
+
+    Raises:
+        InputError: it is out of its range, or no number.
+    """
+    if not least <= value <= most:
+        words = name.replace("_", " ")
+        raise InputError(f"{words}: must be from {1e3 * least:g} mm to {most:g} m, not {1e3 * value:g} mm")
 
 
 def _free(name: str, names: list[str]) -> None:

@@ -6,6 +6,10 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, Source, find_material, outline_body
 from hydrostat.robot.body import Body, surface_body
+from hydrostat.studio.editing.change import check_range
+
+RANGE = (1e-4, 20.0)
+"""Least and most thickness and element size that a person may ask for [m]."""
 
 
 def remesh(
@@ -23,6 +27,9 @@ def remesh(
         InputError: a number out of its range, an unknown material, or a body whose elements are given.
     """
     body = robot.body
+    for name, value in (("thickness", thickness), ("element_size", element_size)):
+        if value is not None:
+            check_range(name, value, *RANGE)
     if material is not None:
         body = replace(body, material=find_material(material))
     if thickness is not None:

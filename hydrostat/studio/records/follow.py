@@ -18,8 +18,8 @@ def followed(
         work: as it was before.
         robot: as it is now.
         renamed: new names of winches, by their old ones.
-        cables: new numbers of cables, by their old ones; if left out, all have their old ones where there are as many as
-            before, else those that are the same.
+        cables: new numbers of cables, by their old ones; if left out, all have their old ones where there are as many
+            as before, else those that are the same.
     """
     names = {winch.name for winch in robot.winches}
     new = dict(renamed or {})

@@ -1,8 +1,9 @@
 """`Card`, `gallery_cards`, `robots_in`: robots to choose from, told without reading their bodies."""
 
 import tomllib
+from collections import Counter
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 
@@ -48,6 +49,18 @@ def robots_in(folder: Path) -> list[Card]:
     with suppress(OSError):
         found = sorted(path for path in islice(folder.iterdir(), MOST_SEEN) if is_robot(path))
     return [card_of(path) for path in found[:MOST_SHOWN]]
+
+
+def told_apart(cards: list[Card]) -> list[Card]:
+    """Each folder once, the first place counts; those of one name are told with the folder they are in."""
+    once: dict[Path, Card] = {}
+    for card in cards:
+        once.setdefault(card.folder.resolve(), card)
+    names = Counter(card.name for card in once.values())
+    return [
+        replace(card, name=f"{folder.parent.name}/{card.name}") if names[card.name] > 1 else card
+        for folder, card in once.items()
+    ]
 
 
 def suggestions(text: str) -> list[str]:

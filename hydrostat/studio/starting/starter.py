@@ -17,7 +17,7 @@ from hydrostat.studio.starting.autosave import Autosave
 from hydrostat.studio.starting.draft import Draft, new_draft
 from hydrostat.studio.starting.outlining import Outlining
 from hydrostat.studio.starting.recent import Recent
-from hydrostat.studio.starting.shelf import Card, card_of, robots_in
+from hydrostat.studio.starting.shelf import Card, card_of, robots_in, told_apart
 from hydrostat.studio.starting.sketch import Sketch, make_sketch
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.shape import Shape, rest_shape
@@ -99,10 +99,8 @@ class Starter(Stage):
         self._document.open(work, folder=folder.parent if folder.suffix == ".toml" else folder)
 
     def recent(self) -> list[Card]:
-        """Robots that were open lately, then those of the working folder."""
-        recent = [card_of(folder) for folder in self._recent.folders()]
-        known = {card.folder for card in recent}
-        return recent + [card for card in robots_in(Path.cwd()) if card.folder.resolve() not in known]
+        """Robots that were open lately, then those of the working folder; each once, those of one name told apart."""
+        return told_apart([*map(card_of, self._recent.folders()), *robots_in(Path.cwd())])
 
     @property
     def meshing(self) -> bool:
@@ -206,11 +204,21 @@ class Starter(Stage):
         """Give the open robot the outline that was drawn; one change, which can be undone.
 
         Raises:
-            InputError: it is no body, or holds no pin any more.
+            InputError: it is no body, holds no pin any more, or was drawn for another body; then nothing has changed.
         """
-        if self.outlining is None:
+        outlining = self.outlining
+        if outlining is None:
             return
-        work = self.outlining.applied(self._document.work).work
+        asked = outlining.loops
+        while True:
+            before = self._document.work
+            if outlining.robot is not None and outlining.robot.body.content != before.robot.body.content:
+                raise InputError("another body was opened meanwhile, and this outline was drawn for the one before")
+            work = outlining.applied(before).work
+            if self.outlining is not outlining or outlining.loops != asked:
+                raise InputError("the outline was changed meanwhile; apply it again when it is done")
+            if self._document.work is before:  # else it is made again, for what was changed meanwhile
+                break
         self._document.change("edit outline", robot=work.robot, timeline=work.timeline, wishes=work.wishes)
         self.outlining = None
         self._document.bell.ring(Topic.JOB)
@@ -242,12 +250,11 @@ class Starter(Stage):
             if self.draft is not None and sketch.draft == self.draft:
                 self.sketch = replace(sketch, draft=self.draft)  # what came from the process is a copy
 
-    def _ended(self) -> None:
+    def _ended(self, error: str) -> None:
         with self._lock:
             again = self.draft is not None and self.draft is not self._working and not self._halted
             if self.draft is not None and not again and not self._halted:
-                state = self._jobs.state
-                self.problem = "" if state is None else state.error
+                self.problem = error
             self._working, self._halted = None, False
             if again and self.draft is not None:
                 self._begin(self.draft)

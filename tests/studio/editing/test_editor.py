@@ -2,16 +2,18 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Point, Robot, gallery_folder, load_robot
+from hydrostat.robot import Body, Point, Robot, gallery_folder, load_robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.editor import QUIET, Editor
 from hydrostat.studio.editing.findings import look_over
+from hydrostat.studio.editing.remesh import remesh
 from hydrostat.studio.editing.tool import Tool
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import Work
@@ -244,6 +246,53 @@ def test_the_panel_changes_what_it_says(editor: Editor, document: Document, star
     assert len(document.robot.body.mesh.nodes) < len(starfish.body.mesh.nodes)
     assert document.undo_label == "change element size"
     assert document.robot.cables == robot.cables
+
+
+@pytest.mark.parametrize("meanwhile", ["part", "body", "robot"])
+def test_a_slow_mesh_loses_nothing(
+    editor: Editor, document: Document, starfish: Robot, monkeypatch: pytest.MonkeyPatch, meanwhile: str
+) -> None:
+    """Oracle: what was changed while the mesh was made is there after it; another body stays as it is."""
+    thick = replace(starfish, body=replace(starfish.body, thickness=0.05))
+
+    def slowly(robot: Robot, **values: Any) -> Body:
+        made = remesh(robot, **values)
+        if meanwhile == "part":
+            editor.place("marker:top", (0.01, 0.12))
+        elif meanwhile == "body":
+            editor._document.change("thicker", robot=thick)
+        else:
+            document.open(Work(robot=thick))
+        return made
+
+    monkeypatch.setattr("hydrostat.studio.editing.editor.remesh", slowly)
+    if meanwhile == "part":
+        editor.set_body(element_size=0.016)
+        assert document.robot.markers[0].at == (0.01, 0.12)
+        assert len(document.robot.body.mesh.nodes) < len(starfish.body.mesh.nodes)
+    else:
+        with pytest.raises(InputError, match="another one by now"):
+            editor.set_body(element_size=0.016)
+        assert document.robot is thick
+
+
+@pytest.mark.parametrize("number", [-1.0, 0.0, 1e-9, 1e9, float("nan"), float("inf")])
+def test_absurd_numbers_are_refused_in_one_line(editor: Editor, document: Document, number: float) -> None:
+    """Oracle: one short line, and the robot as it was."""
+    before = document.robot
+    asked = [
+        lambda: editor.set_body(element_size=number),
+        lambda: editor.set_body(thickness=number),
+        lambda: editor.set("winch:left", spool_radius=number),
+        lambda: editor.place("marker:top", (number, 1e3)),
+        lambda: editor.set("cable:0", stiffness=-abs(number)),
+    ]
+    for action in asked:
+        with pytest.raises(InputError) as refused:
+            action()
+        assert "\n" not in str(refused.value)
+        assert len(str(refused.value)) < 300
+        assert document.robot is before
 
 
 def test_the_check_waits_until_the_robot_rests(editor: Editor, document: Document, starfish: Robot) -> None:

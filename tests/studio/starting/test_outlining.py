@@ -20,6 +20,7 @@ from hydrostat.studio.records.wishes import Paint, Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.starting.loops import Corner, Loop, curve, fitted, loops_svg, outline_of, read_loops, send_loops
 from hydrostat.studio.starting.outlining import Outlining, beginnings
+from hydrostat.studio.starting.reshape import Reshaped, reshaped
 from hydrostat.studio.starting.starter import Starter
 
 FLAT = ("letter_e", "letter_s", "pig", "puppy", "robot", "squid", "starfish")
@@ -174,6 +175,58 @@ def test_editing_an_outline_is_one_change() -> None:
     assert document.robot.body.mesh.size > 1.05 * before.body.mesh.size
     document.undo()
     assert document.robot is before
+
+
+@pytest.mark.parametrize("meanwhile", ["part", "robot", "drawing"])
+def test_a_slow_outline_loses_nothing(monkeypatch: pytest.MonkeyPatch, meanwhile: str) -> None:
+    """Oracle: what was changed while the body was made is there after it; another robot stays as it is."""
+    bell = Bell()
+    document = Document(bell)
+    starter = Starter(document, Jobs(bell))
+    document.open(starfish())
+    other = Work(robot=load_robot(gallery_folder("fish_tail")))
+    starter.outline_open()
+    begun = [meanwhile]
+
+    def slowly(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
+        made = reshaped(work, drawing, corner)
+        if begun and begun.pop() == "part":
+            document.change("rename", robot=replace(document.robot, name="mine"))
+        elif meanwhile == "robot":
+            document.open(other)
+        elif meanwhile == "drawing":
+            starter.outline_new()
+        return made
+
+    monkeypatch.setattr("hydrostat.studio.starting.outlining.reshaped", slowly)
+    before = document.robot
+    if meanwhile == "part":
+        starter.outline_apply()
+        assert document.undo_label == "edit outline"
+        assert document.robot.name == "mine"
+        return
+    with pytest.raises(InputError, match="meanwhile"):
+        starter.outline_apply()
+    assert document.robot is (other.robot if meanwhile == "robot" else before)
+    assert starter.outlining is not None
+
+
+def test_cables_that_are_kept_keep_their_numbers_in_a_new_outline() -> None:
+    """Oracle: the stoppers of the kept cables, in a body without the arm that the first cable runs through."""
+    work = starfish()
+    work = replace(work, wishes=replace(work.wishes, kept_cables=tuple(range(len(work.robot.cables)))))
+    arm = work.robot.cables[0].points[-1]
+    (loop,) = Outlining.of(work.robot).loops
+    cut = 1e3 * 0.6 * arm[0]
+    corners = [replace(corner, x=min(corner.x, cut), smooth=False) for corner in loop]
+    kept = [
+        corner
+        for place, corner in enumerate(corners)
+        if corner.x < cut or corners[place - 1].x < cut or corners[(place + 1) % len(corners)].x < cut
+    ]
+    found = Outlining((tuple(kept),), work.robot).applied(work)
+    assert "cable 1" in found.dropped
+    assert found.work.wishes.kept_cables == tuple(range(len(found.work.robot.cables)))
 
 
 def test_only_drawn_bodies_have_an_outline() -> None:

@@ -103,6 +103,19 @@ def test_a_folder_is_opened_and_remembered(tmp_path: Path, monkeypatch: pytest.M
     assert [card.name for card in Desk(tmp_path / "state").starter.recent()] == ["other", "mine"]
 
 
+def test_robots_are_listed_once_and_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: three folders, one of which has a second way to it, two of which have one name."""
+    robot = load_robot(gallery_folder("letter_e"))
+    for place in ("here/mine", "there/mine", "there/other"):
+        save_robot(robot, tmp_path / place)
+    (tmp_path / "here" / "also").symlink_to(tmp_path / "there" / "mine")
+    monkeypatch.chdir(tmp_path / "here")
+    desk = Desk(tmp_path / "state")
+    desk.starter.open_folder(str(tmp_path / "there" / "other"))
+    desk.starter.open_folder(str(tmp_path / "there" / "mine"))
+    assert [card.name for card in desk.starter.recent()] == ["there/mine", "other", "here/mine"]
+
+
 @pytest.mark.parametrize("text", ["", "  ", "/no/such/folder", "a\0b", "x" * 5000, "~nobody_here/x"])
 def test_a_folder_that_is_none_is_one_line(desk: Desk, text: str) -> None:
     """Oracle: one line, and nothing is open."""

@@ -7,6 +7,7 @@ from nicegui import ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.sent_number import sent_number
 from hydrostat.studio.records.wishes import Wishes
 
 Show = Callable[[Wishes], Any]
@@ -53,8 +54,8 @@ def _number(page: Page, words: str, unit: str, name: str) -> Show:
         box.props('placeholder="auto" clearable')
 
     def send() -> None:
-        value = box.value
-        if value is None and not optional:
+        value = sent_number(box.value)
+        if value is None and not (optional and box.value is None):
             show(designer.wishes)
             return
         number = None if value is None else int(value) if whole else value / scale
@@ -91,28 +92,35 @@ def _mirror(page: Page) -> Show:
 
 def _own(page: Page, shows: list[Show]) -> None:
     """What the robot has already: it can stay, or be improved."""
-    designer, robot = page.session.designer, page.session.document.robot
-    if not robot.cables and not robot.winches:
-        return
-    with _more("What the robot has"):
+    designer, document = page.session.designer, page.session.document
+    with _more("What the robot has") as more:
         shows.append(_switch(page, "Begin with it and improve it", "improve"))
-        options = {f"winch {winch.name}": f"winch {winch.name}" for winch in robot.winches}
-        options |= {f"cable {index}": f"cable {index + 1}, {cable.winch}" for index, cable in enumerate(robot.cables)}
-        keep = ui.select(options, multiple=True, label="These stay").props("dense outlined use-chips options-dense")
+        keep = ui.select([], multiple=True, label="These stay").props("dense outlined use-chips options-dense")
         keep.classes("w-full").props('data-testid="wish-keep"')
+    shown: list[str] = []
 
     def send() -> None:
+        if set(keep.value) == set(shown):  # it was not the person
+            return
         names = [name.partition(" ") for name in keep.value]
         winches = tuple(name for kind, _, name in names if kind == "winch")
         cables = tuple(int(name) for kind, _, name in names if kind == "cable")
         page.act(lambda: designer.wish(kept_winches=winches, kept_cables=cables))
 
     def show(wishes: Wishes) -> None:
-        chosen = [
+        robot = document.robot
+        more.set_visibility(bool(robot.winches or robot.cables))
+        options = {f"winch {winch.name}": f"winch {winch.name}" for winch in robot.winches}
+        options |= {f"cable {index}": f"cable {index + 1}, {cable.winch}" for index, cable in enumerate(robot.cables)}
+        kept = [
             *(f"winch {name}" for name in wishes.kept_winches),
             *(f"cable {index}" for index in wishes.kept_cables),
         ]
-        keep.set_value([name for name in chosen if name in options])
+        shown[:] = [name for name in kept if name in options]
+        if keep.options != options:
+            keep.set_options(options, value=list(shown))
+        else:
+            keep.set_value(list(shown))
 
     keep.on_value_change(send)
     shows.append(show)

@@ -7,6 +7,7 @@ from hydrostat.robot.gravity import DIRECTIONS, direction_of
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.edit_number import EditNumber
+from hydrostat.studio.stage import StageName
 
 OWN = "its own numbers"
 """What a material is called that is not of the table."""
@@ -19,6 +20,7 @@ def body_card(page: Page) -> None:
         _material(page)
         _lengths(page)
         _gravity(page)
+        _outline(page)
 
 
 def _material(page: Page) -> None:
@@ -95,3 +97,19 @@ def _gravity(page: Page) -> None:
 
     choice.on_value_change(send)
     page.on(Topic.ROBOT, show)
+
+
+def _outline(page: Page) -> None:
+    """For a body that was drawn: its outline can be drawn anew."""
+    starter, document = page.session.starter, page.session.document
+
+    async def draw() -> None:
+        body = document.robot.body
+        await page.act_slowly(starter.outline_open)
+        outlining = starter.outlining
+        if outlining is not None and outlining.robot is not None and outlining.robot.body is body:
+            page.go(StageName.START)
+
+    button = ui.button("Edit outline", icon="draw", on_click=draw).props("outline no-caps dense padding='4px 12px'")
+    button.mark("edit-outline").props('data-testid="edit-outline"')
+    page.on(Topic.ROBOT, lambda: button.set_visibility(document.robot.body.outline is not None))

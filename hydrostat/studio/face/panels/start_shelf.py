@@ -52,7 +52,7 @@ async def open_with(page: Page, button: ui.element, action: Callable[[], None]) 
     button.classes(add="start-busy")
     await page.act_slowly(action)
     _rest(button)
-    if page.session.document.serial != serial:
+    if page.session.document.serial != serial and page.session.stage is StageName.START:
         page.go(StageName.POSE)
 
 
@@ -163,7 +163,7 @@ def _folder(page: Page) -> None:
         path.on_value_change(lambda event: path.set_autocomplete(suggestions(str(event.value or ""))))
 
         async def go() -> None:
-            await open_with(page, card, lambda: page.session.starter.open_folder(str(path.value or "")))
+            await open_with(page, card, lambda: page.session.open_folder(str(path.value or "")))
 
         path.on("keydown.enter", go)
         ui.button("Open", on_click=go).props("unelevated no-caps").props('data-testid="folder-open"')
@@ -174,7 +174,7 @@ def _chip(page: Page, card: Card) -> None:
         ui.label(card.name).classes("start-robot-name")
         ui.label(card.words or str(card.folder)).classes("start-small")
     chip.tooltip(str(card.folder))
-    chip.on("click", lambda: open_with(page, chip, lambda: page.session.starter.open_folder(str(card.folder))))
+    chip.on("click", lambda: open_with(page, chip, lambda: page.session.open_folder(str(card.folder))))
 
 
 def _robot(page: Page, card: Card) -> None:
