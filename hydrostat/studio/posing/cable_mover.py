@@ -83,6 +83,9 @@ class CableMover(Mover):
             self._held, self._updates, self._still = held, 0, 0
             if self._exact:
                 self._follow(self._rough)
+            self._near = False
+        if self._near and not self._exact:
+            self._follow(self._simulation)
         self._updates += 1
         goal = PointGoal(
             points={name: point.at for name, point in held.items()},
@@ -98,8 +101,7 @@ class CableMover(Mover):
         self._still = self._still + 1 if moved < STILL else 0
         more = reached.reason not in ENDS and self._still < STILLS and self._updates < PATIENCE
         if not more and not self._exact:
-            self._follow(self._simulation)
-            self._still, self._updates, more = 0, PATIENCE - LAST, True
+            self._near, self._still, self._updates, more = True, 0, PATIENCE - LAST, True
         notes = reached.held
         if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
             stopped = reached.reason is not InverseReason.ITERATION_LIMIT
@@ -112,7 +114,7 @@ class CableMover(Mover):
         return Closeness(pose=self._simulation.rest, of="nodes", weight=min(CALM * error, CALMEST))
 
     def _begin(self, pose: SolvedPose) -> None:
-        self._pose, self._held, self._updates, self._still = pose, {}, 0, 0
+        self._pose, self._held, self._updates, self._still, self._near = pose, {}, 0, 0, False
         self._follow(self._rough)
 
     def _follow(self, simulation: Simulation) -> None:

@@ -21,10 +21,12 @@ class Held:
     Attributes:
         at: where it is in the rest shape [m].
         target: where it should go [m].
+        marker: whether it is a marker of the robot; else it is a plain point, though it may become one.
     """
 
     at: Point
     target: Point
+    marker: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -32,21 +32,21 @@ class Mover(ABC):
 
 
 class Anchored:
-    """Where held points are stuck to the mesh, found once for as long as they are the same."""
+    """Where held points are stuck to the mesh, found once for as long as they are the same; any thread may ask."""
 
     def __init__(self, mesh: Mesh) -> None:
         """Points of this body."""
         self._mesh = mesh
-        self._places: tuple[Point, ...] = ()
-        self._anchors = locate(mesh, np.zeros((0, mesh.dim)))
+        self._found: tuple[tuple[Point, ...], Anchors] = ((), locate(mesh, np.zeros((0, mesh.dim))))
 
     def anchors(self, held: Mapping[str, Held]) -> Anchors:
         """The points as anchors, in their order."""
         places = tuple(point.at for point in held.values())
-        if places != self._places:
-            self._anchors = locate(self._mesh, np.array(places, dtype=float).reshape(-1, self._mesh.dim))
-            self._places = places
-        return self._anchors
+        known, anchors = self._found
+        if places != known:
+            anchors = locate(self._mesh, np.array(places, dtype=float).reshape(-1, self._mesh.dim))
+            self._found = places, anchors
+        return anchors
 
     def goals(self, held: Mapping[str, Held]) -> Points:
         """Where they should go [m], (points, dim)."""

@@ -27,7 +27,7 @@ class Movers:
     def ready(self, robot: Robot, mode: Mode) -> bool:
         """Whether there is a mover that fits, so that none has to be made."""
         found = self._muscles if mode is Mode.MUSCLES else self._cables
-        return found is not None and _same_physics(found.robot, robot, mode)
+        return found is not None and same_physics(found.robot, robot, mode)
 
     def mover(self, robot: Robot, mode: Mode, tension: float) -> Mover:
         """The mover of this robot; made if need be, which can take a while.
@@ -66,11 +66,7 @@ def same_body(first: Robot, second: Robot) -> bool:
     return first.body.mesh is second.body.mesh
 
 
-def _rubs(robot: Robot) -> bool:
-    return any(cable.friction for cable in robot.cables)
-
-
-def _same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
+def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
     """Whether what moves one moves the other in the same way; markers and poses do not matter."""
     if first is second:
         return True
@@ -91,3 +87,7 @@ def _resumed(simulation: Simulation, before: CableMover | None) -> SolvedPose | 
     wanted = np.array([np.clip(taken.get(winch.name, 0.0), -winch.release, winch.travel) for winch in robot.winches])
     pose = simulation.solve(wanted, strict=False)
     return pose if pose.result.converged and pose.result.stable else None
+
+
+def _rubs(robot: Robot) -> bool:
+    return any(cable.friction for cable in robot.cables)

@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import locate
 from hydrostat.plot.palette import GHOST
-from hydrostat.robot import Point, Robot
+from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -17,7 +17,16 @@ from hydrostat.studio.posing.bars import Bar, bars
 from hydrostat.studio.posing.held import Held, Mode, Wish
 from hydrostat.studio.posing.mover import Anchored
 from hydrostat.studio.posing.movers import Movers, same_body
-from hydrostat.studio.posing.poses import free_name, held_of, renamed_pose, with_pose, without_pose
+from hydrostat.studio.posing.now import Now, fitted, renamed
+from hydrostat.studio.posing.poses import (
+    checked_name,
+    free_name,
+    held_of,
+    renamed_pose,
+    wishes_after,
+    with_pose,
+    without_pose,
+)
 from hydrostat.studio.posing.reach import Reach
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import MARKER, robot_things, target_things
@@ -42,19 +51,19 @@ class _Hold:
 
     Attributes:
         name: of the point.
-        at: where it is in the rest shape [m].
+        point: of the body.
         offset: from the pointer to its target [m].
     """
 
     name: str
-    at: Point
+    point: Held
     offset: tuple[float, ...]
 
 
 class Poser(Stage):
     """Grab any point of the body and drag it; muscles or the robot's own cables follow (R2, R30, R36).
 
-    What a person wants is one frozen `Wish` that is replaced whole; `step` reads the newest and replaces the shape.
+    Robot, wish and shape are one frozen `Now` that is replaced whole; `step` reads the newest and replaces the shape.
 
     Attributes:
         reach: all that a marker can reach.
@@ -66,27 +75,24 @@ class Poser(Stage):
         self.reach = Reach(document, jobs)
         self._lock = RLock()
         self._movers = Movers(document)
-        self._robot: Robot | None = None
-        self._wish = Wish(mode=Mode.MUSCLES)
+        self._now: Now | None = None
         self._done: tuple[Robot, Wish, float] | None = None
         self._rested: dict[Mode, int] = {}
         self._announced = False
-        self._shown: Shape | None = None
         self._hold: _Hold | None = None
         self._armed = ""
         self._chosen = ""
-        self._target: Ghost | None = None
-        self._anchored: Anchored
+        document.bell.listen(self._heard)
 
     @property
     def mode(self) -> Mode:
         """What moves the body."""
-        return self._fit()[1].mode
+        return self._fit().wish.mode
 
     @property
     def held(self) -> Mapping[str, Held]:
         """What is held where, by name."""
-        return self._fit()[1].held
+        return self._fit().wish.held
 
     @property
     def armed(self) -> bool:
@@ -100,19 +106,17 @@ class Poser(Stage):
 
     def shape(self) -> Shape:
         """The body as it follows; at rest until the first step."""
-        robot, _ = self._fit()
-        shape = self._shown
-        return rest_shape(robot) if shape is None else shape
+        return self._fit().shape
 
     def things(self) -> Sequence[Thing]:
         """Ghosts, the robot, points that are held, and rings where they should be."""
-        robot, wish = self._fit()
-        shape = self.shape()
+        now = self._fit()
+        robot, wish, shape = now.robot, now.wish, now.shape
         limit = self._document.work.wishes.tension
         keys = {f"marker:{self._chosen}", f"point:{self._chosen}"} if self._chosen else set()
         found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, colour=GHOST)]
-        if self._target is not None:
-            found.append(self._target)
+        if now.ghost is not None:
+            found.append(now.ghost)
         cloud = self.reach.cloud(robot)
         if cloud is not None:
             found.append(cloud)
@@ -123,7 +127,7 @@ class Poser(Stage):
             for name, point in wish.held.items()
             if name not in markers
         ]
-        places = self._anchored.places(wish.held, shape.nodes)
+        places = now.anchored.places(wish.held, shape.nodes)
         return found + target_things(
             {name: point.target for name, point in wish.held.items()},
             dict(zip(wish.held, (tuple(place.tolist()) for place in places), strict=True)),
@@ -132,24 +136,26 @@ class Poser(Stage):
 
     def grab(self, hit: Hit) -> bool:
         """Take hold of a marker, a target or any point of the body."""
-        robot, wish = self._fit()
-        name = self._armed or self._name_under(robot, wish, hit)
+        now = self._fit()
+        armed = self._armed
+        name = armed or self._name_under(now, hit)
         if not name:
             return False
-        point = self._point(robot, wish, name, hit)
-        start = self._place(name, point, shape=self.shape()) if not self._armed else hit.world
+        point = self._point(now, name, hit)
+        start = hit.world if armed else self._place(now, name, point)
         if hit.key == f"target:{name}":
             start = point.target
         offset = tuple((np.array(start) - np.array(hit.world)).tolist())
-        self._hold, self._armed, self._chosen = _Hold(name=name, at=point.at, offset=offset), "", name
+        self._hold, self._armed, self._chosen = _Hold(name=name, point=point, offset=offset), "", name
         return True
 
     def drag(self, hit: Hit) -> None:
         """What is held should follow the pointer; the newest place wins."""
-        hold = self._hold
-        if hold is None or not np.isfinite(hit.world).all():
-            return
-        self._hold_at(hold.name, hold.at, np.array(hit.world) + hold.offset)
+        with self._lock:
+            self._fit()
+            hold = self._hold
+            if hold is not None and np.isfinite(hit.world).all():
+                self._hold_at(hold.name, hold.point, np.array(hit.world) + hold.offset)
 
     def release(self) -> None:
         """The target stays where it is."""
@@ -157,13 +163,14 @@ class Poser(Stage):
 
     def click(self, hit: Hit) -> None:
         """Choose what was clicked; after the key g, put what is chosen there."""
-        robot, wish = self._fit()
-        if self._armed:
-            name, self._armed = self._armed, ""
-            self._hold_at(name, self._point(robot, wish, name, hit).at, np.array(hit.world))
-            return
-        kind, _, name = hit.key.partition(":")
-        self._chosen = name if kind in ("marker", "target", "point") else ""
+        with self._lock:
+            now = self._fit()
+            if self._armed:
+                name, self._armed = self._armed, ""
+                self._hold_at(name, self._point(now, name, hit), np.array(hit.world))
+                return
+            kind, _, name = hit.key.partition(":")
+            self._chosen = now.known(name) if kind in ("marker", "target", "point") else ""
 
     def key(self, name: str) -> bool:
         """R: rest; delete: let go of what is chosen; g: the next click or drag moves it; escape: choose nothing."""
@@ -181,7 +188,7 @@ class Poser(Stage):
 
     def choose(self, name: str) -> None:
         """Select a held point or marker."""
-        self._chosen = name
+        self._chosen = self._fit().known(name)
         self._document.bell.ring(Topic.THINGS)
 
     def set_mode(self, mode: Mode) -> None:
@@ -191,32 +198,32 @@ class Poser(Stage):
             InputError: the robot has no cables.
         """
         with self._lock:
-            robot, wish = self._fit()
-            if mode is wish.mode:
+            now = self._fit()
+            if mode is now.wish.mode:
                 return
-            if mode is Mode.CABLES and not robot.cables:
+            if mode is Mode.CABLES and not now.robot.cables:
                 raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
-            self._target = None
-            if mode is Mode.CABLES and wish.held:
-                self._target = Ghost(name="target", nodes=self.shape().nodes, colour=TARGET_GHOST)
-            self._wish = replace(wish, mode=mode)
+            ghost = None
+            if mode is Mode.CABLES and now.wish.held:
+                ghost = Ghost(name="target", nodes=now.shape.nodes, colour=TARGET_GHOST)
+            self._now = replace(now, wish=replace(now.wish, mode=mode), ghost=ghost)
         self._ring()
 
     def rest(self) -> None:
         """Back to rest: no targets, no cable taken in."""
         with self._lock:
-            _, wish = self._fit()
-            self._wish = Wish(mode=wish.mode, rests=wish.rests + 1)
-            self._hold, self._target = None, None
-            self._chosen = self._armed = ""
+            now = self._fit()
+            self._now = replace(now, wish=Wish(mode=now.wish.mode, rests=now.wish.rests + 1), ghost=None)
+            self._let_go()
         self._ring()
 
     def clear(self, name: str) -> None:
         """Let go of a held point."""
         with self._lock:
-            _, wish = self._fit()
-            self._wish = replace(wish, held={own: held for own, held in wish.held.items() if own != name})
-            self._chosen = ""
+            now = self._fit()
+            left = {own: held for own, held in now.wish.held.items() if own != name}
+            self._now = replace(now, wish=replace(now.wish, held=left))
+            self._chosen = self._armed = ""
         self._ring()
 
     def store(self, name: str) -> None:
@@ -225,8 +232,8 @@ class Poser(Stage):
         Raises:
             InputError: no name, or nothing is held.
         """
-        robot, wish = self._fit()
-        changed = with_pose(robot, name, wish.held)
+        now = self._fit()
+        changed = with_pose(now.robot, name, now.wish.held)
         self._document.change(f"store pose {name.strip()}", robot=changed)
 
     def show_pose(self, name: str) -> None:
@@ -236,9 +243,9 @@ class Poser(Stage):
             InputError: no such pose.
         """
         with self._lock:
-            robot, wish = self._fit()
-            self._wish = replace(wish, held=held_of(robot, name))
-            self._chosen, self._target = "", None
+            now = self._fit()
+            self._now = replace(now, wish=replace(now.wish, held=held_of(now.robot, name)), ghost=None)
+            self._let_go()
         self._ring()
 
     def rename_pose(self, old: str, new: str) -> None:
@@ -247,7 +254,9 @@ class Poser(Stage):
         Raises:
             InputError: no such pose, no name, or one that is taken.
         """
-        self._document.change(f"rename pose {old}", robot=renamed_pose(self._document.robot, old, new))
+        work, new = self._document.work, checked_name(new)
+        robot = renamed_pose(work.robot, old, new)
+        self._document.change(f"rename pose {old}", robot=robot, wishes=wishes_after(work.wishes, robot, {old: new}))
 
     def delete_pose(self, name: str) -> None:
         """Remove a pose; can be undone.
@@ -255,16 +264,19 @@ class Poser(Stage):
         Raises:
             InputError: no such pose.
         """
-        self._document.change(f"delete pose {name}", robot=without_pose(self._document.robot, name))
+        work = self._document.work
+        robot = without_pose(work.robot, name)
+        self._document.change(f"delete pose {name}", robot=robot, wishes=wishes_after(work.wishes, robot))
 
     def bars(self) -> list[Bar]:
         """What each winch does."""
-        robot, _ = self._fit()
-        return bars(robot, self.shape(), self._document.work.wishes.tension)
+        now = self._fit()
+        return bars(now.robot, now.shape, self._document.work.wishes.tension)
 
     def step(self, now: float) -> bool:
         """One update of the mover; the first only says that it may take a while."""
-        robot, wish = self._fit()
+        current = self._fit()
+        robot, wish = current.robot, current.wish
         tension = self._document.work.wishes.tension
         if self._done is not None and all(
             old is new for old, new in zip(self._done, (robot, wish, tension), strict=True)
@@ -272,14 +284,14 @@ class Poser(Stage):
             return False
         if not self._movers.ready(robot, wish.mode) and not self._announced:
             self._announced = True
-            self._publish(robot, replace(self.shape(), notes=(READY,)))
+            self._publish(robot, replace(current.shape, notes=(READY,)))
             return True
         self._announced = False
         try:
             mover = self._movers.mover(robot, wish.mode, tension)
         except NotConvergedError as error:
             self._done = (robot, wish, tension)
-            self._publish(robot, replace(self.shape(), notes=(str(error),)))
+            self._publish(robot, replace(current.shape, notes=(str(error),)))
             return False
         if self._rested.get(wish.mode) != wish.rests:
             self._rested[wish.mode] = wish.rests
@@ -288,86 +300,95 @@ class Poser(Stage):
         self._publish(robot, shape)
         if not more:
             self._done = (robot, wish, tension)
-        return more or self._wish is not wish
+        return more or self._fit().wish is not wish
 
     def _publish(self, robot: Robot, shape: Shape) -> None:
         with self._lock:
-            if self._robot is not None and same_body(self._robot, robot):
-                self._shown = _fitted(self._robot, shape)
+            now = self._now
+            if now is not None and same_body(now.robot, robot):
+                self._now = replace(now, shape=fitted(now.robot, shape))
         self._document.bell.ring(Topic.SHAPE)
 
     def _ring(self) -> None:
         self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
 
-    def _fit(self) -> tuple[Robot, Wish]:
-        """The robot as it is now, and a wish that fits it."""
-        robot = self._document.robot
-        if robot is self._robot:
-            return robot, self._wish
+    def _fit(self) -> Now:
+        """What belongs together for the robot as it is now."""
+        now = self._now
+        if now is not None and now.robot is self._document.robot:
+            return now
         with self._lock:
-            before, self._robot = self._robot, robot
-            if before is None or not same_body(before, robot):
-                mode = Mode.CABLES if robot.cables else Mode.MUSCLES
-                self._wish = Wish(mode=mode, rests=self._wish.rests + 1)
-                self._shown, self._hold, self._target = None, None, None
-                self._chosen = self._armed = ""
-                self._anchored = Anchored(robot.body.mesh)
+            robot, before = self._document.robot, self._now
+            if before is not None and before.robot is robot:
+                return before
+            if before is None or not same_body(before.robot, robot):
+                rests = 0 if before is None else before.wish.rests
+                wish = Wish(mode=Mode.CABLES if robot.cables else Mode.MUSCLES, rests=rests + 1)
+                now = Now(robot=robot, wish=wish, anchored=Anchored(robot.body.mesh), shape=rest_shape(robot))
+                self._let_go()
             else:
-                self._wish = _adapted(self._wish, robot)
-                self._shown = None if self._shown is None else _fitted(robot, self._shown)
-            return robot, self._wish
+                now = before.adapted(robot)
+                self._rename(before, now)
+            self._now = now
+            return now
 
-    def _name_under(self, robot: Robot, wish: Wish, hit: Hit) -> str:
+    def _heard(self, topic: Topic) -> None:
+        """Follow each change of markers, also while another stage is shown."""
+        now = self._now
+        if topic is Topic.ROBOT and now is not None and same_body(now.robot, self._document.robot):
+            self._fit()
+
+    def _let_go(self) -> None:
+        """Nothing is chosen, and the pointer holds nothing."""
+        self._hold, self._chosen, self._armed = None, "", ""
+
+    def _rename(self, before: Now, now: Now) -> None:
+        """Follow the new names of markers; let go of those that are gone."""
+        names, hold = renamed(before.robot, now.robot), self._hold
+        self._chosen = now.known(names.get(self._chosen, self._chosen))
+        self._armed = now.known(names.get(self._armed, self._armed))
+        if hold is not None:
+            name = names.get(hold.name, hold.name)
+            gone = hold.point.marker and not now.known(name)
+            self._hold = None if gone else replace(hold, name=name)
+
+    def _name_under(self, now: Now, hit: Hit) -> str:
         """The point that the pointer is on: a marker, one that is held, or a new one; "" beside the body."""
         kind, _, name = hit.key.partition(":")
-        if kind == "marker" and any(marker.name == name for marker in robot.markers):
+        markers = [marker.name for marker in now.robot.markers]
+        if kind == "marker" and name in markers:
             return name
-        if kind in ("target", "point") and name in wish.held:
+        if kind in ("target", "point") and name in now.wish.held:
             return name
         if hit.rest is None:
             return ""
-        near = NEAR * robot.body.mesh.size
-        for own, held in wish.held.items():
+        near = NEAR * now.robot.body.mesh.size
+        for own, held in now.wish.held.items():
             if np.linalg.norm(np.subtract(held.at, hit.rest)) < near:
                 return own
-        return free_name([*wish.held, *(marker.name for marker in robot.markers)], "point")
+        return free_name([*now.wish.held, *markers], "point")
 
-    def _point(self, robot: Robot, wish: Wish, name: str, hit: Hit) -> Held:
+    def _point(self, now: Now, name: str, hit: Hit) -> Held:
         """A point by name, held where it is if it is not held yet."""
-        if name in wish.held:
-            return wish.held[name]
-        for marker in robot.markers:
+        if name in now.wish.held:
+            return now.wish.held[name]
+        for marker in now.robot.markers:
             if marker.name == name:
-                return Held(at=marker.at, target=marker.at)
+                return Held(at=marker.at, target=marker.at, marker=True)
         assert hit.rest is not None
-        mesh = robot.body.mesh
+        mesh = now.robot.body.mesh
         at = tuple(locate(mesh, np.array([hit.rest])).positions(mesh.nodes)[0].tolist())
         return Held(at=at, target=at)
 
-    def _place(self, name: str, point: Held, *, shape: Shape) -> tuple[float, ...]:
+    def _place(self, now: Now, name: str, point: Held) -> tuple[float, ...]:
         """Where a point of the body is [m]."""
-        held = {name: point}
-        return tuple(Anchored(self._document.robot.body.mesh).places(held, shape.nodes)[0].tolist())
+        return tuple(Anchored(now.robot.body.mesh).places({name: point}, now.shape.nodes)[0].tolist())
 
-    def _hold_at(self, name: str, at: Point, target: np.ndarray) -> None:
+    def _hold_at(self, name: str, point: Held, target: np.ndarray) -> None:
         """Wish a point somewhere, though not out of sight."""
-        with self._lock:
-            robot, wish = self._fit()
-            nodes, far = robot.body.mesh.nodes, FARTHEST * robot.body.mesh.size
-            near = np.clip(target, nodes.min(axis=0) - far, nodes.max(axis=0) + far)
-            point = Held(at=at, target=tuple(near.tolist()))
-            self._wish = replace(wish, held={**wish.held, name: point})
-
-
-def _adapted(wish: Wish, robot: Robot) -> Wish:
-    """The same wish for a robot whose markers may have moved, and whose cables may be gone."""
-    places = {marker.name: marker.at for marker in robot.markers}
-    held = {name: replace(point, at=places.get(name, point.at)) for name, point in wish.held.items()}
-    return replace(wish, held=held, mode=wish.mode if robot.cables else Mode.MUSCLES)
-
-
-def _fitted(robot: Robot, shape: Shape) -> Shape:
-    """A shape for a robot whose winches and cables may be others."""
-    if len(shape.tensions) == len(robot.cables) and len(shape.contractions) == len(robot.winches):
-        return shape
-    return replace(shape, tensions=np.zeros(len(robot.cables)), contractions=np.zeros(len(robot.winches)))
+        now = self._fit()
+        mesh = now.robot.body.mesh
+        far = FARTHEST * mesh.size
+        near = np.clip(target, mesh.nodes.min(axis=0) - far, mesh.nodes.max(axis=0) + far)
+        held = {**now.wish.held, name: replace(point, target=tuple(near.tolist()))}
+        self._now = replace(now, wish=replace(now.wish, held=held))

@@ -1,4 +1,4 @@
-"""`with_pose`, `renamed_pose`, `without_pose`, `held_of`: the poses of a robot, changed."""
+"""`with_pose`, `renamed_pose`, `without_pose`, `wishes_after`, `held_of`: the poses of a robot, changed."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -6,10 +6,9 @@ from itertools import count
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Marker, Pose, Robot
+from hydrostat.robot.name import check_name
 from hydrostat.studio.posing.held import Held
-
-LONGEST = 60
-"""No name has more letters."""
+from hydrostat.studio.records.wishes import Wishes
 
 
 def with_pose(robot: Robot, name: str, held: Mapping[str, Held]) -> Robot:
@@ -55,6 +54,18 @@ def without_pose(robot: Robot, name: str) -> Robot:
     return replace(robot, poses={own: pose for own, pose in robot.poses.items() if own != name})
 
 
+def wishes_after(wishes: Wishes, robot: Robot, renamed: Mapping[str, str] | None = None) -> Wishes:
+    """Wishes that name only poses that the robot has.
+
+    Args:
+        wishes: as they were.
+        robot: as it is now.
+        renamed: new names of poses, by their old ones.
+    """
+    names = [(renamed or {}).get(name, name) for name in wishes.poses]
+    return replace(wishes, poses=tuple(name for name in names if name in robot.poses))
+
+
 def held_of(robot: Robot, name: str) -> dict[str, Held]:
     """The targets of a pose, as points that are held.
 
@@ -62,7 +73,8 @@ def held_of(robot: Robot, name: str) -> dict[str, Held]:
         InputError: no such pose.
     """
     places = {marker.name: marker.at for marker in robot.markers}
-    return {own: Held(at=places[own], target=target) for own, target in robot.pose(name).targets.items()}
+    targets = robot.pose(name).targets
+    return {own: Held(at=places[own], target=target, marker=True) for own, target in targets.items()}
 
 
 def free_name(taken: Iterable[str], word: str) -> str:
@@ -72,14 +84,12 @@ def free_name(taken: Iterable[str], word: str) -> str:
 
 
 def checked_name(given: str) -> str:
-    """A name without spaces at its ends.
+    """A name without spaces at its ends, fit for a file of a robot.
 
     Raises:
-        InputError: it is empty, too long or has letters that cannot be printed.
+        InputError: it is empty, too long or has letters that no name has.
     """
     name = given.strip()
     if not name:
         raise InputError("a pose needs a name, such as wave")
-    if len(name) > LONGEST or not name.isprintable():
-        raise InputError(f"a name has at most {LONGEST} letters that can be printed")
-    return name
+    return check_name(name)

@@ -1,45 +1,69 @@
 """`Reach`: all that a marker can reach, as a cloud that grows while it is found."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hydrostat.arrays import Points
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot
+from hydrostat.robot import Point, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.workspace import COUNT, sweep
 from hydrostat.studio.view.things import Cloud
 
 COLOUR = "#1787b8"
 
 
-class Reach:
-    """The cloud of one marker at a time.
+@dataclass(eq=False)
+class _Search:
+    """One search, of one marker of one robot, with what it has found so far."""
 
-    Attributes:
-        marker: whose cloud it is; "" for none.
-        running: whether it still grows.
-    """
+    robot: Robot
+    marker: str
+    tension: float
+    running: bool = True
+    cloud: Cloud | None = None
+
+    def fits(self, robot: Robot, tension: float) -> bool:
+        """Whether it would find the same with this robot and this limit."""
+        same = tension == self.tension and _place(robot, self.marker) == _place(self.robot, self.marker)
+        return same and same_physics(self.robot, robot, Mode.CABLES)
+
+
+class Reach:
+    """The cloud of one marker at a time; it is forgotten when the robot moves in another way."""
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
         """Clouds of the robot of a document."""
         self._document, self._jobs = document, jobs
-        self.marker, self.running = "", False
-        self._robot: Robot | None = None
-        self._cloud: Cloud | None = None
+        self._search: _Search | None = None
+        document.bell.listen(self._heard)
+
+    @property
+    def marker(self) -> str:
+        """Whose cloud it is; "" for none."""
+        return "" if self._search is None else self._search.marker
+
+    @property
+    def running(self) -> bool:
+        """Whether it still grows."""
+        return self._search is not None and self._search.running
 
     def cloud(self, robot: Robot) -> Cloud | None:
-        """What has been found so far, if it is of this body."""
-        fits = self._robot is not None and self._robot.body.mesh is robot.body.mesh
-        return self._cloud if fits else None
+        """What has been found so far, if it holds for this robot."""
+        search = self._search
+        fits = search is not None and search.fits(robot, self._document.work.wishes.tension)
+        return search.cloud if search is not None and fits else None
 
     @property
     def count(self) -> int:
         """How many places have been found."""
-        return 0 if self._cloud is None else len(self._cloud.points)
+        cloud = None if self._search is None else self._search.cloud
+        return 0 if cloud is None else len(cloud.points)
 
     def start(self, marker: str, count: int = COUNT) -> None:
         """Begin to look where a marker can go.
@@ -47,23 +71,28 @@ class Reach:
         Raises:
             InputError: no such marker, no cables, or other work is in progress.
         """
-        robot = self._document.robot
-        if all(own.name != marker for own in robot.markers):
+        robot, tension = self._document.robot, self._document.work.wishes.tension
+        if _place(robot, marker) is None:
             raise InputError(f'there is no marker "{marker}"; choose one')
         if not robot.cables:
             raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
         free = replace(robot, cables=tuple(replace(cable, friction=0.0) for cable in robot.cables))
-        self._jobs.start(
-            f"Reach of {marker}",
-            sweep,
-            free,
-            marker,
-            self._document.work.wishes.tension,
-            count,
-            on_part=lambda points: self._grow(robot, points),
-            on_end=self._end,
-        )
-        self.marker, self.running, self._robot, self._cloud = marker, True, robot, None
+        before, search = self._search, _Search(free, marker, tension)
+        self._search = search  # work may tell something, or be over, before it is said to have begun
+        try:
+            self._jobs.start(
+                f"Reach of {marker}",
+                sweep,
+                free,
+                marker,
+                tension,
+                count,
+                on_part=lambda points: self._grow(search, points),
+                on_end=lambda *_: self._end(search),
+            )
+        except InputError:
+            self._search = before
+            raise
         self._document.bell.ring(Topic.THINGS)
 
     def stop(self) -> None:
@@ -74,16 +103,28 @@ class Reach:
     def clear(self) -> None:
         """Show no cloud."""
         self.stop()
-        self.marker, self._robot, self._cloud = "", None, None
+        self._search = None
         self._document.bell.ring(Topic.THINGS)
 
-    def _grow(self, robot: Robot, points: Points) -> None:
-        if self._robot is not robot:
+    def _heard(self, topic: Topic) -> None:
+        search = self._search
+        if topic is not Topic.ROBOT or search is None or not self._document.is_open:
             return
-        known = points if self._cloud is None else np.concatenate([self._cloud.points, points])
-        self._cloud = Cloud(name="reach", points=known, colour=COLOUR)
+        work = self._document.work
+        if not search.fits(work.robot, work.wishes.tension):
+            self.clear()
+
+    def _grow(self, search: _Search, points: Points) -> None:
+        known = points if search.cloud is None else np.concatenate([search.cloud.points, points])
+        search.cloud = Cloud(name="reach", points=known, colour=COLOUR)
+        if search is self._search:
+            self._document.bell.ring(Topic.THINGS)
+
+    def _end(self, search: _Search) -> None:
+        search.running = False
         self._document.bell.ring(Topic.THINGS)
 
-    def _end(self) -> None:
-        self.running = False
-        self._document.bell.ring(Topic.THINGS)
+
+def _place(robot: Robot, marker: str) -> Point | None:
+    """Where a marker is in the rest shape [m]; None if there is none of this name."""
+    return next((own.at for own in robot.markers if own.name == marker), None)

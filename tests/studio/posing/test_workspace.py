@@ -1,6 +1,7 @@
 """What a marker can reach. Oracles: `Simulation.solve` at the same contractions, a list that keeps what is told."""
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from threading import Event
 from typing import Any
 
@@ -9,12 +10,14 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.errors import InputError
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, Report
 from hydrostat.studio.posing.reach import Reach
 from hydrostat.studio.posing.workspace import spread, sweep
+from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 
 ROBOT = strip_robot(columns=8, rows=2)
@@ -79,7 +82,7 @@ def test_the_cloud_grows_in_another_process() -> None:
         reach.start(ROBOT.markers[0].name, 16)
         with pytest.raises(InputError, match="still in progress"):
             reach.start(ROBOT.markers[0].name, 16)
-        assert ended.wait(60)
+        assert ended.wait(20)
         cloud = reach.cloud(ROBOT)
         assert cloud is not None
         assert 0 < len(cloud.points) == reach.count <= 16
@@ -97,3 +100,62 @@ def test_a_reach_needs_a_marker_and_cables() -> None:
         reach.start("nobody")
     with pytest.raises(InputError, match="no cables"):
         reach.start(ROBOT.markers[0].name)
+
+
+class Begun(Jobs):
+    """Work that tells all, and ends, before `start` returns."""
+
+    def start(self, title: str, function: Any, *arguments: Any, **calls: Any) -> None:
+        """Nothing runs."""
+        calls["on_part"](np.array([[0.01, 0.02]]))
+        calls["on_end"]("")
+
+
+def test_a_reach_that_ends_at_once_has_ended_and_keeps_its_places() -> None:
+    document = Document(Bell())
+    document.open(Work(robot=ROBOT))
+    reach = Reach(document, Begun(document.bell))
+    reach.start(ROBOT.markers[0].name)
+    assert not reach.running
+    cloud = reach.cloud(ROBOT)
+    assert cloud is not None
+    assert len(cloud.points) == reach.count == 1
+
+
+def moved_marker(robot: Robot) -> Robot:
+    first, *others = robot.markers
+    return replace(robot, markers=(replace(first, at=(first.at[0] - 0.002, *first.at[1:])), *others))
+
+
+CHANGES: dict[str, Callable[[Robot], Robot]] = {
+    "cables": lambda robot: replace(robot, cables=robot.cables[:-1]),
+    "travel": lambda robot: replace(
+        robot, winches=tuple(replace(own, travel=0.9 * own.travel) for own in robot.winches)
+    ),
+    "pins": lambda robot: replace(robot, pins=(*robot.pins, *robot.pins)),
+    "marker": moved_marker,
+    "no marker": lambda robot: replace(robot, markers=robot.markers[1:], poses={}),
+}
+
+
+@pytest.mark.parametrize("what", list(CHANGES))
+def test_places_of_other_physics_are_forgotten(what: str) -> None:
+    document = Document(Bell())
+    document.open(Work(robot=ROBOT))
+    reach = Reach(document, Begun(document.bell))
+    reach.start(ROBOT.markers[0].name)
+    document.change("poses", robot=replace(ROBOT, poses={}))
+    assert reach.cloud(document.robot) is not None, "poses move nothing"
+    document.change(what, robot=CHANGES[what](document.robot))
+    assert reach.cloud(document.robot) is None
+    assert not reach.marker
+
+
+def test_places_within_another_limit_are_forgotten() -> None:
+    document = Document(Bell())
+    document.open(Work(robot=ROBOT))
+    reach = Reach(document, Begun(document.bell))
+    reach.start(ROBOT.markers[0].name)
+    document.change("limit", wishes=replace(Wishes(), tension=3.0))
+    assert reach.cloud(document.robot) is None
+    assert reach.count == 0

@@ -66,6 +66,7 @@ def _row(page: Page, name: str, chosen: bool) -> ui.label:
         ui.space()
         figure = ui.label().classes("studio-figure").mark(f"pose-error-{name}")
         clear = ui.button(icon="close", on_click=page.doing(poser.clear, name), color=None)
-        clear.props(f'flat round dense size=sm aria-label="Let go of {name}"').style("color: var(--muted)")
+        clear.props("flat round dense size=sm").style("color: var(--muted)")
+        clear.props["aria-label"] = f"Let go of {name}"
         clear.tooltip("Let go")
     return figure

@@ -57,10 +57,12 @@ def _row(page: Page, name: str) -> None:
         show.props("flat dense no-caps align=left").classes("flex-1").style("min-width: 0; color: var(--ink)")
         show.tooltip("Go there").mark(f"pose-show-{name}")
         rename = ui.button(icon="edit", on_click=lambda: _ask_name(page, name), color=None)
-        rename.props(f'flat round dense size=sm aria-label="Rename {name}"').style("color: var(--muted)")
+        rename.props("flat round dense size=sm").style("color: var(--muted)")
+        rename.props["aria-label"] = f"Rename {name}"
         rename.tooltip("Rename")
         delete = ui.button(icon="delete_outline", on_click=page.doing(poser.delete_pose, name), color=None)
-        delete.props(f'flat round dense size=sm aria-label="Delete {name}"').style("color: var(--muted)")
+        delete.props("flat round dense size=sm").style("color: var(--muted)")
+        delete.props["aria-label"] = f"Delete {name}"
         delete.tooltip("Delete")
 
 
