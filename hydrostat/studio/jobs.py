@@ -83,7 +83,7 @@ class Jobs:
         *arguments: Any,
         on_part: Callable[[Any], None] | None = None,
         on_done: Callable[[Any], None] | None = None,
-        on_end: Callable[[], None] | None = None,
+        on_end: Callable[[str], None] | None = None,
     ) -> None:
         """Run `function(report, *arguments)` in a process of its own.
 
@@ -95,7 +95,8 @@ class Jobs:
             arguments: values that can be pickled, as must be what it returns.
             on_part: called with each part that it reports, in a thread of this process.
             on_done: called with what it returns, likewise.
-            on_end: called in the end, whatever came of it.
+            on_end: called in the end, whatever came of it, with why nothing did, "" if something did; other work may
+                have begun by then.
 
         Raises:
             InputError: other work is in progress.
@@ -110,7 +111,7 @@ class Jobs:
             worker = spare if spare is not None and spare.process.is_alive() else _Worker.started()
             self._worker, self.state = worker, JobState(title=title)
         self._bell.ring(Topic.JOB)
-        calls = (on_part or _nothing, on_done or _nothing, on_end)
+        calls = (on_part or _nothing, on_done or _nothing, on_end or _nothing)
         Thread(target=self._follow, args=(worker, function, arguments, *calls), name=title, daemon=True).start()
 
     def stop(self) -> None:
@@ -145,7 +146,7 @@ class Jobs:
         arguments: tuple[Any, ...],
         on_part: Callable[[Any], None],
         on_done: Callable[[Any], None],
-        on_end: Callable[[], None] | None,
+        on_end: Callable[[str], None],
     ) -> None:
         """Hand the work over and hear what the process says until it ends; in a thread of its own."""
         patience = 0.0
@@ -162,10 +163,10 @@ class Jobs:
             logging.getLogger("hydrostat").exception("work in another process failed")
             error = f"{type(failed).__name__}: {failed}"
         worker.end(patience)
-        stopped = self.state is not None and self.state.stopping
-        self._note(running=False, error="stopped" if error and stopped else error)
-        if on_end is not None:
-            on_end()
+        if error and self.state is not None and self.state.stopping:
+            error = "stopped"
+        self._note(running=False, error=error)
+        on_end(error)
 
     def _begun(self, worker: "_Worker") -> None:
         """The process has its work: it can be asked to stop."""

@@ -26,14 +26,20 @@ class Heard:
     """All that was told of one work."""
 
     def __init__(self, jobs: Jobs) -> None:
-        self.jobs, self.parts, self.results = jobs, [], []
+        self.jobs, self.parts, self.results, self.errors = jobs, [], [], []
+        self.begun = False
         self.ended, self.parted = threading.Event(), threading.Event()
 
     def begin(self, function: Callable[..., Any], *arguments: Any) -> "Heard":
+        self.begun = True
         self.jobs.start(
-            "Working", function, *arguments, on_part=self.part, on_done=self.results.append, on_end=self.ended.set
+            "Working", function, *arguments, on_part=self.part, on_done=self.results.append, on_end=self.over
         )
         return self
+
+    def over(self, error: str) -> None:
+        self.errors.append(error)
+        self.ended.set()
 
     def part(self, value: Any) -> None:
         self.parts.append(value)
@@ -108,6 +114,22 @@ def test_why_work_failed_is_told_and_the_next_is_done(heard: Heard, function: An
     assert again.results == [4]
 
 
+def test_the_end_is_told_of_its_own_work_though_other_work_has_begun(jobs: Jobs) -> None:
+    """The worst moment: other work begins when the state says that none runs, just before the end is told."""
+    first, second = Heard(jobs), Heard(jobs)
+
+    def hear(topic: Topic) -> None:
+        if not jobs.running and not second.begun:
+            second.begin(works.add, 1)
+
+    first.begin(works.refuse)
+    jobs._bell.listen(hear)
+    assert first.ended.wait(PATIENCE)
+    second.end()
+    assert first.errors == ["2 winches and 1 cable: ask for more"]
+    assert second.errors == [""]
+
+
 def test_arguments_that_cannot_be_sent(heard: Heard) -> None:
     state = heard.begin(works.add, threading.Lock()).end()
     assert "pickle" in state.error
@@ -121,7 +143,7 @@ def test_what_goes_wrong_on_this_side_ends_the_work(heard: Heard) -> None:
         pids.append(pid)
         raise InputError("not this one")
 
-    heard.jobs.start("Waiting", works.wait, on_part=refuse, on_end=ended.set)
+    heard.jobs.start("Waiting", works.wait, on_part=refuse, on_end=lambda error: ended.set())
     assert ended.wait(PATIENCE)
     assert heard.jobs.state is not None
     assert heard.jobs.state.error == "not this one"

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from hydrostat.design import RouteOptions
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.designing.asked import asked_for, wished_poses
+from hydrostat.studio.designing.asked import Asked, asked_for, wished_poses
 from hydrostat.studio.designing.candidate import Candidate, Reach, network_words, told_error
 from hydrostat.studio.designing.design_work import Found, Glimpse, design_work
 from hydrostat.studio.designing.ease import Ease
@@ -165,7 +166,8 @@ class Designer(Stage):
             asked=asked, began=time.monotonic(), rest=error_at_rest(robot, asked.poses), best=beginning(asked)
         )
         self._running, self.outcome = True, ""
-        calls: dict[str, Any] = {"on_part": self._glimpsed, "on_done": self._found, "on_end": self._ended}
+        ended = partial(self._ended, asked)
+        calls: dict[str, Any] = {"on_part": self._glimpsed, "on_done": self._found, "on_end": ended}
         try:
             self._jobs.start(TITLE, design_work, asked, **calls)
         except InputError:
@@ -331,11 +333,12 @@ class Designer(Stage):
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
 
-    def _ended(self) -> None:
+    def _ended(self, asked: Asked, error: str) -> None:
         """Called in a thread of the jobs, whatever came of it."""
-        state = self._jobs.state
-        if state is not None and state.error:
-            self.outcome = "stopped before there was a network" if state.error == "stopped" else state.error
+        if self.run is None or self.run.asked is not asked:
+            return  # the next design has begun
+        if error:
+            self.outcome = "stopped before there was a network" if error == "stopped" else error
         self._running = False
         self._jobs.warm(MODULE)
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)

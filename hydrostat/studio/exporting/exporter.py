@@ -51,6 +51,8 @@ class Exporter(Stage):
     """What a person takes home: kit, report, pictures, the robot itself. All is in memory until it is downloaded.
 
     A result is that of one robot: it is not shown once the robot has changed, and is back if the change is undone.
+    How the next kit is made, its method, motor and paper, is of this sitting: it is not part of the robot, is not saved
+    with it, and is not undone.
 
     Attributes:
         options: of the next kit.
@@ -67,6 +69,7 @@ class Exporter(Stage):
         self.errors: dict[Export, str] = {}
         self._made: dict[Export, _Made] = {}
         self._posed: _Made | None = None
+        self._turn: object = None
 
     @property
     def kit(self) -> KitMade | None:
@@ -197,19 +200,29 @@ class Exporter(Stage):
     def _start(self, export: Export, title: str, function: Callable[..., Any], *arguments: Any) -> None:
         robot = self._document.robot
 
+        turn = object()
+
         def keep(value: Any) -> None:
             self._made[export] = _Made(robot, value)
+            self.errors.pop(export, None)
 
-        def end() -> None:
-            state = self._jobs.state
-            self.busy = None
-            if state is not None and state.error and state.error != "stopped":
-                self.errors[export] = state.error
+        def end(error: str) -> None:
+            if self._turn is turn:
+                self.busy = None
+            if error and error != "stopped":
+                self.errors[export] = error
             self._document.bell.ring(Topic.JOB)
 
-        self._jobs.start(title, function, robot, *arguments, on_done=keep, on_end=end)
-        self.busy = export
-        self.errors.pop(export, None)
+        before = self.busy, self._turn
+        self.busy, self._turn = export, turn  # before it starts: it may be at its end at once
+        failed = self.errors.pop(export, None)
+        try:
+            self._jobs.start(title, function, robot, *arguments, on_done=keep, on_end=end)
+        except InputError:
+            self.busy, self._turn = before
+            if failed is not None:
+                self.errors[export] = failed
+            raise
 
     def _result(self, export: Export) -> Any:
         made = self._made.get(export)

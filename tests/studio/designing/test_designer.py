@@ -1,8 +1,9 @@
 """The stage design with real searches in real processes. Oracles: `design_cables` here, the network that was shown."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,9 +14,12 @@ from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
-from hydrostat.studio.bell import Topic
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.designing.designer import Designer
 from hydrostat.studio.designing.ease import DURATION
 from hydrostat.studio.designing.run import error_at_rest
+from hydrostat.studio.document import Document
+from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
@@ -187,6 +191,36 @@ def test_stopped_twice_there_is_none(fresh: Studio) -> None:
     assert fresh.designer.candidates == ()
     assert fresh.designer.outcome == "stopped before there was a network"
     assert fresh.designer.step(0.0) is False
+
+
+class Waiting(Jobs):
+    """Keeps what is to be called, and does nothing."""
+
+    def __init__(self, bell: Bell) -> None:
+        super().__init__(bell)
+        self.ends: list[Callable[[str], None]] = []
+
+    def start(self, title: str, function: Callable[..., Any], *arguments: Any, **calls: Any) -> None:
+        """Nothing begins."""
+        self.ends.append(calls["on_end"])
+
+    def warm(self, *modules: str) -> None:
+        """Nothing is made ready."""
+
+
+def test_the_end_of_one_design_does_not_end_the_next(strip: Robot) -> None:
+    bell = Bell()
+    document = Document(bell)
+    document.open(Work(robot=strip))
+    jobs = Waiting(bell)
+    designer = Designer(document, jobs, options=FAST)
+    designer.design()
+    designer.design()
+    jobs.ends[0]("no network was found")
+    assert designer.running
+    jobs.ends[1]("stopped")
+    assert not designer.running
+    assert designer.outcome == "stopped before there was a network"
 
 
 def test_what_the_search_refuses_is_told(fresh: Studio) -> None:

@@ -3,9 +3,11 @@
 import io
 import xml.etree.ElementTree as ET
 import zipfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
+from typing import Any
 
 import numpy as np
 import pytest
@@ -142,6 +144,29 @@ def test_failed_work_says_why(exporter: Exporter) -> None:
     finished(exporter)
     assert exporter.kit is None
     assert "none such" in exporter.errors[Export.KIT]
+
+
+class Hasty(Jobs):
+    """Work that fails before its start returns."""
+
+    def start(self, title: str, function: Callable[..., Any], *arguments: Any, **calls: Any) -> None:
+        """It has failed already."""
+        calls["on_end"]("no process could be started")
+
+
+def test_work_that_fails_at_once_leaves_nothing_busy(exporter: Exporter) -> None:
+    hasty = Exporter(exporter._document, Hasty(exporter._document.bell))
+    hasty.make_report()
+    assert hasty.busy is None
+    assert hasty.errors == {Export.REPORT: "no process could be started"}
+
+
+def test_work_that_is_refused_leaves_all_as_it_was(exporter: Exporter) -> None:
+    exporter.make_pictures()
+    with pytest.raises(InputError, match="in progress"):
+        exporter.make_report()
+    assert exporter.busy is Export.PICTURES
+    exporter._jobs.close()
 
 
 def test_a_robot_without_cables_has_no_kit(exporter: Exporter) -> None:
