@@ -91,6 +91,21 @@ def test_ghosts_clouds_and_areas_come_along(robot: Robot) -> None:
     assert not picture.fits(robot, [area, ghost, Cloud(name="reach", points=mesh.nodes[:6], colour="#0b5fa5")])
 
 
+def test_corners_beside_the_body_go_along_with_the_nearest_place(robot: Robot) -> None:
+    mesh = robot.body.mesh
+    inside = mesh.nodes[mesh.elements[0]].mean(axis=0)
+    outside = mesh.nodes.max(axis=0) + 0.02
+    third = np.where(np.arange(mesh.dim) == 0, outside, inside)
+    corners = np.array([inside, outside, third])
+    area = Area(key="zone:0", colour="#c8243f", outline=tuple(tuple(corner.tolist()) for corner in corners))
+    picture = Picture(robot, [area], 1)
+    _, arrays = opened(picture.frame(mesh.nodes, [area], {}))
+    assert np.allclose(arrays["points"][:, : mesh.dim], corners, atol=1e-6)
+    shift = np.arange(1, mesh.dim + 1) * 0.01
+    _, arrays = opened(picture.frame(mesh.nodes + shift, [area], {}))
+    assert np.allclose(arrays["points"][:, : mesh.dim], corners + shift, atol=1e-6)
+
+
 def test_values_are_those_of_the_shown_nodes(robot: Robot) -> None:
     mesh = robot.body.mesh
     values = np.linspace(0.0, 1.0, len(mesh.nodes))

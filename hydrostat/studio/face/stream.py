@@ -35,11 +35,6 @@ class Stream:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._latest: Shown | None = None
 
-    @property
-    def count(self) -> int:
-        """How many screens there are."""
-        return len(self._screens)
-
     def publish(self, shown: Shown) -> None:
         """Hand a picture to all screens; from any thread."""
         self._latest = shown

@@ -15,6 +15,7 @@ from hydrostat.studio.face.panels.export_panel import export_panel
 from hydrostat.studio.face.panels.pose_panel import pose_panel
 from hydrostat.studio.face.panels.start_panel import start_panel
 from hydrostat.studio.face.save_dialog import save_dialog
+from hydrostat.studio.face.stage_words import STAGES
 from hydrostat.studio.face.theme import dress
 from hydrostat.studio.face.tour import Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
@@ -30,16 +31,6 @@ PANELS = {
     StageName.DRIVE: drive_panel,
     StageName.EXPORT: export_panel,
 }
-
-TITLES = {
-    StageName.START: ("Start", "home"),
-    StageName.EDIT: ("Edit", "edit"),
-    StageName.POSE: ("Pose", "back_hand"),
-    StageName.DESIGN: ("Design", "auto_awesome"),
-    StageName.DRIVE: ("Drive", "tune"),
-    StageName.EXPORT: ("Export", "ios_share"),
-}
-
 
 Ask = Callable[[], Any]
 
@@ -93,10 +84,10 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
         ui.space()
         with ui.element("div").classes("studio-stages"):
             buttons = {
-                stage: ui.button(title, icon=icon, color=None, on_click=partial(page.go, stage))
+                stage: ui.button(words.title, icon=words.icon, color=None, on_click=partial(page.go, stage))
                 .props(f'flat no-caps dense data-testid="stage-{stage}"')
                 .classes("studio-stage")
-                for stage, (title, icon) in TITLES.items()
+                for stage, words in STAGES.items()
             }
         ui.space()
         undo = _tool("undo", "Undo", session.undo)

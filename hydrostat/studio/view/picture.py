@@ -83,7 +83,7 @@ class Picture:
         """
         points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
         if self._stuck.any():
-            points[self._stuck] = self._anchors.positions(nodes)
+            points[self._stuck] = self._anchors.positions(nodes) + self._beside
         loads = np.array([thing.load for thing in things if isinstance(thing, Line)], dtype=np.float32)
         arrays = {"nodes": _in_space(nodes[self._shown]), "points": _in_space(points), "loads": loads}
         if values is not None:
@@ -94,6 +94,11 @@ class Picture:
     def _anchors(self) -> Anchors:
         """The points that are stuck to the body."""
         return locate(self.robot.body.mesh, self._rest[self._stuck])
+
+    @cached_property
+    def _beside(self) -> Points:
+        """How far they lie from the body at rest, such as corners of a zone that goes beyond it; 0 on the body [m]."""
+        return self._rest[self._stuck] - self._anchors.positions(self.robot.body.mesh.nodes)
 
 
 def _shown_nodes(robot: Robot) -> np.ndarray:

@@ -108,7 +108,7 @@ export class View extends Shown {
     if (!only("hover", "drag")) this.point();
     this.paint();
     if (!dirty.has("frame") && !dirty.has("bare")) return;
-    if (this.unseen) this.send({ kind: "seen", count: this.unseen });
+    if (this.unseen) this.send({ kind: "seen", count: Math.min(this.unseen, 1000) });
     this.unseen = 0;
     if (fresh) this.probe.saw(this.stamp ?? 0, performance.now() - start);
   }
