@@ -91,11 +91,14 @@ def kit_result(page: Page) -> None:
 
 
 def _refused(page: Page, kit: KitMade) -> None:
-    ui.label("It cannot be built well as it is:").classes("studio-section")
+    refused = ui.label("It cannot be built well as it is").classes("studio-section").props('data-testid="kit-refused"')
     for reason in kit.refused:
         _line(reason, "error_outline", "export-bad")
     button = ui.button("Make it all the same", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
     button.props("outline no-caps").classes("w-full").props('data-testid="make-forced"')
+    ui.run_javascript(  # once it is drawn
+        f"setTimeout(() => getHtmlElement({refused.id})?.scrollIntoView({{block: 'nearest', behavior: 'smooth'}}), 100)"
+    )
 
 
 def _pages(kit: KitMade) -> None:
