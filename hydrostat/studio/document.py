@@ -49,6 +49,7 @@ class Document:
     Attributes:
         bell: rung after each change.
         folder: where the robot is saved; None: nowhere yet.
+        text: of the robot.toml that it was opened from; "": none.
         stamp: of that folder when it was opened or saved last (`folder_stamp`).
         serial: counts the changes, undoing included; the same number means the same work.
     """
@@ -56,7 +57,7 @@ class Document:
     def __init__(self, bell: Bell) -> None:
         self.bell = bell
         self.folder: Path | None = None
-        self.stamp = ""
+        self.stamp = self.text = ""
         self.serial = 0
         self._lock = RLock()
         self._past: list[Change] = []
@@ -110,7 +111,9 @@ class Document:
         """What would be done again; "" if nothing can be."""
         return self._future[-1].label if self._future else ""
 
-    def open(self, work: Work, *, folder: Path | None = None, saved: bool = True, stamp: str | None = None) -> None:
+    def open(
+        self, work: Work, *, folder: Path | None = None, saved: bool = True, stamp: str | None = None, text: str = ""
+    ) -> None:
         """Begin with a robot; what was open before is left as it was.
 
         Args:
@@ -118,10 +121,11 @@ class Document:
             folder: where it is saved; None: nowhere yet.
             saved: whether the folder has all of it.
             stamp: of the folder when the work was read from it; None: it was read just now.
+            text: of the robot.toml that it was read from; "": none.
         """
         with self._lock:
             self._past, self._future = [Change("open", work)], []
-            self.folder, self._saved = folder, work if saved else None
+            self.folder, self._saved, self.text = folder, work if saved else None, text
             self.stamp = "" if folder is None else folder_stamp(folder) if stamp is None else stamp
             self.serial += 1
         self.bell.ring(Topic.ROBOT, Topic.STAGE, Topic.SHAPE, Topic.THINGS)

@@ -202,7 +202,7 @@ class Session:
         if folder is None:
             raise InputError("choose a folder to save this robot in")
         work = self.document.work  # it may be changed while it is written
-        save_work(work, folder)
+        save_work(work, folder, self.document.text)
         self.document.mark_saved(folder, work)
         self.tell(f"saved in {folder}", Tone.GOOD)
 

@@ -58,7 +58,7 @@ def read_studio_file(folder: Path) -> StudioFile:
         return StudioFile.model_validate_json(content)
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(map(str, first["loc"]))
-        raise InputError(units.printable(f"{FILE}: {place[:80]}: {first['msg']}"[:300])) from None
+        place = ".".join(map(str, first["loc"]))[:80]
+        raise InputError(units.printable(": ".join(filter(None, (FILE, place, first["msg"])))[:300])) from None
     except InputError as error:
         raise InputError(f"{FILE}: {error}") from None

@@ -42,14 +42,19 @@ def open_note(folder: Path) -> str:
     return ""
 
 
-def save_work(work: Work, folder: Path) -> None:
+def save_work(work: Work, folder: Path, text: str = "") -> None:
     """Write everything into a folder; a robot.toml that is there keeps its comments and its form where it can.
+
+    Args:
+        work: to write.
+        folder: where.
+        text: of the robot.toml that the work began with, whose comments go along into a new folder; "": none.
 
     Raises:
         InputError: a name that is not allowed, or a folder that cannot be written.
     """
     folder = _home(folder)
-    save_robot(work.robot, folder, text=_text(work, folder))
+    save_robot(work.robot, folder, text=_text(work, folder, text))
     if (folder / studio_file.FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes():
         write_studio_file(folder, work.timeline, work.wishes)
 
@@ -133,12 +138,21 @@ def _is_other(file: Path, content: bytes) -> bool:
         return True
 
 
-def _text(work: Work, folder: Path) -> str:
+def _text(work: Work, folder: Path, origin: str) -> str:
     """The text of robot.toml that will be."""
     try:
-        return merged_text(read_text(folder / FILE), work.robot)
+        before = read_text(folder / FILE) if (folder / FILE).is_file() else origin
+        return merged_text(before, work.robot) if before else robot_text(work.robot)
     except InputError:
         return robot_text(work.robot)
+
+
+def text_of(folder: Path) -> str:
+    """The text of robot.toml in a folder; "" if there is none."""
+    try:
+        return read_text(_home(folder) / FILE)
+    except InputError:
+        return ""
 
 
 def _home(folder: Path) -> Path:

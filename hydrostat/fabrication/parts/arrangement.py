@@ -184,8 +184,9 @@ def _alone(place: Place, thickness: float) -> list[str]:
     found = []
     if place.outside > TOUCHES:
         share = 100 * place.outside / place.footprint.area
+        words = f"{share:.0f}" if share >= 1 else "less than 1"
         found.append(
-            f"{place.box.words} does not lie within the seam in any turn about its place, {share:.0f} % of it would be "
+            f"{place.box.words} does not lie within the seam in any turn about its place, {words} % of it would be "
             "outside: move the winch inwards, or take a smaller motor or spool"
         )
     if place.depth > (1 + GIVES) * thickness:

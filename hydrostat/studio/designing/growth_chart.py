@@ -35,4 +35,4 @@ def growth_chart(run: Run, seconds: float) -> str:
         f'<polygon points="{area}" class="chart-area"/><polyline points="{line}" class="chart-line"/>'
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" class="chart-now"/>'
     )
-    return chart.drawn(inside, label=f"error of the best network, now {errors[-1]:.2g} mm")
+    return chart.drawn(inside, label=f"error of the best network, now {errors[-1]:.1f} mm")

@@ -153,7 +153,7 @@ class Exporter(Stage):
         name = file_name(work.robot.name)
         with TemporaryDirectory() as scratch:
             folder = Path(scratch)
-            save_work(work, folder)
+            save_work(work, folder, self._document.text)
             paths = [path for path in folder.rglob("*") if path.is_file()]
             files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Robot")

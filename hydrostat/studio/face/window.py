@@ -71,6 +71,7 @@ def build_window(session: Session) -> Page:
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
     ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
     ui.timer(HEARTBEAT, page.beat)
+    ui.timer(0.0, partial(_recall, dark), once=True)
     offer_tour(tour)
     return page
 
@@ -118,10 +119,25 @@ def _tool(icon: str, words: str, action: Ask) -> ui.button:
     return button.props(f'flat round dense aria-label="{words}"').classes("studio-tool").tooltip(words)
 
 
+async def _recall(dark: ui.dark_mode) -> None:
+    """Light or dark as this browser had it last; as the system says if it was never chosen."""
+    try:
+        kept = await ui.run_javascript(f"localStorage.getItem('{DARK}')", timeout=10.0)
+    except TimeoutError:  # the window is gone
+        return
+    if kept is not None:
+        dark.set_value(kept == "true")
+
+
 async def _switch(dark: ui.dark_mode) -> None:
     """Light if it is dark now, and dark if it is light."""
-    dark.set_value(not await ui.run_javascript("Quasar.Dark.isActive", timeout=10.0))
+    now = not await ui.run_javascript("Quasar.Dark.isActive", timeout=10.0)
+    dark.set_value(now)
+    ui.run_javascript(f"localStorage.setItem('{DARK}', {str(now).lower()})")
 
+
+DARK = "hydrostat-dark"
+"""What a browser remembers it under."""
 
 SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 

@@ -17,7 +17,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.starting.held_folder import HeldFolder, is_held
-from hydrostat.studio.work_folder import open_work, save_work
+from hydrostat.studio.work_folder import open_work, save_work, text_of
 
 PATIENCE = 2.0
 """Work is kept when nothing has changed for so long [s]."""
@@ -123,7 +123,7 @@ class Autosave:
             InputError: it cannot be read any more.
         """
         work = open_work(left.folder / "work")
-        self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp)
+        self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp, text=text_of(left.folder / "work"))
         if self._keep():
             self.forget(left)
 
@@ -161,7 +161,7 @@ class Autosave:
         self._count += 1
         home = self._held.path
         part, whole = home / f"{self._count}.part", home / str(self._count)
-        save_work(work, part / "work")
+        save_work(work, part / "work", self._document.text)
         origin, stamp = self._document.folder, self._document.stamp
         meta = {
             "name": work.robot.name,

@@ -22,7 +22,7 @@ from hydrostat.studio.starting.sketch import Sketch, make_sketch
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.shape import Shape, rest_shape
 from hydrostat.studio.view.things import Thing
-from hydrostat.studio.work_folder import open_work
+from hydrostat.studio.work_folder import open_work, text_of
 
 TITLE = "Meshing"
 
@@ -81,7 +81,7 @@ class Starter(Stage):
 
     def open_gallery(self, folder: Path) -> None:
         """Open a copy of a gallery robot, which Save asks a folder for."""
-        self._document.open(Work(robot=load_robot(folder)))
+        self._document.open(Work(robot=load_robot(folder)), text=text_of(folder))
 
     def open_folder(self, text: str) -> None:
         """Open the robot in a folder.
@@ -96,7 +96,8 @@ class Starter(Stage):
             work = open_work(folder)
         except (OSError, ValueError, RuntimeError) as error:
             raise InputError(f"this folder cannot be read ({error})") from None
-        self._document.open(work, folder=folder.parent if folder.suffix == ".toml" else folder)
+        home = folder.parent if folder.suffix == ".toml" else folder
+        self._document.open(work, folder=home, text=text_of(home))
 
     def recent(self) -> list[Card]:
         """Robots that were open lately, then those of the working folder; each once, those of one name told apart."""

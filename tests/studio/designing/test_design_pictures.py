@@ -91,7 +91,7 @@ def test_the_error_falls_in_steps_from_rest_to_now() -> None:
     floor = Chart(width=316, height=132, across=4, up=21, name="", below="").y(0.0)
     levels = (floor - np.array(heights)) / (floor - heights[0])
     np.testing.assert_allclose(levels, [1, 1, 0.5, 0.5, 0.25, 0.25], atol=0.01)
-    assert "now 5 mm" in svg
+    assert "now 5.0 mm" in svg
 
 
 def test_a_design_that_has_found_nothing_yet_has_a_chart() -> None:

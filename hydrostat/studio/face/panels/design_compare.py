@@ -99,5 +99,5 @@ def _words(one: Candidate, own: tuple[int, ...]) -> str:
     return (
         f"<b>{told_error(one.error)}</b><span>{note}</span><br>"
         f"<span>{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}<br>"
-        f"{1e3 * one.length:.0f} mm, {one.tension:.2g} N</span>"
+        f"{1e3 * one.length:.0f} mm, {one.tension:.1f} N</span>"
     )

@@ -14,10 +14,10 @@ async def may_leave(page: Page) -> bool:
         ui.label(f"{document.robot.name} is not saved").classes("studio-title")
         ui.label("Another robot takes its place, and what was changed is lost.").classes("studio-hint")
         with ui.row().classes("w-full justify-end"):
-            ui.button("Keep it", on_click=lambda: dialog.submit(False)).props("flat no-caps").props(
+            ui.button("Go back", on_click=lambda: dialog.submit(False)).props("flat no-caps").props(
                 'data-testid="leave-no"'
             )
-            leave = ui.button("Leave it", on_click=lambda: dialog.submit(True)).props(
+            leave = ui.button("Throw the changes away", on_click=lambda: dialog.submit(True)).props(
                 "unelevated no-caps color=negative"
             )
             leave.props('data-testid="leave-yes"')

@@ -22,9 +22,11 @@ def poses_card(page: Page) -> None:
 
     def store() -> None:
         given = name.value or free_name(document.robot.poses, "pose")
-        before = document.serial
+        before, replaced = document.serial, given in document.robot.poses
         page.act(poser.store, given)
         if document.serial != before:
+            if replaced:
+                page.tell(f"{given} was there and is replaced; undo brings it back")
             name.set_value("")
 
     def draw() -> None:

@@ -1,0 +1,176 @@
+"""Pictures of the studio for the docs, one of each stage, taken in a real browser.
+
+    python docs/studio_pictures.py      # writes docs/pictures/studio_*.png
+
+It needs the extra `test` and Debian's chromium.
+"""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from os import environ
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from PIL import Image
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from hydrostat.robot import gallery_folder
+
+PICTURES = Path(__file__).parent / "pictures"
+
+FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+
+SIZE = {"width": 1280, "height": 800}
+
+COLOURS = 128
+"""Of a picture; felt and paper are few."""
+
+
+@contextmanager
+def studio(robot: str | None) -> Iterator[str]:
+    """A studio that runs; its address."""
+    command = [sys.executable, "-c", "from hydrostat.cli.main import main; main()", "studio", "--no-browser"]
+    command += [] if robot is None else [str(gallery_folder(robot))]
+    with (
+        TemporaryDirectory() as state,
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, env={**environ, "XDG_STATE_HOME": state}, cwd=state
+        ) as process,
+    ):
+        assert process.stdout is not None
+        yield process.stdout.readline().split("at ", 1)[1].split()[0]
+        process.terminate()
+
+
+@contextmanager
+def window(browser: Browser, robot: str | None, *, dark: bool = False) -> Iterator[Page]:
+    """A window on a studio."""
+    with studio(robot) as address:
+        context = browser.new_context(viewport=SIZE, color_scheme="dark" if dark else "light")
+        context.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
+        page = context.new_page()
+        page.set_default_timeout(240_000)
+        page.goto(address)
+        if robot is not None:
+            page.wait_for_function("window.__app && window.__app.painted > 0")
+        yield page
+        context.close()
+
+
+def go(page: Page, stage: str) -> None:
+    """Show a stage."""
+    page.get_by_test_id(f"stage-{stage}").click()
+
+
+def settle(page: Page) -> None:
+    """Wait until nothing has been painted for a while."""
+    before = -1
+    while (now := page.evaluate("window.__app ? __app.painted : 0")) != before:
+        before = now
+        page.wait_for_timeout(1200)
+
+
+def drag(page: Page, key: str, dx: float, dy: float) -> None:
+    """Drag a sign by so many pixels."""
+    page.wait_for_function("key => __app.things.some(t => t.key === key)", arg=key)
+    at = page.evaluate("key => __app.things.find(t => t.key === key)", key)
+    page.mouse.move(at["x"], at["y"])
+    page.mouse.down()
+    for step in range(1, 13):
+        page.mouse.move(at["x"] + dx * step / 12, at["y"] + dy * step / 12)
+        page.wait_for_timeout(60)
+    page.mouse.up()
+
+
+def keep(page: Page, name: str) -> None:
+    """Write what is seen."""
+    page.mouse.move(640, 795)
+    settle(page)
+    file = PICTURES / f"studio_{name}.png"
+    page.screenshot(path=file)
+    few = Image.open(file).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+    few.save(file, optimize=True)
+    print(f"{file.name}: {file.stat().st_size / 1e3:.0f} kB")
+
+
+def take_start(browser: Browser) -> None:
+    """The gallery."""
+    with window(browser, None) as page:
+        page.get_by_text("Gallery").wait_for()
+        page.wait_for_timeout(1500)
+        keep(page, "start")
+
+
+def take_starfish(browser: Browser) -> None:
+    """Edit, pose, design, drive, export of a flat robot."""
+    with window(browser, "starfish") as page:
+        drag(page, "marker:right", -50, -70)
+        drag(page, "marker:left", 40, -60)
+        keep(page, "pose")
+        go(page, "edit")
+        page.wait_for_function("__app.things.some(t => t.key === 'via:0:2')")
+        at = page.evaluate("__app.things.find(t => t.key === 'via:0:2')")
+        page.mouse.click(at["x"], at["y"])
+        keep(page, "edit")
+        go(page, "design")
+        page.get_by_test_id("design-go").click()
+        page.get_by_test_id("design-card").first.wait_for()
+        page.get_by_test_id("design-go").wait_for()
+        page.get_by_test_id("design-show-pose").first.click()
+        keep(page, "design")
+        page.get_by_test_id("design-accept").click()
+        go(page, "drive")
+        for time, left, right in ((0.0, 0, 0), (1.0, 20, 5), (2.2, 4, 24), (3.2, 18, 18), (4.0, 0, 0)):
+            line = page.locator("svg[aria-label=Timeline]").bounding_box()
+            assert line is not None
+            page.mouse.click(line["x"] + 18 + (line["width"] - 36) * time / 4.0, line["y"] + 12)
+            page.wait_for_timeout(400)
+            for winch, value in (("winch_1", left), ("winch_2", right)):
+                box = page.get_by_label(f"{winch}, millimetres")
+                box.fill(str(value))
+                box.press("Enter")
+            page.get_by_text("Add").first.click()
+            page.wait_for_timeout(400)
+        keep(page, "drive")
+
+
+def take_kit(browser: Browser) -> None:
+    """A kit, with its pages."""
+    with window(browser, "starfish") as page:
+        go(page, "export")
+        page.get_by_test_id("make-kit").click()
+        page.locator("[data-testid^=download-]").first.wait_for()
+        keep(page, "export")
+
+
+def take_hand(browser: Browser) -> None:
+    """A body in space, in the dark, coloured by strain."""
+    with window(browser, "cupping_hand", dark=True) as page:
+        drag(page, "marker:index", 30, 110)
+        page.get_by_label("Colours").click()
+        page.get_by_text("Strain", exact=True).click()
+        page.keyboard.press("Escape")
+        keep(page, "hand")
+
+
+TAKES = {"start": take_start, "starfish": take_starfish, "kit": take_kit, "hand": take_hand}
+
+
+def main() -> None:
+    """Take all pictures."""
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        raise SystemExit("docs/studio_pictures.py needs a Chromium; install Debian's package chromium")
+    wanted = sys.argv[1:] or list(TAKES)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
+        for name in wanted:
+            TAKES[name](browser)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
