@@ -178,7 +178,7 @@ def test_numbers_are_changed_of_all_parts_named(starfish: Robot) -> None:
     assert [winch.travel for winch in robot.winches] == [0.05, 0.05, 0.06]
     assert change(starfish, ["pin:0"], radius=0.02).pins[0].radius == 0.02
     for key, values, words in (
-        ("winch:left", {"spool_radius": -1.0}, "spool_radius"),
+        ("winch:left", {"spool_radius": -1.0}, "spool radius"),
         ("cable:0", {"friction": 9.0}, "friction"),
         ("marker:top", {"radius": 1.0}, "no radius"),
         ("pin:0", {"radius": 0.0001}, "pins hold too few"),
