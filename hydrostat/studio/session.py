@@ -97,7 +97,7 @@ class Session:
         self._told = 0
         self._holder: str | None = None
         self._stamp = self.answered = 0.0
-        self._complaint = ""
+        self._complaint = self._unkept = ""
         self._show = Show()
         self._lock = RLock()
 
@@ -234,6 +234,7 @@ class Session:
             now: time [s] of a clock that only runs forward.
         """
         self.starter.autosave.step(now)
+        self._tell_unkept()
         if not self.document.is_open:
             return False
         asked, more, complaint = self._stamp, False, ""
@@ -267,6 +268,13 @@ class Session:
         self.driver.motors.link.close()
         self.jobs.close()
         self.starter.autosave.close()
+
+    def _tell_unkept(self) -> None:
+        """That work cannot be kept for a crash, once for each reason."""
+        problem = self.starter.autosave.problem
+        if problem and problem != self._unkept:
+            self.tell(problem, Tone.BAD)
+        self._unkept = problem
 
     def _let_go(self) -> None:
         if self._holder is not None:

@@ -219,3 +219,10 @@ def test_listeners_hear_of_notes_and_stages(session: Session) -> None:
     session.go(StageName.EDIT)
     session.tell("hello")
     assert {Topic.STAGE, Topic.NOTE} <= heard
+
+
+def test_work_that_cannot_be_kept_is_told_once(session: Session) -> None:
+    session.starter.autosave.problem = "the disk is full"
+    for now in range(5):
+        session.step(float(now))
+    assert [note.text for note in session.notes].count("the disk is full") == 1

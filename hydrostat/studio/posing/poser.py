@@ -20,7 +20,6 @@ from hydrostat.studio.posing.movers import Movers, same_body
 from hydrostat.studio.posing.now import Now, fitted, renamed
 from hydrostat.studio.posing.poses import (
     checked_name,
-    free_name,
     held_of,
     renamed_pose,
     wishes_after,
@@ -28,6 +27,7 @@ from hydrostat.studio.posing.poses import (
     without_pose,
 )
 from hydrostat.studio.posing.reach import Reach
+from hydrostat.studio.records.fresh_name import fresh_name
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import MARKER, robot_things, target_things
 from hydrostat.studio.view.shape import Shape, rest_shape
@@ -366,7 +366,7 @@ class Poser(Stage):
         for own, held in now.wish.held.items():
             if np.linalg.norm(np.subtract(held.at, hit.rest)) < near:
                 return own
-        return free_name([*now.wish.held, *markers], "point")
+        return fresh_name("point", [*now.wish.held, *markers])
 
     def _point(self, now: Now, name: str, hit: Hit) -> Held:
         """A point by name, held where it is if it is not held yet."""

@@ -1,8 +1,7 @@
 """`with_pose`, `renamed_pose`, `without_pose`, `wishes_after`, `held_of`: the poses of a robot, changed."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from itertools import count
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Marker, Pose, Robot
@@ -75,12 +74,6 @@ def held_of(robot: Robot, name: str) -> dict[str, Held]:
     places = {marker.name: marker.at for marker in robot.markers}
     targets = robot.pose(name).targets
     return {own: Held(at=places[own], target=target, marker=True) for own, target in targets.items()}
-
-
-def free_name(taken: Iterable[str], word: str) -> str:
-    """The first of word_1, word_2 ... that is not taken."""
-    names = set(taken)
-    return next(name for number in count(1) if (name := f"{word}_{number}") not in names)
 
 
 def checked_name(given: str) -> str:

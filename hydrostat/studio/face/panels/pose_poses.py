@@ -4,7 +4,7 @@ from nicegui import ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.posing.poses import free_name
+from hydrostat.studio.records.fresh_name import fresh_name
 
 
 def poses_card(page: Page) -> None:
@@ -21,7 +21,7 @@ def poses_card(page: Page) -> None:
     drawn: list[object] = []
 
     def store() -> None:
-        given = name.value or free_name(document.robot.poses, "pose")
+        given = name.value or fresh_name("pose", document.robot.poses)
         before, replaced = document.serial, given in document.robot.poses
         page.act(poser.store, given)
         if document.serial != before:
