@@ -6,10 +6,11 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo test check lint fix bench pictures clean
+.PHONY: help demo studio test check lint fix bench pictures clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
+	@echo "make studio    open the studio in the browser"
 	@echo "make test      run all tests"
 	@echo "make check     lint, types, import layers, tests"
 	@echo "make fix       format and repair what ruff can repair"
@@ -18,6 +19,9 @@ help:
 
 demo: $(VENV)/demo.installed
 	$(BIN)/hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --kit --out build/starfish
+
+studio: $(VENV)/studio.installed
+	$(BIN)/hydrostat studio
 
 test: $(VENV)/test.installed
 	$(BIN)/python -m pytest -n 2 --dist worksteal -q
@@ -47,6 +51,10 @@ $(VENV)/demo.installed: pyproject.toml constraints.txt
 	@echo "Installing hydrostat into $(VENV), this takes about a minute ..."
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(INSTALL) --editable .
+	touch $@
+
+$(VENV)/studio.installed: $(VENV)/demo.installed
+	$(INSTALL) --editable ".[studio]"
 	touch $@
 
 $(VENV)/test.installed: $(VENV)/demo.installed
