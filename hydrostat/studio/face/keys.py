@@ -1,7 +1,7 @@
 """The keys of the studio, as the help page lists them."""
 
 KEYS = (
-    (("G",), "grab: what is chosen follows the pointer"),
+    (("G",), "move what is chosen: click or drag to where it should go"),
     (("R",), "back to rest"),
     (("Z",), "undo"),
     (("Shift", "Z"), "do again"),
