@@ -6,24 +6,12 @@ from pathlib import Path
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import MOST_STEPS, Document
 from hydrostat.studio.records.timeline import Key, Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
-
-
-@pytest.fixture(scope="module")
-def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
-
-
-@pytest.fixture
-def document(starfish: Robot) -> Document:
-    made = Document(Bell())
-    made.open(Work(robot=starfish))
-    return made
 
 
 def named(robot: Robot, name: str) -> Robot:

@@ -8,7 +8,6 @@ from builders import box_robot
 
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.designing.zones import LEAST, lasso
@@ -18,18 +17,6 @@ from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.things import Area, Dot, Line, Look
-
-
-@pytest.fixture(scope="module")
-def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
-
-
-@pytest.fixture
-def document(starfish: Robot) -> Document:
-    made = Document(Bell())
-    made.open(Work(robot=starfish))
-    return made
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
@@ -20,18 +20,6 @@ from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 
 pytestmark = pytest.mark.usefixtures("unchecked")
-
-
-@pytest.fixture(scope="module")
-def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
-
-
-@pytest.fixture
-def document(starfish: Robot) -> Document:
-    document = Document(Bell())
-    document.open(Work(robot=starfish))
-    return document
 
 
 @pytest.fixture

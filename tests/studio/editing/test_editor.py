@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Body, Point, Robot, gallery_folder, load_robot
-from hydrostat.studio.bell import Bell, Topic
+from hydrostat.robot import Body, Point, Robot
+from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.editor import QUIET, Editor
 from hydrostat.studio.editing.findings import look_over
@@ -22,18 +22,6 @@ from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.things import Dot, Line
 
 pytestmark = pytest.mark.filterwarnings("error")
-
-
-@pytest.fixture(scope="module")
-def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
-
-
-@pytest.fixture
-def document(starfish: Robot) -> Document:
-    made = Document(Bell())
-    made.open(Work(robot=starfish))
-    return made
 
 
 @pytest.fixture

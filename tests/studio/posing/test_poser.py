@@ -9,29 +9,15 @@ import pytest
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.ik import solve_ik
-from hydrostat.robot import Point, Robot, gallery_folder, load_robot
+from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Simulation
-from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.poser import READY, Poser
 from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Dot
-
-
-@pytest.fixture(scope="module")
-def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
-
-
-@pytest.fixture
-def document(starfish: Robot) -> Document:
-    made = Document(Bell())
-    made.open(Work(robot=starfish), folder=None)
-    return made
 
 
 @pytest.fixture

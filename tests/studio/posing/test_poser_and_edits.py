@@ -9,7 +9,6 @@ import pytest
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, gallery_folder, load_robot, save_robot
-from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.held import Held, Mode
@@ -19,18 +18,6 @@ from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Dot
-
-
-@pytest.fixture(scope="module")
-def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
-
-
-@pytest.fixture
-def document(starfish: Robot) -> Document:
-    made = Document(Bell())
-    made.open(Work(robot=starfish), folder=None)
-    return made
 
 
 @pytest.fixture
