@@ -46,7 +46,7 @@ class CableEnergy(Energy):
             weights: signed: those of its end less those of its start.
             offsets: what points fixed in the world add to each span [m].
             cables: which cable a segment belongs to.
-            law: tension against stretch, of each cable.
+            law: tension against elongation, of each cable.
             winches: whose contraction each cable follows.
             slack: of each cable, taken in before it begins to be taut [m].
             ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
@@ -71,16 +71,16 @@ class CableEnergy(Energy):
         """What each cable takes in [m]."""
         return self.ratios * controls[self.winches]
 
-    def stretches(self, nodes: Nodes, controls: Vector) -> Vector:
+    def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
         """S [m]: how much longer each cable is than it should be; negative when slack."""
         return self.lengths(nodes) - self.rest_lengths + self.taken(controls) - self.slack
 
     def tensions(self, nodes: Nodes, controls: Vector) -> Vector:
         """T of each cable [N]."""
-        return self.law.tension(self.stretches(nodes, controls))
+        return self.law.tension(self.elongations(nodes, controls))
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        return float(self.law.energy(self.stretches(nodes, controls)).sum())
+        return float(self.law.energy(self.elongations(nodes, controls)).sum())
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.tensions(nodes, controls))
@@ -89,12 +89,12 @@ class CableEnergy(Energy):
         return self.bends(nodes, self.tensions(nodes, controls))
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self._pull(nodes, self.ratios * self.law.tangent(self.stretches(nodes, controls)))
+        return self._pull(nodes, self.ratios * self.law.tangent(self.elongations(nodes, controls)))
 
     def low_rank(
         self, nodes: Nodes, controls: Vector
     ) -> tuple[Float[np.ndarray, "dofs cables"], Float[np.ndarray, "cables cables"]]:
-        return self.columns(nodes), np.diag(self.law.tangent(self.stretches(nodes, controls)))
+        return self.columns(nodes), np.diag(self.law.tangent(self.elongations(nodes, controls)))
 
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
         """dl/dx of each cable."""

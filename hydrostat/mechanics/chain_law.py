@@ -20,9 +20,9 @@ class ChainLaw(TensionLaw):
     """Tensions of the spans of cables between which cable slips, against friction of given largest force.
 
     A span is a spring of the law of `TensionLaw`, and over the points between spans cable slips by lengths p. They are
-    those of least energy: sum of U(stretch + p before - p after) + sum of limit |p|. So neighbouring tensions differ by
-    no more than the limit, and by just the limit where cable slips, from the lower to the higher tension. As this is
-    the minimum of a convex function, the tensions are the gradient of a convex function of the stretches.
+    those of least energy: sum of U(elongation + p before - p after) + sum of limit |p|. So neighbouring tensions differ
+    by no more than the limit, and by just the limit where cable slips, from the lower to the higher tension. As this is
+    the minimum of a convex function, the tensions are the gradient of a convex function of the elongations.
 
     Attributes:
         starts: first span of each cable, and at the end how many there are.
@@ -32,25 +32,25 @@ class ChainLaw(TensionLaw):
     starts: Int[np.ndarray, " ends"]
     limits: Vector
 
-    def slips(self, stretch: Vector) -> Vector:
+    def slips(self, elongation: Vector) -> Vector:
         """P at the point before each span [m], positive towards the winch; 0 for the first span of a cable."""
-        slips = np.zeros_like(stretch)
-        _relax(stretch, self.stiffness, self.smoothing, self.limits, self.starts, slips)
+        slips = np.zeros_like(elongation)
+        _relax(elongation, self.stiffness, self.smoothing, self.limits, self.starts, slips)
         return slips
 
-    def energy(self, stretch: Vector) -> Vector:
+    def energy(self, elongation: Vector) -> Vector:
         """Energy of each span and what friction dissipates at the point before it [J]."""
-        slips = self.slips(stretch)
-        return super().energy(self._own(stretch, slips)) + self.limits * np.abs(slips)
+        slips = self.slips(elongation)
+        return super().energy(self._own(elongation, slips)) + self.limits * np.abs(slips)
 
-    def tension(self, stretch: Vector) -> Vector:
+    def tension(self, elongation: Vector) -> Vector:
         """T of each span [N]."""
-        return super().tension(self._own(stretch, self.slips(stretch)))
+        return super().tension(self._own(elongation, self.slips(elongation)))
 
-    def tangents(self, stretch: Vector) -> Small:
+    def tangents(self, elongation: Vector) -> Small:
         """dT/ds [N/m]: springs joined where cable slips are one spring in series."""
-        slips = self.slips(stretch)
-        return self._joined(super().tangent(self._own(stretch, slips)), slips != 0)[0]
+        slips = self.slips(elongation)
+        return self._joined(super().tangent(self._own(elongation, slips)), slips != 0)[0]
 
     def locked(self, tensions: Vector, signs: Vector) -> tuple[Small, Small]:
         """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.
@@ -59,17 +59,17 @@ class ChainLaw(TensionLaw):
             tensions: of the spans [N].
             signs: at the point before each span 1 where cable slips towards the winch, -1 the other way, 0 where not.
         """
-        springs = super().tangent(np.where(tensions > 0, self.stretch(tensions), 0.0))
-        by_stretch, soft, same = self._joined(springs, signs != 0)
+        springs = super().tangent(np.where(tensions > 0, self.elongation(tensions), 0.0))
+        by_elongation, soft, same = self._joined(springs, signs != 0)
         # A limit lowers the tension of all spans behind it in its group; then all move so that no length changes.
         lowered = -np.tril(same) * signs
         weights = same * soft
-        return by_stretch, lowered - weights @ lowered / weights.sum(axis=1, keepdims=True)
+        return by_elongation, lowered - weights @ lowered / weights.sum(axis=1, keepdims=True)
 
-    def _own(self, stretch: Vector, slips: Vector) -> Vector:
+    def _own(self, elongation: Vector, slips: Vector) -> Vector:
         """Stretch of each span after the slips."""
         after = np.append(slips[1:], 0.0)
-        return stretch + slips - after
+        return elongation + slips - after
 
     def _joined(self, springs: Vector, slipping: Bool[np.ndarray, " spans"]) -> tuple[Small, Vector, Small]:
         """dT/ds, the compliance of each span, and which spans are joined by points that slip."""
@@ -86,14 +86,14 @@ _RELAXATIONS = 500
 
 
 _NOISE = 1e-15
-"""A stretch is known to this fraction of the lengths that it is the sum of."""
+"""A elongation is known to this fraction of the lengths that it is the sum of."""
 
 
 @njit(**KERNEL)
 @no_type_check
-def _relax(stretch, stiffness, smoothing, limits, starts, slips):
+def _relax(elongation, stiffness, smoothing, limits, starts, slips):
     """Slips of least energy, by Newton's method on those that are free to slip; 0 is a bound for each."""
-    count = len(stretch)
+    count = len(elongation)
     tension, tangent = np.empty(count), np.empty(count)
     force, step, sign = np.empty(count), np.empty(count), np.empty(count)
     trial, work = np.zeros(count), np.empty(count)
@@ -101,11 +101,11 @@ def _relax(stretch, stiffness, smoothing, limits, starts, slips):
         start, end = starts[chain], starts[chain + 1]
         if end - start < 2:
             continue
-        energy = _tighten(start, end, stretch, stiffness, smoothing, limits, slips, tension, tangent)
+        energy = _tighten(start, end, elongation, stiffness, smoothing, limits, slips, tension, tangent)
         for _ in range(_RELAXATIONS):
             worst, noise = 0.0, 0.0
             for span in range(start, end):
-                lengths = abs(stretch[span]) + abs(slips[span]) + smoothing[span]
+                lengths = abs(elongation[span]) + abs(slips[span]) + smoothing[span]
                 noise = max(noise, _NOISE * stiffness[span] * lengths)
             for span in range(start + 1, end):
                 sign[span] = 0.0
@@ -132,7 +132,7 @@ def _relax(stretch, stiffness, smoothing, limits, starts, slips):
                     moved = slips[span] + length * step[span]
                     trial[span] = moved if moved * sign[span] > 0.0 else 0.0
                     gain += force[span] * (trial[span] - slips[span])
-                reached = _tighten(start, end, stretch, stiffness, smoothing, limits, trial, tension, tangent)
+                reached = _tighten(start, end, elongation, stiffness, smoothing, limits, trial, tension, tangent)
                 if reached <= energy - 1e-4 * gain + 1e-15 * abs(energy):
                     better = True
                     break
@@ -150,11 +150,11 @@ def _relax(stretch, stiffness, smoothing, limits, starts, slips):
 
 @njit(**INNER)
 @no_type_check
-def _tighten(start, end, stretch, stiffness, smoothing, limits, slips, tension, tangent):
+def _tighten(start, end, elongation, stiffness, smoothing, limits, slips, tension, tangent):
     """Tensions and tangents of the spans of one cable; its energy."""
     energy = 0.0
     for span in range(start, end):
-        own = stretch[span]
+        own = elongation[span]
         if span > start:
             own += slips[span]
             energy += limits[span] * abs(slips[span])

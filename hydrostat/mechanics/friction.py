@@ -53,7 +53,7 @@ class FrictionCableEnergy(Energy):
             weights: signed: those of its end less those of its start.
             offsets: what points fixed in the world add to each segment [m].
             cables: which cable a segment belongs to, rising.
-            law: tension against stretch, of each cable.
+            law: tension against elongation, of each cable.
             winches: whose contraction each cable follows.
             slack: of each cable, taken in before it begins to be taut [m]; at the winch.
             friction: coefficient mu of each cable.
@@ -91,7 +91,7 @@ class FrictionCableEnergy(Energy):
             limits=np.zeros(len(owners)),
         )
 
-    def stretches(self, nodes: Nodes, controls: Vector) -> Vector:
+    def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
         """S of each span [m] if nothing slips."""
         spans = self._spans
         moved = np.where(self._firsts, spans.taken(controls) - spans.slack, self.slips)
@@ -100,14 +100,14 @@ class FrictionCableEnergy(Energy):
 
     def span_tensions(self, nodes: Nodes, controls: Vector) -> Vector:
         """T of each span [N]."""
-        return self.law.tension(self.stretches(nodes, controls))
+        return self.law.tension(self.elongations(nodes, controls))
 
     def tensions(self, nodes: Nodes, controls: Vector) -> Vector:
         """T of each cable [N] in the span at its winch."""
         return self.span_tensions(nodes, controls)[self._firsts]
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        return float(self.law.energy(self.stretches(nodes, controls)).sum())
+        return float(self.law.energy(self.elongations(nodes, controls)).sum())
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.span_tensions(nodes, controls))
@@ -118,10 +118,10 @@ class FrictionCableEnergy(Energy):
     def low_rank(
         self, nodes: Nodes, controls: Vector
     ) -> tuple[Float[np.ndarray, "dofs spans"], Float[np.ndarray, "spans spans"]]:
-        return self._spans.columns(nodes), self.law.tangents(self.stretches(nodes, controls))
+        return self._spans.columns(nodes), self.law.tangents(self.elongations(nodes, controls))
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return self._pull(nodes, self._by_control(self.law.tangents(self.stretches(nodes, controls))))
+        return self._pull(nodes, self._by_control(self.law.tangents(self.elongations(nodes, controls))))
 
     def angles(self, nodes: Nodes) -> Vector:
         """How far the cable turns at the point before each span, at both ends of a sheath together [rad]."""
@@ -144,7 +144,7 @@ class FrictionCableEnergy(Energy):
 
     def after(self, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
         """Energy of what follows a state: the cable has slipped, and the limits are those of that state."""
-        slips = self.slips + self.law.slips(self.stretches(nodes, controls))
+        slips = self.slips + self.law.slips(self.elongations(nodes, controls))
         return self._with(self.capstan_limits(nodes, controls), slips)
 
     def corrected(self, nodes: Nodes, controls: Vector, stiffness: Stiffness) -> Vector:
@@ -155,11 +155,11 @@ class FrictionCableEnergy(Energy):
             controls: contractions [m].
             stiffness: the Hessian there.
         """
-        stretches = self.stretches(nodes, controls)
-        tensions = self.law.tension(stretches)
-        by_stretch, by_limit = self.law.locked(tensions, np.sign(self.law.slips(stretches)))
+        elongations = self.elongations(nodes, controls)
+        tensions = self.law.tension(elongations)
+        by_elongation, by_limit = self.law.locked(tensions, np.sign(self.law.slips(elongations)))
         unit = np.eye(len(tensions))
-        moved = np.linalg.solve(unit + by_stretch @ stiffness.compliance, by_limit)
+        moved = np.linalg.solve(unit + by_elongation @ stiffness.compliance, by_limit)
         slopes = unit - self._limit_slopes(nodes, tensions, stiffness) @ moved
         miss = self.capstan_limits(nodes, controls) - self.law.limits
         return np.maximum(self.law.limits + np.linalg.solve(slopes, miss), 0.0)
@@ -176,11 +176,11 @@ class FrictionCableEnergy(Energy):
         drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
         near = _AT_THE_LIMIT * tensions.max(initial=0.0)
         slipping = np.abs(drops) >= self.capstan_limits(nodes, controls) - near
-        by_stretch, by_limit = self.law.locked(tensions, np.sign(drops) * slipping)
+        by_elongation, by_limit = self.law.locked(tensions, np.sign(drops) * slipping)
         pulled = np.zeros((len(tensions), len(controls)))
-        pulled[np.arange(len(tensions)), self._spans.winches] = self._by_control(by_stretch)
+        pulled[np.arange(len(tensions)), self._spans.winches] = self._by_control(by_elongation)
         unit = np.eye(len(tensions))
-        slopes = unit + by_stretch @ stiffness.compliance - by_limit @ self._limit_slopes(nodes, tensions, stiffness)
+        slopes = unit + by_elongation @ stiffness.compliance - by_limit @ self._limit_slopes(nodes, tensions, stiffness)
         return -stiffness.moves @ np.linalg.solve(slopes, pulled)
 
     def _limit_slopes(self, nodes: Nodes, tensions: Vector, stiffness: Stiffness) -> Small:

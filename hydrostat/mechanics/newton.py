@@ -267,10 +267,10 @@ class _Descent:
     def _step(self, place: _Place, stiffness: Stiffness) -> Vector:
         """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
         if self.cables is not None and stiffness.body_definite and stiffness.columns.size:
-            stretches = self.cables.stretches(place.nodes, self.controls)
-            pulled = stiffness.columns @ self.cables.law.tension(stretches)
+            elongations = self.cables.elongations(place.nodes, self.controls)
+            pulled = stiffness.columns @ self.cables.law.tension(elongations)
             free = -stiffness.solve_body(place.gradient - pulled)
-            tensions = settle(self.cables.law, stretches + stiffness.columns.T @ free, stiffness.compliance)
+            tensions = settle(self.cables.law, elongations + stiffness.columns.T @ free, stiffness.compliance)
             if tensions is not None:
                 return free - stiffness.moves @ tensions
         return -stiffness.solve(place.gradient)

@@ -11,19 +11,19 @@ from hydrostat.mechanics.stiffness import Small
 from hydrostat.mechanics.tension_law import TensionLaw, spring
 
 
-def settle(law: TensionLaw, stretches: Vector, compliance: Small) -> Vector | None:
+def settle(law: TensionLaw, elongations: Vector, compliance: Small) -> Vector | None:
     """Tensions at which cables on a linear body come to rest; None if that is not found.
 
-    The body gives way by compliance @ tensions, so T = law(stretches - compliance @ T): the least of a convex function
-    of one number a cable. Unlike a linear law it knows that a slack cable does not push.
+    The body gives way by compliance @ tensions, so T = law(elongations - compliance @ T): the least of a convex
+    function of one number a cable. Unlike a linear law it knows that a slack cable does not push.
 
     Args:
         law: of the cables.
-        stretches: of each cable on a body that does not yet feel them [m].
+        elongations: of each cable on a body that does not yet feel them [m].
         compliance: positive semidefinite, (cables, cables) [m/N].
     """
-    tensions = np.zeros_like(stretches)
-    return tensions if _settle(law.stiffness, law.smoothing, stretches, compliance, tensions) else None
+    tensions = np.zeros_like(elongations)
+    return tensions if _settle(law.stiffness, law.smoothing, elongations, compliance, tensions) else None
 
 
 _SETTLING = 30
@@ -62,11 +62,11 @@ def _eliminate(matrix, right):
 
 @njit(**KERNEL)
 @no_type_check
-def _settle(stiffness, smoothing, stretches, compliance, tensions):
-    """Newton with a line search on T M T / 2 + U(stretches - M T); false if it does not arrive."""
+def _settle(stiffness, smoothing, elongations, compliance, tensions):
+    """Newton with a line search on T M T / 2 + U(elongations - M T); false if it does not arrive."""
     count = tensions.shape[0]
     matrix = np.empty((count, count))
-    change, trial, remaining, slopes = np.empty(count), np.empty(count), stretches.copy(), np.empty(count)
+    change, trial, remaining, slopes = np.empty(count), np.empty(count), elongations.copy(), np.empty(count)
     value = 0.0
     for cable in range(count):
         value += spring(stiffness[cable], smoothing[cable], remaining[cable])[0]
@@ -97,7 +97,7 @@ def _settle(stiffness, smoothing, stretches, compliance, tensions):
                 yielded = 0.0
                 for column in range(count):
                     yielded += compliance[row, column] * trial[column]
-                remaining[row] = stretches[row] - yielded
+                remaining[row] = elongations[row] - yielded
                 reached += 0.5 * trial[row] * yielded + spring(stiffness[row], smoothing[row], remaining[row])[0]
             if reached <= value + 1e-4 * length * slope + 1e-14 * abs(value):
                 found = True

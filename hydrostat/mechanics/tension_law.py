@@ -1,4 +1,4 @@
-"""`TensionLaw`: tension of a cable against its stretch; and `spring`, the same for compiled loops."""
+"""`TensionLaw`: tension of a cable against its elongation; and `spring`, the same for compiled loops."""
 
 from dataclasses import dataclass
 from typing import no_type_check
@@ -26,28 +26,28 @@ class TensionLaw:
     stiffness: Vector
     smoothing: Vector
 
-    def energy(self, stretch: Vector) -> Vector:
+    def energy(self, elongation: Vector) -> Vector:
         """Integral of the tension [J]."""
-        return self._evaluate(stretch)[0]
+        return self._evaluate(elongation)[0]
 
-    def tension(self, stretch: Vector) -> Vector:
+    def tension(self, elongation: Vector) -> Vector:
         """T [N] (R26)."""
-        return self._evaluate(stretch)[1]
+        return self._evaluate(elongation)[1]
 
-    def tangent(self, stretch: Vector) -> Vector:
+    def tangent(self, elongation: Vector) -> Vector:
         """dT/ds [N/m]."""
-        return self._evaluate(stretch)[2]
+        return self._evaluate(elongation)[2]
 
-    def _evaluate(self, stretch: Vector) -> Float[np.ndarray, "three cables"]:
+    def _evaluate(self, elongation: Vector) -> Float[np.ndarray, "three cables"]:
         stiffness, smoothing = self.stiffness, self.smoothing
-        if stretch.shape != stiffness.shape:
-            stiffness, smoothing, stretch = np.broadcast_arrays(stiffness, smoothing, stretch)
-        found = np.empty((3, len(stretch)))
-        _evaluate(stiffness, smoothing, np.ascontiguousarray(stretch), found)
+        if elongation.shape != stiffness.shape:
+            stiffness, smoothing, elongation = np.broadcast_arrays(stiffness, smoothing, elongation)
+        found = np.empty((3, len(elongation)))
+        _evaluate(stiffness, smoothing, np.ascontiguousarray(elongation), found)
         return found
 
-    def stretch(self, tension: Vector) -> Vector:
-        """The stretch [m] at which a taut cable has this tension > 0 [N]."""
+    def elongation(self, tension: Vector) -> Vector:
+        """The elongation [m] at which a taut cable has this tension > 0 [N]."""
         k, eps = self.stiffness, self.smoothing
         share = np.maximum(tension, 0.0) / k
         return np.where(share > eps, share + eps, 2 * np.sqrt(eps * share))
@@ -55,18 +55,20 @@ class TensionLaw:
 
 @njit(**INNER)
 @no_type_check
-def spring(k, eps, stretch):
-    """Energy, tension and its slope at one stretch; see `TensionLaw`."""
-    if stretch <= 0.0:
+def spring(k, eps, elongation):
+    """Energy, tension and its slope at one elongation; see `TensionLaw`."""
+    if elongation <= 0.0:
         return 0.0, 0.0, 0.0
-    if stretch <= 2.0 * eps:
-        return k * stretch**3 / (12.0 * eps), k * stretch * stretch / (4.0 * eps), k * stretch / (2.0 * eps)
-    return 0.5 * k * (stretch - eps) ** 2 + k * eps * eps / 6.0, k * (stretch - eps), k
+    if elongation <= 2.0 * eps:
+        return k * elongation**3 / (12.0 * eps), k * elongation * elongation / (4.0 * eps), k * elongation / (2.0 * eps)
+    return 0.5 * k * (elongation - eps) ** 2 + k * eps * eps / 6.0, k * (elongation - eps), k
 
 
 @njit(**KERNEL)
 @no_type_check
-def _evaluate(stiffness, smoothing, stretch, found):
+def _evaluate(stiffness, smoothing, elongation, found):
     """Energy, tension and slope of every cable."""
     for cable in range(stiffness.shape[0]):
-        found[0, cable], found[1, cable], found[2, cable] = spring(stiffness[cable], smoothing[cable], stretch[cable])
+        found[0, cable], found[1, cable], found[2, cable] = spring(
+            stiffness[cable], smoothing[cable], elongation[cable]
+        )

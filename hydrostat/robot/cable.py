@@ -20,7 +20,7 @@ class Cable:
         winch: name of the winch that pulls it.
         points: via points in the rest pose [m]; the first at the winch, the last the stopper.
         stiffness: of the whole cable when taut [N/m] (k = 2K, E3).
-        smoothing: half the stretch over which it becomes taut [m] (eps of R25).
+        smoothing: half the elongation over which it becomes taut [m] (eps of R25).
         slack: how much the winch takes in before it begins to be taut [m] (E12).
         sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length (R14, E11).
         friction: coefficient mu at the via points: where it bends by an angle, its tension differs between the two

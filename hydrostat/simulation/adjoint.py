@@ -82,19 +82,19 @@ def sensitivity(
         raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {assembly.shape}")
     nodes = _checked("nodes", nodes, assembly.shape)
     tensions = _checked("tensions", np.zeros(len(robot.cables)) if tensions is None else tensions, pose.tensions.shape)
-    stretches = cables.stretches(pose.nodes, pose.contractions)
-    tangents, pulls = cables.law.tangent(stretches), cables.law.tension(stretches)
+    elongations = cables.elongations(pose.nodes, pose.contractions)
+    tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
     columns = cables.columns(pose.nodes)
     right = nodes.ravel() + columns @ (tangents * tensions)
     field = response(right[:, None])[:, 0]
     by_tension = tensions - columns.T @ field
-    by_stretch = tangents * by_tension
+    by_elongation = tangents * by_tension
     field = field.reshape(assembly.shape)
     young, poisson, density, thickness = _by_body(robot, assembly, pose, field)
     return Sensitivity(
-        contractions=np.bincount(cables.winches, cables.ratios * by_stretch, len(robot.winches)).astype(float),
-        slack=-by_stretch,
-        routes=points.by_cable(by_routes(points, cables, pose.nodes, field, by_stretch, pulls)),
+        contractions=np.bincount(cables.winches, cables.ratios * by_elongation, len(robot.winches)).astype(float),
+        slack=-by_elongation,
+        routes=points.by_cable(by_routes(points, cables, pose.nodes, field, by_elongation, pulls)),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
         pin_stiffness=_by_pins(robot, assembly, pose.nodes, field),
         young=young,
@@ -171,13 +171,13 @@ def _by_pins(robot: Robot, assembly: Assembly, nodes: Nodes, field: Nodes) -> Ve
 
 
 def by_routes(
-    points: RoutePoints, cables: CableEnergy, nodes: Nodes, field: Nodes, by_stretch: Vector, pulls: Vector
+    points: RoutePoints, cables: CableEnergy, nodes: Nodes, field: Nodes, by_elongation: Vector, pulls: Vector
 ) -> Points:
     """By the rest position of every point of every cable.
 
     A segment with span d, at rest D, has the length l = sqrt(d^2 + r^2), at rest L, with r in proportion to |D|: all
     of these move, and so does the part of the field along it, q = e . d / l with e the difference of the field between
-    its ends. The slope is that of by_stretch (l - L) - T q.
+    its ends. The slope is that of by_elongation (l - L) - T q.
     """
     spans = points.spans(points.positions(nodes))
     rests = points.spans(points.rests)
@@ -186,7 +186,7 @@ def by_routes(
     lengths, rest_lengths = (np.sqrt((part**2).sum(axis=1) + square) for part in (spans, rests))
     units = spans / lengths[:, None]
     along = (moves * units).sum(axis=1)
-    lever, pull = by_stretch[points.cables], pulls[points.cables]
+    lever, pull = by_elongation[points.cables], pulls[points.cables]
     by_span = (lever + pull * along / lengths)[:, None] * units - (pull / lengths)[:, None] * moves
     rounded = square / lengths * (lever + pull * along / lengths)
     tiny = np.finfo(float).tiny

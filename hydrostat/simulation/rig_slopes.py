@@ -42,8 +42,8 @@ def rig_slopes(simulation: Simulation, pose: SolvedPose, markers: list[int]) -> 
     """
     robot, cables = simulation.robot, simulation.cables
     nodes, dim = pose.nodes, robot.body.mesh.dim
-    stretches = cables.stretches(nodes, pose.contractions)
-    tangents, pulls = cables.law.tangent(stretches), cables.law.tension(stretches)
+    elongations = cables.elongations(nodes, pose.contractions)
+    tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
     columns = cables.columns(nodes)
     rows = np.zeros((len(markers) * dim + len(tangents), nodes.size))
     anchors = simulation.marker_anchors
@@ -54,18 +54,18 @@ def rig_slopes(simulation: Simulation, pose: SolvedPose, markers: list[int]) -> 
     own[len(markers) * dim :] = np.eye(len(tangents))
     rows += (own * tangents) @ columns.T
     fields = simulation.response(pose, rows.T).T
-    by_stretch = tangents * (own - fields @ columns)
+    by_elongation = tangents * (own - fields @ columns)
     by_winch = np.zeros((len(tangents), len(robot.winches)))
     by_winch[np.arange(len(tangents)), cables.winches] = cables.ratios
     shaped = fields.reshape(len(rows), *nodes.shape)
     by_point = [
         by_routes(simulation.route_points, cables, nodes, field, lever, pulls)
-        for field, lever in zip(shaped, by_stretch, strict=True)
+        for field, lever in zip(shaped, by_elongation, strict=True)
     ]
     return RigSlopes(
-        contractions=by_stretch @ by_winch,
-        slack=-by_stretch,
-        ratios=by_stretch * pose.contractions[cables.winches],
+        contractions=by_elongation @ by_winch,
+        slack=-by_elongation,
+        ratios=by_elongation * pose.contractions[cables.winches],
         points=np.array(by_point).reshape(len(rows), -1, dim),
         fields=shaped,
     )

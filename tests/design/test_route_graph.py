@@ -182,11 +182,11 @@ def _pulled(robot: Robot, graph: RouteGraph, edge: int, pose: SolvedPose, tensio
     mount = Mount.WORLD if graph.world[second] else Mount.BODY
     points = tuple(map(tuple, graph.points[[second, first]].tolist()))
     probe = Cable(winch="probe", points=points, stiffness=1e3, smoothing=1e-3)
-    stretch = np.sqrt(4 * probe.smoothing * tension / probe.stiffness)
+    elongation = np.sqrt(4 * probe.smoothing * tension / probe.stiffness)
     pulled = robot.with_network(
         (*robot.winches, Winch(name="probe", at=points[0], mount=mount)), (*robot.cables, probe)
     )
     simulation = Simulation(pulled, options=NewtonOptions(tolerance=1e-12))
-    found = simulation.solve(np.append(pose.contractions, shorter + stretch), strict=False)
+    found = simulation.solve(np.append(pose.contractions, shorter + elongation), strict=False)
     before = simulation.marker_anchors.positions(pose.nodes)
     return (simulation.marker_anchors.positions(found.nodes) - before).ravel() / found.tensions[-1]

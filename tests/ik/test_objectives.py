@@ -36,9 +36,9 @@ def test_objectives_in_space_conform(name: str) -> None:
 
 
 def test_the_suite_sees_a_taut_and_a_slack_cable() -> None:
-    stretches = posture_at(FLAT, FLAT.solve(BENT[2])).stretches
-    assert stretches[0] > 1e-3
-    assert stretches[1] < -1e-3
+    elongations = posture_at(FLAT, FLAT.solve(BENT[2])).elongations
+    assert elongations[0] > 1e-3
+    assert elongations[1] < -1e-3
 
 
 def at_rest(simulation: Simulation) -> Posture:

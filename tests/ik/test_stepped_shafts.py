@@ -56,7 +56,7 @@ def test_a_model_has_the_slopes_of_the_pose() -> None:
     pose = simulation.solve(PULLED)
     expected = moves_at(simulation, pose)
     found = slopes(simulation, posture_at(simulation, pose), simulation.stiffness(pose), np.array([0, 2]))
-    for part in ("nodes", "stretches", "tensions"):
+    for part in ("nodes", "elongations", "tensions"):
         want = getattr(expected, part)
         assert np.abs(getattr(found, part) - want).max() < 1e-6 * np.abs(want).max()
 
@@ -70,9 +70,9 @@ def test_a_slack_shaft_joins_where_its_first_cable_is_taut(contraction: float) -
     low, high = contraction, 0.05
     for _ in range(60):
         middle = 0.5 * (low + high)
-        taut = simulation.cables.stretches(nodes, np.array([middle, 0.005]))[:2] > 0
+        taut = simulation.cables.elongations(nodes, np.array([middle, 0.005]))[:2] > 0
         low, high = (low, middle) if taut.any() else (middle, high)
-    taut = simulation.cables.stretches(nodes, np.array([high + 1e-12, 0.005]))[:2] > 0
+    taut = simulation.cables.elongations(nodes, np.array([high + 1e-12, 0.005]))[:2] > 0
     assert places.gaps[0] == pytest.approx(high - contraction, abs=1e-12)
     assert places.gaps[1] == 0
     assert taut.tolist() == [True, False]
@@ -80,16 +80,16 @@ def test_a_slack_shaft_joins_where_its_first_cable_is_taut(contraction: float) -
 
 
 def test_what_a_shaft_lets_out_to_be_slack() -> None:
-    """Oracle: the stretches after its tension fell to 0 to first order and it let out that much further."""
+    """Oracle: the elongations after its tension fell to 0 to first order and it let out that much further."""
     simulation = Simulation(stepped())
     values = np.array([0.005, 0.0])
     nodes = simulation.solve(values).nodes
     posture = posture_of(simulation, nodes, values)
     places = channels(simulation.cables, posture, values, bounds(simulation, Limits()))
     first = places.first[0]
-    fall = posture.tensions[first] / simulation.cables.law.tangent(posture.stretches)[first]
+    fall = posture.tensions[first] / simulation.cables.law.tangent(posture.elongations)[first]
     fallen = fall / RATIOS[first]
-    after = simulation.cables.stretches(nodes, values - np.array([fallen + places.beyond[0], 0.0]))[first]
+    after = simulation.cables.elongations(nodes, values - np.array([fallen + places.beyond[0], 0.0]))[first]
     assert after == pytest.approx(-0.01 * simulation.cables.law.smoothing[first], abs=1e-12)
 
 
@@ -104,7 +104,7 @@ def test_a_shaft_that_hardly_pulls_is_let_go() -> None:
     state = search.begin(pose)
     assert 0 < state.posture.tensions[0] < 1e-3 * state.posture.tensions[2]
     tidied = search.tidied(state)
-    assert tidied.posture.stretches[:2].max() <= 0
+    assert tidied.posture.elongations[:2].max() <= 0
     assert tidied.values[0] == pytest.approx(0.0)
 
 

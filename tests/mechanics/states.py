@@ -63,9 +63,9 @@ def neo_hookean(dim: int, random: np.random.Generator) -> State:
 
 
 def cable(
-    dim: int, random: np.random.Generator, *, stretch: float, world: bool = False, sheathed: tuple[int, ...] = ()
+    dim: int, random: np.random.Generator, *, elongation: float, world: bool = False, sheathed: tuple[int, ...] = ()
 ) -> State:
-    """A cable whose contraction is such that its stretch is as asked."""
+    """A cable whose contraction is such that its elongation is as asked."""
     mesh = rough_mesh(dim, random)
     points = random.uniform(0.1, 0.9, (5, dim)) * SIZE[dim]
     anchors = locate(mesh, points)
@@ -85,7 +85,7 @@ def cable(
         slack=np.array([0.002]),
     )
     nodes, controls = deform(mesh, random), random.uniform(0, 0.02, CONTROLS)
-    controls[1] += stretch - float(energy.stretches(nodes, controls)[0])
+    controls[1] += elongation - float(energy.elongations(nodes, controls)[0])
     return State(energy, nodes, controls)
 
 
@@ -105,9 +105,9 @@ def cables(dim: int, random: np.random.Generator) -> State:
         "ratios": np.array([0.7, 1.6, 1.0, 2.3]),
     }
     nodes, controls = deform(mesh, random), random.uniform(0, 0.02, CONTROLS)
-    stretches = CableEnergy(mesh.nodes, slack=np.zeros(4), **arguments).stretches(nodes, controls)
+    elongations = CableEnergy(mesh.nodes, slack=np.zeros(4), **arguments).elongations(nodes, controls)
     wanted = np.array([-0.01, 1.2 * 2e-3, 0.01, 0.02])
-    return State(CableEnergy(mesh.nodes, slack=stretches - wanted, **arguments), nodes, controls)
+    return State(CableEnergy(mesh.nodes, slack=elongations - wanted, **arguments), nodes, controls)
 
 
 def pins(dim: int, random: np.random.Generator) -> State:
@@ -148,13 +148,13 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "weight": weight,
     "fibres on edges": edge_fibres,
     "fibres in elements": element_fibres,
-    "slack cable": lambda dim, random: cable(dim, random, stretch=-0.01),
-    "cable barely taut": lambda dim, random: cable(dim, random, stretch=0.1 * _EPS),
-    "cable in the cubic zone": lambda dim, random: cable(dim, random, stretch=1.3 * _EPS),
-    "taut cable": lambda dim, random: cable(dim, random, stretch=0.02),
-    "cable from the world": lambda dim, random: cable(dim, random, stretch=0.02, world=True),
-    "sheathed cable": lambda dim, random: cable(dim, random, stretch=0.02, sheathed=(1, 2)),
+    "slack cable": lambda dim, random: cable(dim, random, elongation=-0.01),
+    "cable barely taut": lambda dim, random: cable(dim, random, elongation=0.1 * _EPS),
+    "cable in the cubic zone": lambda dim, random: cable(dim, random, elongation=1.3 * _EPS),
+    "taut cable": lambda dim, random: cable(dim, random, elongation=0.02),
+    "cable from the world": lambda dim, random: cable(dim, random, elongation=0.02, world=True),
+    "sheathed cable": lambda dim, random: cable(dim, random, elongation=0.02, sheathed=(1, 2)),
     "four cables": cables,
-    "sheathed at the winch": lambda dim, random: cable(dim, random, stretch=1.2 * _EPS, sheathed=(0,), world=True),
+    "sheathed at the winch": lambda dim, random: cable(dim, random, elongation=1.2 * _EPS, sheathed=(0,), world=True),
 }
 """Makers of a state, by name: dimension and random numbers in."""

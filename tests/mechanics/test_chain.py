@@ -8,9 +8,9 @@ from hydrostat.mechanics import ChainLaw
 
 def test_springs_between_slack_ones_find_their_least_energy() -> None:
     """Four spans, the outer two slack: neighbours may differ by the limit only, and by just that where cable slips."""
-    stretch = np.array([-4.386e-3, 6.35e-4, 4.31e-4, -2.302e-3])
+    elongation = np.array([-4.386e-3, 6.35e-4, 4.31e-4, -2.302e-3])
     limits = np.array([0.0, 0.0124, 0.0737, 0.0792])
-    tensions = _tensions(stretch, limits)
+    tensions = _tensions(elongation, limits)
     assert tensions == pytest.approx([0.0, 0.0124, 0.079, 0.0], abs=2e-3)
 
 
@@ -18,18 +18,18 @@ def test_springs_between_slack_ones_find_their_least_energy() -> None:
 def test_neighbouring_tensions_differ_by_no_more_than_the_limit(seed: int) -> None:
     random = np.random.default_rng(seed)
     spans = int(random.integers(4, 24))
-    stretch = random.uniform(-5e-3, 2e-3, spans)
+    elongation = random.uniform(-5e-3, 2e-3, spans)
     limits = np.concatenate([[0.0], random.uniform(0.0, 0.1, spans - 1)])
-    tensions = _tensions(stretch, limits)
+    tensions = _tensions(elongation, limits)
     assert (np.abs(np.diff(tensions)) <= limits[1:] + 1e-7 * max(tensions.max(), 1e-3)).all()
 
 
-def _tensions(stretch: np.ndarray, limits: np.ndarray) -> np.ndarray:
-    count = len(stretch)
+def _tensions(elongation: np.ndarray, limits: np.ndarray) -> np.ndarray:
+    count = len(elongation)
     law = ChainLaw(
         stiffness=np.full(count, 16e3),
         smoothing=np.full(count, 2.5e-5),
         starts=np.array([0, count]),
         limits=limits,
     )
-    return law.tension(stretch)
+    return law.tension(elongation)

@@ -21,16 +21,16 @@ def problem(seed: int, cables: int) -> tuple[TensionLaw, np.ndarray, np.ndarray]
 @pytest.mark.parametrize("seed", range(6))
 def test_tensions_settle_where_scipy_says(seed: int, cables: int) -> None:
     """The least of T C T / 2 + U(s - C T), by BFGS with the gradient C (T - U'), in units in which C is 1."""
-    law, stretches, compliance = problem(seed, cables)
+    law, elongations, compliance = problem(seed, cables)
     root = np.linalg.cholesky(compliance)
 
     def cost(z: np.ndarray) -> tuple[float, np.ndarray]:
-        remaining = stretches - root @ z
+        remaining = elongations - root @ z
         value = 0.5 * z @ z + law.energy(remaining).sum()
         return 1e3 * float(value), 1e3 * (z - root.T @ law.tension(remaining))
 
     expected = minimize(cost, np.zeros(cables), jac=True, method="BFGS", options={"gtol": 1e-11, "maxiter": 5000})
-    found = settle(law, stretches, compliance)
+    found = settle(law, elongations, compliance)
     assert found is not None
     reached = root.T @ found
     assert cost(reached)[0] <= expected.fun + 1e-9 * abs(expected.fun) + 1e-15
@@ -41,11 +41,11 @@ def test_tensions_settle_where_scipy_says(seed: int, cables: int) -> None:
 @pytest.mark.parametrize("cables", [1, 3, 12])
 @pytest.mark.parametrize("seed", range(6))
 def test_each_cable_keeps_its_law_and_none_pushes(seed: int, cables: int) -> None:
-    """Complementarity: T >= 0, T = 0 where what is left of the stretch is negative, T = law(s - C T) everywhere."""
-    law, stretches, compliance = problem(seed, cables)
-    tensions = settle(law, stretches, compliance)
+    """Complementarity: T >= 0, T = 0 where what is left of the elongation is negative, T = law(s - C T) everywhere."""
+    law, elongations, compliance = problem(seed, cables)
+    tensions = settle(law, elongations, compliance)
     assert tensions is not None
-    remaining = stretches - compliance @ tensions
+    remaining = elongations - compliance @ tensions
     largest = tensions.max(initial=0.0)
     assert tensions.min() >= -1e-12 * largest
     assert np.abs(tensions[remaining < 0]).max(initial=0.0) <= 1e-11 * largest
@@ -56,9 +56,9 @@ def test_a_linear_law_would_let_a_cable_push() -> None:
     """The check can fail, and why `settle` is there: two cables of which one goes slack when the other pulls."""
     law = TensionLaw(stiffness=np.array([1e4, 1e4]), smoothing=np.array([1e-4, 1e-4]))
     compliance = 1e-3 * np.array([[1.0, 0.9], [0.9, 1.0]])
-    stretches = np.array([0.02, 0.005])
-    linear = np.linalg.solve(np.eye(2) / 1e4 + compliance, stretches - 1e-4)
-    found = settle(law, stretches, compliance)
+    elongations = np.array([0.02, 0.005])
+    linear = np.linalg.solve(np.eye(2) / 1e4 + compliance, elongations - 1e-4)
+    found = settle(law, elongations, compliance)
     assert found is not None
     assert linear[1] < -1.0
     assert found[1] == 0.0

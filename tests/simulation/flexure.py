@@ -1,7 +1,7 @@
 """Finite flexure of a beam by a cable inside it: the reference for the beam test, a problem in one dimension.
 
 Derivation. A strip of height H, -H/2 <= Y <= H/2, plane strain, thickness b, is bent to a ring sector: the section at X
-turns by theta = kappa X, and a point goes to the radius r(Y) from the centre of bending. The principal stretches are
+turns by theta = kappa X, and a point goes to the radius r(Y) from the centre of bending. The principal elongations are
 
     lambda_1 = kappa r(Y)   along the beam,        lambda_2 = r'(Y)   across it.
 

@@ -36,7 +36,7 @@ def energy(robot: Robot, flat: np.ndarray, contractions: np.ndarray) -> complex:
         total += 0.5 * robot.pins[0].stiffness / len(held) * ((x[node] - X[node]) ** 2).sum()
     names = [winch.name for winch in robot.winches]
     for cable in robot.cables:
-        stretch = contractions[names.index(cable.winch)] - cable.slack
+        elongation = contractions[names.index(cable.winch)] - cable.slack
         world = robot.winch(cable.winch).mount is Mount.WORLD
         places = [
             np.array(point, dtype=complex) if world and index == 0 else follow(robot, np.array(point), x)
@@ -47,12 +47,12 @@ def energy(robot: Robot, flat: np.ndarray, contractions: np.ndarray) -> complex:
                 span = places[i + 1] - places[i]
                 rest = float(np.linalg.norm(np.subtract(cable.points[i + 1], cable.points[i])))
                 rounding = (1e-3 * rest) ** 2
-                stretch += np.sqrt((span * span).sum() + rounding) - np.sqrt(rest**2 + rounding)
+                elongation += np.sqrt((span * span).sum() + rounding) - np.sqrt(rest**2 + rounding)
         k, eps = cable.stiffness, cable.smoothing
-        if stretch.real > 2 * eps:
-            total += k / 2 * (stretch - eps) ** 2 + k * eps**2 / 6
-        elif stretch.real > 0:
-            total += k * stretch**3 / (12 * eps)
+        if elongation.real > 2 * eps:
+            total += k / 2 * (elongation - eps) ** 2 + k * eps**2 / 6
+        elif elongation.real > 0:
+            total += k * elongation**3 / (12 * eps)
     return total
 
 

@@ -159,11 +159,11 @@ def cable_stretch(robot: Robot, cable: Cable) -> Callable[[jax.Array, jax.Array]
     return lambda x, a: length(x) - length(X) + a[winch] - cable.slack
 
 
-def spring(stretch: jax.Array, k: float, eps: float) -> jax.Array:
+def spring(elongation: jax.Array, k: float, eps: float) -> jax.Array:
     """Energy of a cable [J]: the tension 0, then a parabola, then a line, integrated."""
-    parabola = k * stretch**3 / (12 * eps)
-    line = k / 2 * (stretch - eps) ** 2 + k * eps**2 / 6
-    return jnp.where(stretch <= 0, 0.0, jnp.where(stretch <= 2 * eps, parabola, line))
+    parabola = k * elongation**3 / (12 * eps)
+    line = k / 2 * (elongation - eps) ** 2 + k * eps**2 / 6
+    return jnp.where(elongation <= 0, 0.0, jnp.where(elongation <= 2 * eps, parabola, line))
 
 
 @dataclass(frozen=True)
@@ -182,15 +182,15 @@ def oracle(name: str) -> Answer:
     robot, contractions = CASES[name][0](), jnp.array(CASES[name][1])
     shape = robot.body.mesh.nodes.shape
     body, pins = body_energy(robot), pin_energy(robot)
-    stretches = [cable_stretch(robot, cable) for cable in robot.cables]
+    elongations = [cable_stretch(robot, cable) for cable in robot.cables]
 
     def energy(flat: jax.Array, a: jax.Array) -> jax.Array:
         x = flat.reshape(shape)
-        cables = zip(robot.cables, stretches, strict=True)
+        cables = zip(robot.cables, elongations, strict=True)
         return body(x) + pins(x) + sum(spring(s(x, a), cable.stiffness, cable.smoothing) for cable, s in cables)
 
     def pulls(flat: jax.Array, a: jax.Array) -> jax.Array:
-        cables = zip(robot.cables, stretches, strict=True)
+        cables = zip(robot.cables, elongations, strict=True)
         slope = jax.grad(spring)
         return jnp.array([slope(s(flat.reshape(shape), a), cable.stiffness, cable.smoothing) for cable, s in cables])
 

@@ -91,8 +91,8 @@ class _Slack(Term):
         self._scale = scale
 
     def residual(self, posture: Posture) -> Rows:
-        return self._scale * np.minimum(posture.stretches, 0.0)
+        return self._scale * np.minimum(posture.elongations, 0.0)
 
     def slopes(self, posture: Posture, moves: Moves) -> Slopes:
-        scale = np.broadcast_to(self._scale, posture.stretches.shape)
-        return np.where(posture.stretches < 0, scale, 0.0)[:, None] * moves.stretches
+        scale = np.broadcast_to(self._scale, posture.elongations.shape)
+        return np.where(posture.elongations < 0, scale, 0.0)[:, None] * moves.elongations

@@ -23,13 +23,13 @@ class Posture:
     Attributes:
         nodes: positions [m].
         contractions: of each winch [m].
-        stretches: how much longer each cable is than it should be [m]; negative when slack.
+        elongations: how much longer each cable is than it should be [m]; negative when slack.
         tensions: of each cable [N].
     """
 
     nodes: Nodes
     contractions: Vector
-    stretches: Vector
+    elongations: Vector
     tensions: Vector
 
 
@@ -39,12 +39,12 @@ class Moves:
 
     Attributes:
         nodes: d nodes / d contractions.
-        stretches: d stretches / d contractions.
+        elongations: d elongations / d contractions.
         tensions: d tensions / d contractions [N/m].
     """
 
     nodes: Float[np.ndarray, "nodes dim winches"]
-    stretches: Float[np.ndarray, "cables winches"]
+    elongations: Float[np.ndarray, "cables winches"]
     tensions: Float[np.ndarray, "cables winches"]
 
 

@@ -15,9 +15,9 @@ def posture_at(simulation: Simulation, pose: SolvedPose) -> Posture:
 
 def posture_of(simulation: Simulation, nodes: Nodes, contractions: Vector) -> Posture:
     """The same of nodes at some contractions [m]."""
-    stretches = simulation.cables.stretches(nodes, contractions)
-    tensions = simulation.cables.law.tension(stretches)
-    return Posture(nodes=nodes, contractions=contractions, stretches=stretches, tensions=tensions)
+    elongations = simulation.cables.elongations(nodes, contractions)
+    tensions = simulation.cables.law.tension(elongations)
+    return Posture(nodes=nodes, contractions=contractions, elongations=elongations, tensions=tensions)
 
 
 def follows(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
@@ -35,6 +35,6 @@ def moves_at(simulation: Simulation, pose: SolvedPose) -> Moves:
         NotConvergedError: the pose is about to snap, its Hessian is singular.
     """
     cables, nodes = simulation.cables, simulation.jacobian(pose)
-    stretches = follows(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(pose.nodes.size, -1)
-    tangents = cables.law.tangent(cables.stretches(pose.nodes, pose.contractions))
-    return Moves(nodes=nodes, stretches=stretches, tensions=tangents[:, None] * stretches)
+    elongations = follows(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(pose.nodes.size, -1)
+    tangents = cables.law.tangent(cables.elongations(pose.nodes, pose.contractions))
+    return Moves(nodes=nodes, elongations=elongations, tensions=tangents[:, None] * elongations)

@@ -38,14 +38,14 @@ def channels(cables: CableEnergy, posture: Posture, values: Vector, bounds: Boun
     first = np.zeros(count, dtype=np.int64)
     gaps, beyond = np.full(count, np.inf), np.zeros(count)
     law = cables.law
-    fall = posture.tensions / np.maximum(law.tangent(posture.stretches), np.finfo(float).tiny)
-    pulled = posture.stretches / cables.ratios
+    fall = posture.tensions / np.maximum(law.tangent(posture.elongations), np.finfo(float).tiny)
+    pulled = posture.elongations / cables.ratios
     for channel in range(count):
         own = np.flatnonzero(bounds.cables == channel)
         if own.size:
             first[channel] = cable = own[np.argmax(pulled[own])]
             gaps[channel] = max(-pulled[cable], 0.0)
-            left = max(posture.stretches[cable] - fall[cable], 0.0) + 0.01 * law.smoothing[cable]
+            left = max(posture.elongations[cable] - fall[cable], 0.0) + 0.01 * law.smoothing[cable]
             beyond[channel] = left / cables.ratios[cable]
     return Channels(gaps, beyond, first, gaps <= bounds.high - values)
 
@@ -57,13 +57,13 @@ def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut:
     """
     cables = simulation.cables
     loose = np.zeros(len(cables.winches), dtype=bool)
-    loose[taut] = posture.stretches[taut] <= 0
-    tangents = cables.law.tangent(np.where(loose, 0.5 * cables.law.smoothing, posture.stretches))
+    loose[taut] = posture.elongations[taut] <= 0
+    tangents = cables.law.tangent(np.where(loose, 0.5 * cables.law.smoothing, posture.elongations))
     own = follows(simulation)
     moves = stiffness.response(np.diag(tangents)) @ own
-    stretches = own + stiffness.columns.T @ moves
+    elongations = own + stiffness.columns.T @ moves
     return Moves(
-        nodes=moves.reshape(*posture.nodes.shape, -1), stretches=stretches, tensions=tangents[:, None] * stretches
+        nodes=moves.reshape(*posture.nodes.shape, -1), elongations=elongations, tensions=tangents[:, None] * elongations
     )
 
 

@@ -236,7 +236,7 @@ class Search:
         hardly = (places.gaps == 0) & (pulls < _HARDLY * posture.tensions.max(initial=0.0))
         if not hardly.any():
             return state
-        pulled = (posture.stretches / cables.ratios)[places.first]
+        pulled = (posture.elongations / cables.ratios)[places.first]
         values = state.values - np.where(hardly, pulled + places.beyond, 0.0)
         found = self.follow(state, np.maximum(values, self.bounds.low))
         if found is not None and found.error > self.reached:
@@ -278,7 +278,9 @@ class Search:
     def _direct(self, posture: Posture) -> Slopes:
         """Slopes of terms that look at contractions or slack, while no cable pulls more."""
         own = follows(self.simulation)
-        still = Moves(nodes=np.zeros((*posture.nodes.shape, own.shape[1])), stretches=own, tensions=np.zeros_like(own))
+        still = Moves(
+            nodes=np.zeros((*posture.nodes.shape, own.shape[1])), elongations=own, tensions=np.zeros_like(own)
+        )
         return self._rows(posture, still)
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> State | None:
