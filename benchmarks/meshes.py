@@ -21,13 +21,10 @@ from shapely import Polygon
 
 from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES, read_surface
 from hydrostat.geometry.healing.heal import heal
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.quality import dihedral_angles, smallest_angle
+from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
 from hydrostat.geometry.sizing import size_for
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.fit import fit
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.geometry.surface import Solid, Surface
+from hydrostat.geometry.tetrahedra.tetrahedralise import fit, tetrahedralise
 from hydrostat.robot import Body, gallery_folder, gallery_names, load_robot
 
 HANDS = ("cupping_hand", "extended_hand", "caging_gripper")

@@ -16,7 +16,7 @@ from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.surface import Solid
 from hydrostat.robot.checks import check_positive
 from hydrostat.robot.material import Material
 

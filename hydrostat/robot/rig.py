@@ -8,11 +8,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.geometry.anchors import locate
-from hydrostat.geometry.clearance import clearance
+from hydrostat.geometry.anchors import clearance, locate
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.marker import Marker

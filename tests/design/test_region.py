@@ -13,7 +13,7 @@ from hydrostat.design.flat_region import FlatRegion
 from hydrostat.design.region import Region
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.surface import Solid
 from hydrostat.robot import Body, load_robot
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -5,10 +5,7 @@ import pytest
 from test_lattice import six_angles
 
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.tetrahedra.bisect import bisect
-from hydrostat.geometry.tetrahedra.edges import edges_of, find_edges, halves
-from hydrostat.geometry.tetrahedra.lattice import lattice
-from hydrostat.geometry.tetrahedra.orient import signed_volumes
+from hydrostat.geometry.tetrahedra.lattice import bisect, edges_of, find_edges, halves, lattice, signed_volumes
 
 NODES, ELEMENTS = lattice(np.array([[0.0] * 3, [2.0, 1.0, 1.5]]), 1.0)
 

@@ -8,8 +8,8 @@ import pytest
 from drawings import dxf
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.files.chains import join
 from hydrostat.geometry.files.dxf import dxf_drawing, read_dxf
+from hydrostat.geometry.files.rings import join
 
 Draw = Callable[[Any, Any], object]
 SQUARE = [(10, 10), (30, 10), (30, 30), (10, 30)]

@@ -6,10 +6,8 @@ from builders import box_mesh
 from solids import ball, boundary, brick, moved
 
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.spread import covering_points
-from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.fit import fit
+from hydrostat.geometry.surface import Solid, Surface, covering_points
+from hydrostat.geometry.tetrahedra.tetrahedralise import fit
 
 
 def _star(outer: Surface) -> Mesh:

@@ -21,12 +21,10 @@ from geometry.dirty import (
 
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.contour import contour
-from hydrostat.geometry.healing.crossings import crossing_pairs
+from hydrostat.geometry.healing.faults import crossing_pairs
 from hydrostat.geometry.healing.heal import Healing, heal
-from hydrostat.geometry.healing.holes import holes_of
+from hydrostat.geometry.healing.mend import holes_of, sides_of, weld
 from hydrostat.geometry.healing.remake import WindingField
-from hydrostat.geometry.healing.sides import sides_of
-from hydrostat.geometry.healing.weld import weld
 from hydrostat.geometry.surface import Surface
 
 _BALL = sphere(divisions=3)

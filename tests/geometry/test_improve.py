@@ -8,14 +8,11 @@ import pytest
 from builders import box_mesh
 from solids import ball, boundary, brick
 
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.quality import dihedral_angles
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.spread import covering_points
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.mesh import Mesh, dihedral_angles
+from hydrostat.geometry.surface import Solid, Surface, covering_points
 from hydrostat.geometry.tetrahedra import improve as module
 from hydrostat.geometry.tetrahedra.improve import Stage, improve
-from hydrostat.geometry.tetrahedra.orient import signed_volumes
+from hydrostat.geometry.tetrahedra.lattice import signed_volumes
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 
 REGULAR = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])[[0, 2, 1, 3]]

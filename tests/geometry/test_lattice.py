@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.quality import dihedral_angles
-from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, lattice
-from hydrostat.geometry.tetrahedra.orient import signed_volumes, turned_outward
+from hydrostat.geometry.mesh import Mesh, dihedral_angles
+from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, lattice, signed_volumes, turned_outward
 
 BOX = np.array([[-0.013, 0.2, 0.0], [0.02, 0.241, 0.0501]])
 CELL = 0.011

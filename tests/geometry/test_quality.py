@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from hydrostat.geometry.quality import dihedral_angles
+from hydrostat.geometry.mesh import dihedral_angles
 
 REGULAR = [[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
 CORNER = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]

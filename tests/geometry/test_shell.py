@@ -8,8 +8,7 @@ from shapely import Point
 
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.shell import Shell, outline_shell
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.surface import Solid, Surface
 
 ANGLES = np.linspace(0, 2 * np.pi, 10, endpoint=False)
 RADII = np.where(np.arange(10) % 2, 0.02, 0.06)

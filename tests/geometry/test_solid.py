@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from solids import ball, brick, hollow, moved, two_fingers
 
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.surface import Solid, Surface
 
 RANDOM = np.random.default_rng(0)
 

@@ -27,12 +27,9 @@ from solids import (
 )
 
 from hydrostat.errors import InputError, SurfaceError
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.quality import dihedral_angles
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.fit import CLOSE, fit
-from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
+from hydrostat.geometry.mesh import Mesh, dihedral_angles
+from hydrostat.geometry.surface import Solid, Surface
+from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit, tetrahedralise
 
 BODIES: dict[str, tuple[Maker, float]] = {
     "ball": (ball, 0.02),

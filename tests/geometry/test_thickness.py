@@ -5,7 +5,7 @@ import pytest
 from builders import box_mesh, strip_mesh
 
 from hydrostat.geometry import Mesh
-from hydrostat.geometry.clearance import clearance
+from hydrostat.geometry.anchors import clearance
 from hydrostat.geometry.thickness import measure_thickness, spacings, thin_parts
 
 

@@ -8,8 +8,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.fabrication.lists.sheath_cuts import point_name
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Body, Cable, Robot
 
 SKIN = 4.0

@@ -14,8 +14,7 @@ from hydrostat.fabrication.moulds.frame import Frame
 from hydrostat.fabrication.moulds.release import Skin, axes_along
 from hydrostat.fabrication.moulds.simple_solids import joined, rod
 from hydrostat.fabrication.moulds.winch_room import Sides, WinchRoom
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Mount, Robot
 
 _LEAST_SKIN = 2.0

@@ -13,8 +13,7 @@ from hydrostat.fabrication.patches.seams import Seam
 from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Place
 from hydrostat.fabrication.patterns.stitches import Side
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Cable, Mount, Robot
 from hydrostat.units import counted
 

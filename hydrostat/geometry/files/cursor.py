@@ -1,12 +1,30 @@
-"""`Cursor`: a way through the bytes of a file, on which no count is believed before the bytes for it are there."""
+"""`Cursor`: a way through the bytes of a mesh file, on which no count is believed before the bytes for it are there."""
 
 import re
 from array import array
+from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
+from jaxtyping import Float, Int
 
 from hydrostat.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Points and the simplices among the cells of a file.
+
+    Attributes:
+        points: places in the file's own unit.
+        tetrahedra: indices of four points each, as declared and thus perhaps wrong.
+        triangles: indices of three points each.
+    """
+
+    points: Float[np.ndarray, "points 3"]
+    tetrahedra: Int[np.ndarray, "tetrahedra 4"]
+    triangles: Int[np.ndarray, "triangles 3"]
+
 
 _PIECE = 1_000_000  # bytes of text taken apart at once
 _LONGEST = 10_000  # characters of a word

@@ -14,9 +14,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.chains import join
-from hydrostat.geometry.files.drawing import Drawing
-from hydrostat.geometry.files.page import Page, page_about
+from hydrostat.geometry.files.page import Drawing, Page, page_about
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
@@ -25,6 +23,7 @@ from hydrostat.geometry.files.rings import (
     checked,
     closed_rings,
     counted,
+    join,
     placed,
 )
 from hydrostat.geometry.outline import Outline, Ring

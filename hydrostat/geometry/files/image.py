@@ -9,11 +9,9 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.contrast import Contrast, contrast
-from hydrostat.geometry.files.drawing import Drawing
-from hydrostat.geometry.files.page import Page, page_about
+from hydrostat.geometry.files.page import Drawing, Page, page_about
 from hydrostat.geometry.files.rings import check_size, counted, placed
-from hydrostat.geometry.files.silhouette import Patch, Silhouette, covered, silhouette
+from hydrostat.geometry.files.silhouette import Contrast, Patch, Silhouette, contrast, covered, silhouette
 from hydrostat.geometry.outline import Outline
 
 if TYPE_CHECKING:

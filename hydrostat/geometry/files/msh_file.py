@@ -5,8 +5,7 @@ from array import array
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.cells import Cells
-from hydrostat.geometry.files.cursor import Cursor
+from hydrostat.geometry.files.cursor import Cells, Cursor
 
 _TETRAHEDRON, _TRIANGLE = 4, 2
 _CORNERS = {

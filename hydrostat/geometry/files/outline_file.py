@@ -3,8 +3,7 @@
 from pathlib import PurePath
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.files.drawing import Drawing
-from hydrostat.geometry.files.page import Page
+from hydrostat.geometry.files.page import Drawing, Page
 from hydrostat.geometry.outline import Outline
 
 OUTLINE_SUFFIXES = (".svg", ".dxf", ".png", ".jpg", ".jpeg")

@@ -1,11 +1,11 @@
-"""`Page`: what a drawing's own coordinates mean, so that a second drawing can be laid over it."""
+"""`Drawing`: the outline in a flat file; `Page`: what its own coordinates mean, so that another can be laid over it."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.outline import Ring
+from hydrostat.geometry.outline import Outline, Ring
 
 
 @dataclass(frozen=True)
@@ -58,3 +58,18 @@ def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | N
         scale = scale * size / float(((high - low) * np.abs(scale)).max())
     x, y = 0.5 * (low + high)
     return Page(kind, (float(x), float(y)), (float(scale[0]), float(scale[1])))
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """The outline of a drawing or picture, and in words what was done to get it.
+
+    Attributes:
+        outline: the body [m].
+        page: what the drawing's own coordinates mean.
+        notes: one line for each thing that was ignored, filled or mended; empty if there was nothing.
+    """
+
+    outline: Outline
+    page: Page
+    notes: tuple[str, ...] = ()

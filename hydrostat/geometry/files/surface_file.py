@@ -9,8 +9,7 @@ from pathlib import PurePath
 import numpy as np
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.obj_file import read_obj
-from hydrostat.geometry.files.off_file import OFF_HEAD, read_off
+from hydrostat.geometry.files.obj_off_file import OFF_HEAD, read_obj, read_off
 from hydrostat.geometry.files.ply_file import read_ply, write_ply
 from hydrostat.geometry.files.soup import MOST_BYTES, Soup, check_count
 from hydrostat.geometry.files.stl_file import fits_binary_stl, is_stl_text, read_stl

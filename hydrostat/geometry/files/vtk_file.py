@@ -5,8 +5,7 @@ from array import array
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.cells import Cells
-from hydrostat.geometry.files.cursor import Cursor, whole_numbers
+from hydrostat.geometry.files.cursor import Cells, Cursor, whole_numbers
 
 TETRAHEDRON, TRIANGLE = 10, 5
 """VTK's numbers of the two kinds of cells that are read."""

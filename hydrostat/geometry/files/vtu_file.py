@@ -10,8 +10,7 @@ from xml.parsers import expat
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.cells import Cells
-from hydrostat.geometry.files.cursor import Cursor, whole_numbers
+from hydrostat.geometry.files.cursor import Cells, Cursor, whole_numbers
 from hydrostat.geometry.files.soup import MOST_BYTES
 from hydrostat.geometry.files.vtk_file import cells_of
 

@@ -6,15 +6,10 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.healing.crossings import crossing_pairs
-from hydrostat.geometry.healing.deviation import deviation
-from hydrostat.geometry.healing.holes import Holes, holes_of, with_closed
-from hydrostat.geometry.healing.one_way import one_way
-from hydrostat.geometry.healing.remake import Remade, remake
+from hydrostat.geometry.healing.faults import Piece, crossing_pairs, pieces_of, sliver_count, told
+from hydrostat.geometry.healing.mend import Holes, Welded, holes_of, members, one_way, sides_of, weld, with_closed
+from hydrostat.geometry.healing.remake import Remade, deviation, remake
 from hydrostat.geometry.healing.shells import Role, Shells, shells_of
-from hydrostat.geometry.healing.sides import members, sides_of
-from hydrostat.geometry.healing.surface_faults import Piece, pieces_of, sliver_count, told
-from hydrostat.geometry.healing.weld import Welded, weld
 from hydrostat.geometry.surface import Surface
 from hydrostat.units import counted
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Vector
-from hydrostat.geometry.healing.sides import Sides, sides_of
+from hydrostat.geometry.healing.mend import Sides, sides_of
 from hydrostat.geometry.surface import Surface
 
 SMALL = 0.1

@@ -9,7 +9,7 @@ from numba import njit
 
 from hydrostat.arrays import Elements, Nodes
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.solid import Solid
+from hydrostat.geometry.surface import Solid
 from hydrostat.kernel import INNER, KERNEL
 
 _SAMPLES = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6

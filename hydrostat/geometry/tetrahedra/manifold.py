@@ -8,8 +8,7 @@ from scipy.spatial import KDTree
 
 from hydrostat.arrays import Elements, Nodes, Points
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.tetrahedra.edges import Numbers
-from hydrostat.geometry.tetrahedra.orient import signed_volumes
+from hydrostat.geometry.tetrahedra.lattice import Numbers, signed_volumes
 
 
 def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:

@@ -1,24 +1,54 @@
-"""`tetrahedralise`: good tetrahedra from a closed surface."""
+"""`tetrahedralise`: good tetrahedra from a closed surface; `fit`: how well they follow it."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool
 
-from hydrostat.arrays import Elements, Nodes, Points
+from hydrostat.arrays import Elements, Nodes, Points, Vector
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.bisect import bisect
-from hydrostat.geometry.tetrahedra.edges import PAIRS, Places, Tetrahedra
-from hydrostat.geometry.tetrahedra.fit import CLOSE, fit
-from hydrostat.geometry.tetrahedra.gaps import find_bridges
+from hydrostat.geometry.surface import Solid, Surface, covering_points
 from hydrostat.geometry.tetrahedra.improve import Stage, improve
-from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, lattice
+from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, PAIRS, Places, Tetrahedra, bisect, lattice, signed_volumes
 from hydrostat.geometry.tetrahedra.manifold import euler, manifold
-from hydrostat.geometry.tetrahedra.orient import signed_volumes
-from hydrostat.geometry.tetrahedra.stuffing import stuff
+from hydrostat.geometry.tetrahedra.stuffing import find_bridges, stuff
+
+CLOSE = 0.25
+"""The boundary of a mesh should be as near to the surface, in element sizes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """How far apart a surface and the boundary of a mesh are.
+
+    Attributes:
+        places: points of both, those of the mesh first [m].
+        distances: of each point from the other surface [m].
+        volume: enclosed by the mesh, as a fraction of what the surface encloses.
+    """
+
+    places: Points
+    distances: Vector
+    volume: float
+
+    @property
+    def largest(self) -> float:
+        """The largest distance, either way [m]."""
+        return float(self.distances.max())
+
+
+def fit(mesh: Mesh, solid: Solid, spacing: float) -> Fit:
+    """Compare a mesh of tetrahedra with a solid, at points not farther apart than about `spacing` [m]."""
+    outer = Solid(Surface(mesh.nodes, mesh.boundary))
+    places, distances = [], []
+    for one, other in ((outer, solid), (solid, outer)):
+        points = covering_points(one.surface, spacing)
+        places.append(points)
+        distances.append(np.linalg.norm(other.nearest(points)[0] - points, axis=1))
+    volume = float(mesh.volumes.sum()) / solid.surface.volume
+    return Fit(np.concatenate(places), np.concatenate(distances), volume)
+
 
 _STAGES = (
     Stage(rounds=4, sweeps=3, power=1.0, pull=30.0),

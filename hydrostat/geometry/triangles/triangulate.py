@@ -8,11 +8,9 @@ from hydrostat.arrays import Points
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.triangles.divide import divide
+from hydrostat.geometry.triangles.divide import Spacing, divide
 from hydrostat.geometry.triangles.draft import Draft
-from hydrostat.geometry.triangles.relax import smooth, spread
-from hydrostat.geometry.triangles.repair import repair
-from hydrostat.geometry.triangles.spacing import Spacing
+from hydrostat.geometry.triangles.relax import repair, smooth, spread
 
 _FEWEST, _MOST = 8, 200_000
 

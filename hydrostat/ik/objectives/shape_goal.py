@@ -8,9 +8,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry.curve import Curve
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.outline import Outline
+from hydrostat.geometry.outline import Curve, Outline
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
 from hydrostat.geometry.surface import Surface
 from hydrostat.ik.checks import not_negative, told

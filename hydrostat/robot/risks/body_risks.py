@@ -4,11 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.quality import dihedral_angles, smallest_angle
-from hydrostat.geometry.solid import Solid
-from hydrostat.geometry.tetrahedra.fit import CLOSE, fit
+from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
+from hydrostat.geometry.surface import Solid
 from hydrostat.geometry.tetrahedra.manifold import euler
+from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit
 from hydrostat.geometry.thickness import measure_thickness, thin_parts
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.risks.words import mm, place

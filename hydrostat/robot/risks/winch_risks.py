@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.geometry.clearance import clearance
+from hydrostat.geometry.anchors import clearance
 from hydrostat.robot.body import Body
 from hydrostat.robot.risks.words import Found, mm, told_together
 from hydrostat.robot.robot import Robot

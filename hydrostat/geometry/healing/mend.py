@@ -1,0 +1,272 @@
+"""Mending along edges: `Sides` tells how triangles meet; what is one is joined, turned one way, small holes closed."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from hydrostat.errors import SurfaceError
+from hydrostat.geometry.surface import Surface
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """Edges of triangles, and which triangle has which.
+
+    Attributes:
+        triangles: indices of three vertices each, no vertex twice in one.
+        ends: both vertices of every edge, the lower first.
+        of: the edges of each triangle: between its corners 0 and 1, 1 and 2, 2 and 0.
+    """
+
+    triangles: Int[np.ndarray, "triangles 3"]
+    ends: Int[np.ndarray, "edges 2"]
+    of: Int[np.ndarray, "triangles 3"]
+
+    @cached_property
+    def counts(self) -> Int[np.ndarray, " edges"]:
+        """How many triangles each edge has."""
+        return np.bincount(self.of.ravel(), minlength=len(self.ends))
+
+    @cached_property
+    def turns(self) -> Int[np.ndarray, " edges"]:
+        """How often an edge is run along from its lower to its higher end, less how often the other way."""
+        ways = np.where(self.triangles < np.roll(self.triangles, -1, axis=1), 1, -1)
+        return np.bincount(self.of.ravel(), ways.ravel(), minlength=len(self.ends)).astype(np.int64)
+
+    @property
+    def open(self) -> Bool[np.ndarray, " edges"]:
+        """Edges with one triangle only."""
+        return self.counts == 1
+
+    @property
+    def crowded(self) -> Bool[np.ndarray, " edges"]:
+        """Edges with more than two triangles."""
+        return self.counts > 2
+
+    @property
+    def twisted(self) -> Bool[np.ndarray, " edges"]:
+        """Edges of two triangles that run along it the same way."""
+        return (self.counts == 2) & (self.turns != 0)
+
+    def groups(self, joins: Bool[np.ndarray, " edges"]) -> Int[np.ndarray, " triangles"]:
+        """Number of the group of each triangle, where triangles are joined by some of the edges."""
+        rows, columns = np.nonzero(joins[self.of])
+        nodes = len(self.of) + self.of[rows, columns]  # a node for each triangle, and one for each edge
+        size = len(self.of) + len(self.ends)
+        graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, nodes)), shape=(size, size))
+        labels = connected_components(graph, directed=False)[1][: len(self.of)]
+        return np.unique(labels, return_inverse=True)[1].astype(np.int64)
+
+
+def members(label: Int[np.ndarray, " some"]) -> list[Int[np.ndarray, " _"]]:
+    """Which have each label, for labels from 0 on that all occur."""
+    return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
+
+
+def sides_of(triangles: Int[np.ndarray, "triangles 3"]) -> Sides:
+    """The edges of triangles."""
+    pairs = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    keys = pairs[:, 0] * (int(triangles.max(initial=0)) + 1) + pairs[:, 1]
+    _, first, place = np.unique(keys, return_index=True, return_inverse=True)
+    return Sides(triangles, pairs[first], place.reshape(-1, 3).astype(np.int64))
+
+
+NEAR = 1e-6
+"""Vertices nearer to each other than this part of the surface's size are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Welded:
+    """A surface whose triangles have vertices in common, and none of which stands there twice.
+
+    Attributes:
+        surface: what is left, its vertices in the order of the input.
+        merged: how many vertices were the same as another.
+        flat: how many triangles had two corners in one place, and are left out.
+        repeated: how many stood there before, and are left out.
+        walls: how many lay back to back with another between two rooms, and are left out with it.
+    """
+
+    surface: Surface
+    merged: int
+    flat: int
+    repeated: int
+    walls: int
+
+
+def weld(surface: Surface) -> Welded:
+    """Merge vertices in the same place; leave out triangles without a side, repeated ones, and walls inside.
+
+    Raises:
+        SurfaceError: no triangle is left.
+    """
+    used = np.unique(surface.triangles)
+    place = _merged(surface, used)
+    triangles = place[surface.triangles]
+    one, two, three = triangles.T
+    whole = (one != two) & (two != three) & (three != one)
+    triangles = triangles[whole]
+    keep, walls = _kept(triangles)
+    if not keep.any():
+        raise SurfaceError("the surface encloses nothing: none of its triangles has an area; export it again")
+    left, triangles = np.unique(triangles[keep], return_inverse=True)
+    return Welded(
+        surface=Surface(surface.vertices[left], triangles.reshape(-1, 3)),
+        merged=len(used) - len(np.unique(place[used])),
+        flat=int((~whole).sum()),
+        repeated=int((~keep).sum()) - walls,
+        walls=walls,
+    )
+
+
+def _merged(surface: Surface, used: Int[np.ndarray, " used"]) -> Int[np.ndarray, " vertices"]:
+    """For each vertex the first of those in its place."""
+    places = surface.vertices[used] - surface.box[0]
+    cell = 4 * NEAR * surface.size
+    joins = [
+        _same_cell(places / cell + shift) for shift in (0.0, 0.5)
+    ]  # not pairs: where all is in one place, too many
+    graph = coo_array((np.ones(2 * len(used)), np.concatenate(joins, axis=1)), shape=(len(used), len(used)))
+    labels = connected_components(graph, directed=False)[1]
+    _, first = np.unique(labels, return_index=True)
+    result = np.arange(len(surface.vertices))
+    result[used] = used[first[labels]]
+    return result
+
+
+def _same_cell(places: Float[np.ndarray, "points 3"]) -> Int[np.ndarray, "2 points"]:
+    """Each point and the first of those in the same cell of a grid."""
+    _, first, which = np.unique(np.floor(places), axis=0, return_index=True, return_inverse=True)
+    return np.stack([np.arange(len(places)), first[which.ravel()]])
+
+
+def _kept(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.ndarray, " triangles"], int]:
+    """Which triangles stay of those with the same three vertices, and how many go because they are walls.
+
+    Copies that look the same way leave one. A patch of copies that look both ways is a wall between two rooms where
+    it meets more than one other triangle at an edge, and goes; else the surface was saved with both its sides, and
+    one stays.
+    """
+    keys = np.sort(triangles, axis=1)
+    _, first, group, counts = np.unique(keys, axis=0, return_index=True, return_inverse=True, return_counts=True)
+    keep = np.zeros(len(triangles), dtype=bool)
+    keep[first] = True
+    ranks = np.argsort(np.argsort(triangles, axis=1), axis=1)
+    even = (ranks[:, 1] - ranks[:, 0]) % 3 == 1
+    evens = np.bincount(group.ravel(), even, minlength=len(first))
+    both = np.flatnonzero((evens > 0) & (evens < counts))
+    if len(both):
+        sides = sides_of(triangles[first])
+        crowded = sides.crowded[sides.of[both]].any(axis=1)
+        patch = sides_of(triangles[first[both]])
+        patches = patch.groups(patch.counts > 1)
+        gone = both[np.isin(patches, patches[crowded])]
+        keep[first[gone]] = False
+        return keep, int(counts[gone].sum())
+    return keep, 0
+
+
+def one_way(
+    triangles: Int[np.ndarray, "triangles 3"],
+) -> tuple[Int[np.ndarray, "triangles 3"], Bool[np.ndarray, " triangles"]]:
+    """Triangles turned one way within each patch, the way of most of them, and which of them were turned for it.
+
+    A patch is what edges with two triangles join.
+    """
+    import igl
+
+    result, patches = igl.bfs_orient(triangles)
+    patch = np.array(patches).astype(np.int64)
+    turned = (np.array(result) != triangles).any(axis=1)
+    most = 2 * np.bincount(patch, turned) > np.bincount(patch)
+    turned ^= most[patch]
+    return np.where(turned[:, None], triangles[:, ::-1], triangles), turned
+
+
+@dataclass(frozen=True, eq=False)
+class Holes:
+    """Groups of open edges that hang together.
+
+    Attributes:
+        edges: open edges, each the way its triangle runs along it.
+        label: number of the hole of each edge.
+        length: way around each hole [m].
+        simple: holes whose edges are a ring that runs one way.
+    """
+
+    edges: Int[np.ndarray, "edges 2"]
+    label: Int[np.ndarray, " edges"]
+    length: Float[np.ndarray, " holes"]
+    simple: Bool[np.ndarray, " holes"]
+
+    def __len__(self) -> int:
+        return len(self.length)
+
+
+def holes_of(surface: Surface) -> Holes:
+    """The holes of a surface."""
+    sides = sides_of(surface.triangles)
+    rows, columns = np.nonzero(sides.open[sides.of])
+    edges = np.stack([surface.triangles[rows, columns], surface.triangles[rows, (columns + 1) % 3]], axis=1)
+    if not len(edges):
+        return Holes(edges, np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0, dtype=bool))
+    size = len(surface.vertices)
+    graph = coo_array((np.ones(len(edges), dtype=np.int8), edges.T), shape=(size, size))
+    label = np.unique(connected_components(graph, directed=False)[1][edges[:, 0]], return_inverse=True)[1]
+    ends, starts = (np.bincount(edges[:, side], minlength=size) for side in (1, 0))
+    balanced = np.bincount(label, (ends != starts)[edges].any(axis=1)) == 0
+    touches = np.bincount(label, (starts > 1)[edges[:, 0]]) > 0
+    for group in np.flatnonzero(balanced & touches).tolist():
+        _part_rings(edges, label, group)
+    label = np.unique(label, return_inverse=True)[1].astype(np.int64)
+    lengths = np.linalg.norm(surface.vertices[edges[:, 1]] - surface.vertices[edges[:, 0]], axis=1)
+    simple = np.bincount(label, (ends != starts)[edges].any(axis=1)) == 0
+    return Holes(edges, label, np.bincount(label, lengths), simple)
+
+
+def _part_rings(edges: Int[np.ndarray, "edges 2"], label: Int[np.ndarray, " edges"], group: int) -> None:
+    """Give each ring of a group of edges, which touch each other in corners, a label of its own."""
+    leaving: dict[int, list[int]] = {}
+    for edge in np.flatnonzero(label == group).tolist():
+        leaving.setdefault(int(edges[edge, 0]), []).append(edge)
+    for start in leaving:
+        way: list[int] = []
+        at, seen = start, {start: 0}
+        while leaving[at] or at != start:
+            way.append(leaving[at].pop())
+            at = int(edges[way[-1], 1])
+            if at in seen:
+                ring = way[seen[at] :]
+                label[ring] = -1 - ring[0]  # no other ring has its first edge
+                del way[seen[at] :]
+                for edge in ring[:-1]:
+                    del seen[int(edges[edge, 1])]
+            else:
+                seen[at] = len(way)
+
+
+def with_closed(surface: Surface, holes: Holes, chosen: Bool[np.ndarray, " holes"]) -> Surface:
+    """A surface with some of its simple holes closed, each by a fan about its middle; of three edges, by a triangle."""
+    edges, label = holes.edges[chosen[holes.label]], holes.label[chosen[holes.label]]
+    numbers, label = np.unique(label, return_inverse=True)
+    counts = np.bincount(label, minlength=len(numbers))
+    middles = np.stack(
+        [np.bincount(label, axis, minlength=len(numbers)) for axis in surface.vertices[edges[:, 0]].T], axis=1
+    )
+    middles /= np.maximum(counts, 1)[:, None]
+    fans = np.stack([edges[:, 1], edges[:, 0], len(surface.vertices) + label], axis=1)
+    three = counts == 3
+    # of a hole of three edges the first edge and the corner opposite to it
+    first = np.array([np.flatnonzero(label == hole)[0] for hole in np.flatnonzero(three)], dtype=np.int64)
+    opposite = [
+        int(np.setdiff1d(edges[label == hole], edges[one])[0])
+        for hole, one in zip(np.flatnonzero(three), first, strict=True)
+    ]
+    lids = np.stack([edges[first, 1], edges[first, 0], np.array(opposite, dtype=np.int64)], axis=1)
+    triangles = np.concatenate([surface.triangles, fans[~three[label]], lids])
+    used, triangles = np.unique(triangles, return_inverse=True)
+    return Surface(np.concatenate([surface.vertices, middles])[used], triangles.reshape(-1, 3))
