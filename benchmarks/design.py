@@ -27,8 +27,8 @@ from machine import machine
 import numpy as np  # isort: skip
 
 from hydrostat.design import activate, design_cables, edge_fibres
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
+from hydrostat.design.region import body_region
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot
 

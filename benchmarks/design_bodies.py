@@ -11,7 +11,7 @@ from robustness import EXAMPLES
 from scipy.optimize import nnls
 
 from hydrostat.design import Constraints
-from hydrostat.design.error import rms_error
+from hydrostat.design.network import rms_error
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import Limits, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot, load_robot

@@ -19,8 +19,8 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
+from hydrostat.design.region import body_region
 from hydrostat.robot import Cable, Robot, Winch
 
 

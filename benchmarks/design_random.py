@@ -19,13 +19,12 @@ from machine import machine
 import numpy as np  # isort: skip
 
 from hydrostat.design import Constraints, RouteOptions
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
-from hydrostat.design.error import rms_error
-from hydrostat.design.region import Region
-from hydrostat.design.routes.lay import lay
+from hydrostat.design.network import rms_error
+from hydrostat.design.region import Region, body_region
 from hydrostat.design.routes.layout import Layout, Line, Stand
 from hydrostat.design.routes.price import PricedPath
+from hydrostat.design.routes.propose import lay
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik

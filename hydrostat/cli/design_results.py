@@ -65,7 +65,7 @@ def print_front(network: "Network") -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design.front import best_errors, on_front, size_of
+    from hydrostat.design.network import best_errors, on_front, size_of
 
     errors = best_errors(network.alternatives, network)
     table = Table(title="error against winches and cables", title_justify="left")

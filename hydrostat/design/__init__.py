@@ -5,9 +5,8 @@ from hydrostat.design.design_cables import design_cables
 from hydrostat.design.muscles.activation import Activation, activate
 from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, Stage, TreeTrace
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.request import RouteOptions, TreeOptions
 from hydrostat.design.score_card import rest_error, score_card
-from hydrostat.design.tree_options import TreeOptions
 from hydrostat.design.zone import Zone
 
 __all__ = [

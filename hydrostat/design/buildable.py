@@ -4,12 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.design.checks.bends import bend_violations
-from hydrostat.design.checks.holes import hole_violations
-from hydrostat.design.checks.mirror import mirror_violations
+from hydrostat.design.checks.cables import bend_violations, clearance_violations, hole_violations
 from hydrostat.design.checks.parts import LENGTH, Parts, mm
-from hydrostat.design.checks.ways import way_violations
-from hydrostat.design.checks.winches import winch_violations
+from hydrostat.design.checks.winches import mirror_violations, winch_violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.ik import ReachedPose
@@ -44,7 +41,7 @@ def violations(robot: Robot, constraints: Constraints, region: Region, *, source
     parts = Parts(robot, constraints, region, source or robot)
     return [
         *winch_violations(parts),
-        *way_violations(parts),
+        *clearance_violations(parts),
         *hole_violations(parts),
         *bend_violations(parts),
         *mirror_violations(parts),

@@ -1,18 +1,68 @@
 """`read_constraints`: from a TOML file to `Constraints` for one robot."""
 
+from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any
+
+from pydantic import Field, Strict
 
 from hydrostat import units
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot
+from hydrostat.robot import Mount, Robot
+from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, Table, Torque
 from hydrostat.robot.tables_file import TablesFile, read_text
 
-if TYPE_CHECKING:
-    from hydrostat.robot.schema import Table
+Count = Annotated[int, Strict()]
+Choice = Annotated[bool, Strict()]
+
+
+class Axis(StrEnum):
+    """Across a mirror."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+
+
+class ZoneTable(Table):
+    """[[winch_zone]], [[keep_out]], [[still]]."""
+
+    at: Coordinates | None = None
+    radius: Number | None = None
+    box: Annotated[list[Coordinates], Field(min_length=2, max_length=2)] | None = None
+    outline: Annotated[list[Coordinates], Field(min_length=3, max_length=1000)] | None = None
+
+
+class ConstraintsTable(Table):
+    """The whole file: the fields of `Constraints`, zones as tables of one zone each."""
+
+    winch_zone: list[ZoneTable] = Field(default_factory=list)
+    keep_out: list[ZoneTable] = Field(default_factory=list)
+    still: list[ZoneTable] = Field(default_factory=list)
+    mount: Mount | None = None
+    cables_per_winch: Count | None = None
+    clearance: Length | None = None
+    winch_clearance: Length | None = None
+    winch_gap: Length | None = None
+    hole_gap: Length | None = None
+    turn: Angle | None = None
+    bend_radius: Length | None = None
+    longest: Length | None = None
+    tension: Force | None = None
+    torque: Torque | None = None
+    travel: Length | None = None
+    release: Length | None = None
+    spool_radius: Length | None = None
+    slack: Length | None = None
+    spool_ratio: Number | None = None
+    leads: Choice | None = None
+    mirror: Axis | None = None
+    locked_winches: list[Name] | None = None
+    locked_cables: list[Count] | None = None
+
 
 ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "still": "still"}
 """Tables of the file, and the fields of `Constraints` that they make."""
@@ -32,10 +82,10 @@ def read_constraints(path: str | Path, robot: Robot) -> Constraints:
         InputError: one line that names the file, the line, the key, what is wrong and what is allowed.
     """
     path = Path(path)
-    return _Reader(path, read_text(path), robot).constraints()
+    return _ConstraintsReader(path, read_text(path), robot).constraints()
 
 
-class _Reader(TablesFile):
+class _ConstraintsReader(TablesFile):
     """Turns the text of a file into constraints."""
 
     kind = "constraints"
@@ -45,9 +95,7 @@ class _Reader(TablesFile):
         super().__init__(file, text)
         self.robot, self.unit = robot, robot.length_unit
 
-    def form(self) -> "type[Table]":
-        from hydrostat.design.constraints_schema import ConstraintsTable
-
+    def form(self) -> type[Table]:
         return ConstraintsTable
 
     def constraints(self) -> Constraints:

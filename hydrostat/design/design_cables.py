@@ -5,13 +5,11 @@ from dataclasses import replace
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Network
-from hydrostat.design.progress import Progress, silent
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.progress import Progress, Watch, silent, unseen
+from hydrostat.design.request import RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
-from hydrostat.design.tree_options import TreeOptions
 from hydrostat.design.trees.design_trees import design_trees
-from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 

@@ -1,18 +1,22 @@
 """`Network`: a designed robot with everything that tells how good it is and how it came about."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Int
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.error import rms_error
 from hydrostat.design.muscles.activation import Activation
-from hydrostat.design.region import Route
-from hydrostat.design.route_options import RouteOptions
-from hydrostat.design.tree_options import TreeOptions
+from hydrostat.design.polyline import Route
+from hydrostat.design.request import RouteOptions, TreeOptions
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot
+
+
+def rms_error(reached: Sequence[ReachedPose]) -> float:
+    """Root of the mean squared marker error over poses [m]."""
+    return float(np.sqrt(np.mean([pose.rms_error**2 for pose in reached])))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -128,3 +132,28 @@ class Network:
     def rms_error(self) -> float:
         """Root of the mean squared marker error over all poses [m]."""
         return rms_error(self.reached)
+
+
+Size = tuple[int, int]
+"""Numbers of winches and of cables."""
+
+
+def size_of(network: Alternative | Network) -> Size:
+    """Numbers of winches and cables of a network."""
+    return len(network.robot.winches), len(network.robot.cables)
+
+
+def best_errors(alternatives: Iterable[Alternative], chosen: Network) -> dict[Size, float]:
+    """The least error of each size [m], in order of the sizes; where the chosen network is, its own."""
+    found: dict[Size, float] = {}
+    for network in alternatives:
+        found[size_of(network)] = min(network.rms_error, found.get(size_of(network), float("inf")))
+    found[size_of(chosen)] = chosen.rms_error
+    return dict(sorted(found.items()))
+
+
+def on_front(size: Size, errors: Mapping[Size, float]) -> bool:
+    """Whether no network of as few winches and as few cables has an error as small."""
+    winches, cables = size
+    others = [error for other, error in errors.items() if other != size and other[0] <= winches and other[1] <= cables]
+    return all(error > errors[size] for error in others)

@@ -1,6 +1,8 @@
-"""`Progress`: who is told how the work goes on."""
+"""`Progress` and `Watch`: who is told how the work goes on, and of networks that are found on the way."""
 
 from collections.abc import Callable
+
+from hydrostat.design.network import Stage
 
 Progress = Callable[[str, int, int], None]
 """Told the stage, how much of it is done, and how much there is."""
@@ -8,3 +10,24 @@ Progress = Callable[[str, int, int], None]
 
 def silent(stage: str, done: int, total: int) -> None:
     """No progress wanted."""
+
+
+Watch = Callable[[Stage], None]
+"""Told a network on the way, each better than the ones told before."""
+
+
+def unseen(stage: Stage) -> None:
+    """Nobody watches."""
+
+
+class Better:
+    """Passes on what has a smaller error than all before."""
+
+    def __init__(self, watch: Watch) -> None:
+        self._watch, self._least = watch, float("inf")
+
+    def __call__(self, stage: Stage) -> None:
+        """Hear of a network."""
+        if stage.error < self._least:
+            self._least = stage.error
+            self._watch(stage)

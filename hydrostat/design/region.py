@@ -1,16 +1,20 @@
-"""`Region`: where in a body cables and winches may be."""
+"""`Region`: where in a body, flat or in space, cables and winches may be."""
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
+from shapely import Polygon, contains, linestrings, points, polygonize, prepare
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import nearest_points
 
-from hydrostat.arrays import Points
-from hydrostat.design.along import least_along
-from hydrostat.geometry.shell import Nearest, Shell
-
-Route = Float[np.ndarray, "_ dim"]
-"""Points that a cable runs through [m]."""
+from hydrostat.arrays import Points, Vector
+from hydrostat.design.polyline import Route, least_along
+from hydrostat.errors import InputError
+from hydrostat.geometry.shell import Nearest, Shell, outline_shell
+from hydrostat.robot import Body
 
 MARGIN = 1.02
 """Points are pushed so many clearances deep, so that rounding takes none out again."""
@@ -55,3 +59,140 @@ class Region(ABC):
 
     def _nearest(self, places: Points) -> Nearest:
         return self.shell.nearest(places)
+
+
+@dataclass(frozen=True, eq=False)
+class FlatRegion(Region):
+    """A flat body, as a polygon too.
+
+    Attributes:
+        shell: its edge.
+        clearance: [m].
+        body: the whole body [m].
+        inner: the body less `MARGIN` clearances.
+    """
+
+    shell: Shell
+    clearance: float
+    body: Polygon
+    inner: BaseGeometry
+
+    def push_inside(self, route: Route) -> Route:
+        """Each point, moved to the nearest place of the inner part if it lies outside of that."""
+        moved = route.copy()
+        for index in np.flatnonzero(~contains(self.inner, points(route))):
+            moved[index] = nearest_points(self.inner, points(route[index]))[0].coords[0]
+        return moved
+
+    def sees(
+        self, start: Float[np.ndarray, "segments dim"], end: Float[np.ndarray, "segments dim"]
+    ) -> Bool[np.ndarray, " segments"]:
+        """Whether each straight segment keeps at least half the clearance all along."""
+        return np.asarray(contains(self._half, linestrings(np.stack([start, end], axis=1))))
+
+    @cached_property
+    def _half(self) -> BaseGeometry:
+        """The body less half the clearance."""
+        half = self.body.buffer(-0.5 * self.clearance)
+        prepare(half)
+        return half
+
+
+def flat_region(body: Body, clearance: float) -> FlatRegion | None:
+    """The region of a flat body; None if it is too thin everywhere."""
+    if body.outline is not None:
+        whole, shell = body.outline.polygon, outline_shell(body.outline)
+    else:
+        mesh = body.mesh
+        rings = polygonize(list(np.asarray(linestrings(mesh.nodes[mesh.boundary]))))
+        whole = max((ring for ring in rings.geoms if isinstance(ring, Polygon)), key=lambda ring: ring.area)
+        shell = Shell(mesh.nodes, mesh.boundary)
+    inner = whole.buffer(-MARGIN * clearance)
+    if inner.is_empty:
+        return None
+    prepare(inner)
+    return FlatRegion(shell, clearance, whole, inner)
+
+
+_STEPS = 60
+"""Most steps of a point on its way inside."""
+
+_SMALLEST = 1 / 64
+"""A point that gains nothing by a step of this many clearances has come as deep as it can."""
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceRegion(Region):
+    """A body in space.
+
+    Attributes:
+        shell: its surface.
+        clearance: [m].
+    """
+
+    shell: Shell
+    clearance: float
+
+    def push_inside(self, route: Route) -> Route:
+        """Each point, moved inward until it is `MARGIN` clearances deep; in a thin part, to where that is deepest.
+
+        A point steps away from its nearest place on the surface. Where two sides are equally near that gains nothing:
+        there it goes in the mean direction about it, along the ridge between the sides. Steps that gain nothing are
+        halved.
+        """
+        wanted = MARGIN * self.clearance
+        moved = route.copy()
+        depths = self.depths(moved)
+        reach = np.full(len(moved), self.clearance)
+        for _ in range(_STEPS):
+            going = np.flatnonzero((depths < wanted) & (reach > _SMALLEST * self.clearance))
+            if not len(going):
+                break
+            steps = np.where(depths[going] < 0, wanted - depths[going], np.minimum(reach, wanted - depths)[going])
+            places, found = self._deeper(moved[going], steps, reach[going])
+            gains = found > depths[going] + 1e-3 * np.minimum(steps, reach[going])
+            moved[going[gains]], depths[going[gains]] = places[gains], found[gains]
+            reach[going[~gains]] *= 0.5
+        return moved
+
+    def _deeper(
+        self, places: Points, steps: Float[np.ndarray, " points"], reach: Float[np.ndarray, " points"]
+    ) -> tuple[Points, Vector]:
+        """The deeper of where the nearest place and where the surroundings tell each point to go."""
+        straight = places + steps[:, None] * self.inward(places)
+        ridge = places + reach[:, None] * self._mean_inward(places, reach)
+        depths = np.stack([self.depths(straight), self.depths(ridge)])
+        best = depths[0] >= depths[1]
+        return np.where(best[:, None], straight, ridge), depths.max(axis=0)
+
+    def _mean_inward(self, places: Points, reach: Float[np.ndarray, " points"]) -> Points:
+        """Direction of the mean of `inward` at places about each point; nought where these go all ways."""
+        about = places[:, None] + reach[:, None, None] * np.concatenate([np.eye(3), -np.eye(3)])
+        mean = self.inward(about.reshape(-1, 3)).reshape(about.shape).mean(axis=1)
+        lengths = np.linalg.norm(mean, axis=1, keepdims=True)
+        return mean / np.where(lengths > 0, lengths, 1.0)
+
+
+def space_region(body: Body, clearance: float) -> SpaceRegion | None:
+    """The region of a body in space, by its healed surface if it has one; None if it is too thin everywhere."""
+    mesh = body.mesh
+    if body.healing is not None:
+        shell = Shell(body.healing.surface.vertices, body.healing.surface.triangles)
+    else:
+        shell = Shell(mesh.nodes, mesh.boundary)
+    region = SpaceRegion(shell, clearance)
+    deep = region.push_inside(mesh.nodes[mesh.elements].mean(axis=1))
+    return region if region.depths(deep).max() >= MARGIN * clearance else None
+
+
+def body_region(body: Body, clearance: float) -> Region:
+    """The region of a body, as it was drawn or scanned; of its mesh where there is no such thing.
+
+    Raises:
+        InputError: the body is too thin for the clearance everywhere.
+    """
+    region = (flat_region if body.mesh.dim == 2 else space_region)(body, clearance)
+    if region is None:
+        depth = f"{1e3 * clearance:g} mm inside its {'edge' if body.mesh.dim == 2 else 'surface'}"
+        raise InputError(f"the body is too thin for cables {depth}; lower the clearance")
+    return region

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.design.along import least_along
+from hydrostat.design.polyline import least_along
 from hydrostat.errors import InputError
 from hydrostat.robot import Point
 

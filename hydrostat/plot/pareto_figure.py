@@ -6,8 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from hydrostat.design.front import Size, best_errors, on_front
-from hydrostat.design.network import Alternative, Network
+from hydrostat.design.network import Alternative, Network, Size, best_errors, on_front
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.numbers import millimetres

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.design.front import size_of
-from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, size_of
+from hydrostat.design.request import RouteOptions
 from hydrostat.design.score_card import rest_error
 from hydrostat.plot.growth_figure import draw_growth, stage_runs
 from hydrostat.plot.html import Html, tag

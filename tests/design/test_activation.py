@@ -6,8 +6,7 @@ from builders import strip_robot
 from scipy.optimize import nnls
 
 from hydrostat.design import activate, edge_fibres, element_fibres
-from hydrostat.design.muscles.activation import _Activation, least_effort
-from hydrostat.design.muscles.orientation import wanted_directions
+from hydrostat.design.muscles.activation import _Activation, least_effort, wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
 from hydrostat.robot import Pose
 from hydrostat.simulation import round_off

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import body_region
 from hydrostat.design.zone import Zone
 from hydrostat.robot import Body, Cable, Mount, Pin, Pose, Robot, Winch
 

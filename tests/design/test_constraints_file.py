@@ -7,8 +7,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.design import Constraints, Zone
-from hydrostat.design.constraints_file import ZONES, read_constraints
-from hydrostat.design.constraints_schema import ConstraintsTable
+from hydrostat.design.constraints_file import ZONES, ConstraintsTable, read_constraints
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount
 

@@ -10,7 +10,7 @@ from builders import box_robot, mesh_body, strip_mesh, strip_robot
 from robustness import EXAMPLES
 
 from hydrostat.design import Constraints, FibreKind, Network, TreeOptions, TreeTrace, design_cables
-from hydrostat.design.body_region import body_region
+from hydrostat.design.region import body_region
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import plush_pattern
 from hydrostat.ik import solve_ik

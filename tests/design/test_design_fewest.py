@@ -8,7 +8,7 @@ from builders import strip_robot
 from test_design_routes import DOWN, SMALL, UP, Stopped, bare, broken
 
 from hydrostat.design import Constraints, Network, design_cables
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.request import RouteOptions
 from hydrostat.errors import HydrostatError
 
 TOLERANCE = 8e-3

@@ -9,10 +9,10 @@ import pytest
 from builders import mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design import Constraints, Network, TreeOptions, design_cables
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.network import RouteTrace
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.region import body_region
+from hydrostat.design.request import RouteOptions
 from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.ik import Limits, solve_ik

@@ -6,7 +6,7 @@ import shapely
 from builders import box_mesh, strip_mesh, strip_robot
 
 from hydrostat.design import edge_fibres, element_fibres
-from hydrostat.design.muscles.orientation import wanted_directions
+from hydrostat.design.muscles.activation import wanted_directions
 from hydrostat.mechanics import Assembly, NewtonOptions, minimise
 from hydrostat.robot import Pose
 from hydrostat.simulation import body_energies, round_off

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.region import body_region
+from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.bench import Bench
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout, Line, Stand

@@ -8,10 +8,9 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.routes.begin import layout_of
+from hydrostat.design.routes.begin import flipped, layout_of, mirrored
 from hydrostat.design.routes.growth import without
 from hydrostat.design.routes.layout import Layout, Line, Stand
-from hydrostat.design.routes.mirror import flipped, mirrored
 from hydrostat.robot import Mount, Winch
 
 LOOSE = Constraints(slack=0.01, spool_ratio=2.0)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from builders import mesh_body, strip_mesh, strip_robot
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import body_region
 from hydrostat.design.routes.price import PathLimits, PricedPath, price_paths, steepest_path
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.geometry.anchors import Anchors

@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.route_options import RouteOptions
-from hydrostat.design.routes.begin import layout_of
+from hydrostat.design.region import body_region
+from hydrostat.design.request import RouteOptions
+from hydrostat.design.routes.begin import layout_of, mirrored
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certify import certify
 from hydrostat.design.routes.layout import Layout, Line
-from hydrostat.design.routes.mirror import mirrored
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import RefineOptions, linear_model, refine
 from hydrostat.design.routes.route_graph import route_graph

@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
-from hydrostat.design.along import least_along
-from hydrostat.design.body_region import body_region
-from hydrostat.design.flat_region import FlatRegion
-from hydrostat.design.region import Region
+from hydrostat.design.polyline import least_along
+from hydrostat.design.region import FlatRegion, Region, body_region
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Solid

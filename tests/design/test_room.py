@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from builders import mesh_body, strip_mesh, strip_robot
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import body_region
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import pushed_back

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from builders import box_robot, mesh_body, strip_mesh, strip_robot
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import body_region
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError

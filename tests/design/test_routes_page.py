@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from jaxtyping import config
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints_file import read_constraints
+from hydrostat.design.region import body_region
 from hydrostat.robot import load_robot
 
 ROOT = Path(__file__).parents[2]

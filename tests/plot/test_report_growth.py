@@ -8,7 +8,7 @@ from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_ne
 from plot.test_report import Page
 
 from hydrostat.design import Alternative, Certificate, Network, Stage
-from hydrostat.design.front import best_errors, on_front
+from hydrostat.design.network import best_errors, on_front
 from hydrostat.plot import draw_front, draw_growth, inline_svg, report_text
 from hydrostat.plot.growth_figure import stage_runs
 from hydrostat.plot.palette import WINCHES

@@ -5,10 +5,9 @@ from dataclasses import replace
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Network
-from hydrostat.design.progress import Progress
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.progress import Better, Progress, Watch, unseen
+from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.design_routes import Search
-from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Pose, Robot
 

@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, Stage
-from hydrostat.design.progress import Progress
-from hydrostat.design.region import Region
-from hydrostat.design.route_options import RouteOptions
+from hydrostat.design.progress import Progress, Watch, unseen
+from hydrostat.design.region import Region, body_region
+from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certify import certify
@@ -20,7 +19,6 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import route_graph
-from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Pose, Robot

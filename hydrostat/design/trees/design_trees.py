@@ -9,23 +9,18 @@ from math import comb
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.design.body_region import body_region
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.muscles.activation import Activation, activate
+from hydrostat.design.muscles.activation import Activation, activate, wanted_directions
 from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
-from hydrostat.design.muscles.orientation import wanted_directions
 from hydrostat.design.network import Network, TreeTrace
-from hydrostat.design.polyline import length, sharpest_turn
-from hydrostat.design.progress import Progress
-from hydrostat.design.region import Route
-from hydrostat.design.tree_options import TreeOptions
-from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, lay_route, strongest
-from hydrostat.design.trees.judge import judge
-from hydrostat.design.trees.prune import prune
-from hydrostat.design.trees.via_points import keep_apart
-from hydrostat.design.trees.winch_tree import Tree, WinchTrees
-from hydrostat.design.watch import Watch, unseen
+from hydrostat.design.polyline import Route, length, sharpest_turn
+from hydrostat.design.progress import Progress, Watch, unseen
+from hydrostat.design.region import body_region
+from hydrostat.design.request import TreeOptions
+from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
+from hydrostat.design.trees.judge import judge, prune
+from hydrostat.design.trees.winch_trees import Tree, WinchTrees
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Cable, Pose, Robot, Winch
 

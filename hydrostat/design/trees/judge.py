@@ -1,11 +1,9 @@
-"""`judge`: which of several robots reaches some poses best by its own winches (E24)."""
+"""`judge`, `prune`: which robot reaches some poses best (E24), and which of its cables are needed (R44)."""
 
 from collections.abc import Sequence
 
-from hydrostat.design.error import rms_error
-from hydrostat.design.network import Stage
-from hydrostat.design.progress import Progress
-from hydrostat.design.watch import Better, Watch, unseen
+from hydrostat.design.network import Stage, rms_error
+from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
@@ -61,3 +59,34 @@ def cost(reached: Sequence[ReachedPose], tension: float) -> float:
     """Pose error [m], times how often the largest tension exceeds `tension` [N] if it does."""
     largest = max(float(pose.pose.tensions.max(initial=0.0)) for pose in reached)
     return rms_error(reached) * max(largest / tension, 1.0)
+
+
+def prune(
+    robot: Robot, poses: Sequence[Pose], reached: tuple[ReachedPose, ...], *, tension: float, loss: float
+) -> tuple[Robot, tuple[ReachedPose, ...]]:
+    """Leave out cables, the shortest first, while the cost stays within 1 + `loss` of what it was.
+
+    Every winch keeps a cable.
+
+    Args:
+        robot: with its network.
+        poses: what it should reach.
+        reached: what it reaches of them.
+        tension: what a cable should bear at most [N].
+        loss: how much of the cost all omissions together may add, as a fraction.
+    """
+    allowed = (1.0 + loss) * cost(reached, tension)
+    for cable in sorted(robot.cables, key=lambda cable: float(cable.segments[cable.bare].sum())):
+        others = [other for other in robot.cables if other is not cable]
+        if not any(other.winch == cable.winch for other in others):
+            continue
+        trial = robot.with_network(robot.winches, others)
+        simulation = Simulation(trial)
+        found = tuple(solve_ik(simulation, pose, options=_OPTIONS) for pose in poses)
+        if cost(found, tension) <= allowed:
+            robot, reached = trial, found
+    return robot, reached
+
+
+_OPTIONS = InverseOptions(restarts=0, unique=False)
+"""One descent tells enough."""

@@ -1,14 +1,133 @@
-"""`design_work`: a design in a process of its own."""
+"""`design_work`: a design in a process of its own, and the networks that it finds."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.design import Stage, design_cables
+from hydrostat.design.network import rms_error
 from hydrostat.ik import ReachedPose
-from hydrostat.robot import Cable, Robot, Winch
-from hydrostat.studio.designing.asked import Asked
-from hydrostat.studio.designing.candidate import Solution, solution
+from hydrostat.robot import Cable, Pose, Robot, Winch
+from hydrostat.studio.designing.run import Asked
 from hydrostat.studio.jobs import Report
+from hydrostat.units import counted
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reach:
+    """What a network reaches of a pose.
+
+    Attributes:
+        pose: that was wanted.
+        nodes: where they come to [m].
+        contractions: of the winches [m].
+        tensions: of the cables [N].
+        places: where the markers of the pose come to, by name [m].
+        errors: distance of each from its target [m].
+        error: root of their mean square [m].
+    """
+
+    pose: Pose
+    nodes: Nodes
+    contractions: Vector
+    tensions: Vector
+    places: dict[str, tuple[float, ...]]
+    errors: dict[str, float]
+    error: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Solution:
+    """A network as the process that found it sends it: without the body, which is known.
+
+    Attributes:
+        winches: of the network.
+        cables: of the network.
+        reaches: what it reaches of each pose.
+        error: root of the mean squared marker error over all poses [m].
+    """
+
+    winches: tuple[Winch, ...]
+    cables: tuple[Cable, ...]
+    reaches: tuple[Reach, ...]
+    error: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Candidate:
+    """A network to choose.
+
+    Attributes:
+        number: by which it is named; no two have the same.
+        source: the robot that it was designed for.
+        robot: that one with the network.
+        reaches: what it reaches of each pose.
+        error: root of the mean squared marker error over all poses [m].
+        complete: whether the search came to its end.
+        best: whether it is what the search returned, rather than an alternative.
+    """
+
+    number: int
+    source: Robot
+    robot: Robot
+    reaches: tuple[Reach, ...]
+    error: float
+    complete: bool
+    best: bool
+
+    @property
+    def counts(self) -> str:
+        """Such as "2 winches, 6 cables"."""
+        return network_words(self.robot)
+
+    @property
+    def length(self) -> float:
+        """Of all cables together [m]."""
+        return sum(cable.length for cable in self.robot.cables)
+
+    @property
+    def tension(self) -> float:
+        """The largest in any pose [N]."""
+        return max((float(reach.tensions.max(initial=0.0)) for reach in self.reaches), default=0.0)
+
+    def reach(self, pose: str) -> Reach | None:
+        """What it reaches of a pose; None if it was not designed for it."""
+        return next((reach for reach in self.reaches if reach.pose.name == pose), None)
+
+
+def told_error(error: float) -> str:
+    """An error [m] as it is told; nobody builds a robot that is better than a tenth of a millimetre."""
+    if error < 1e-4:
+        return "below 0.1 mm"
+    return f"{1e3 * error:.1f} mm" if error < 0.01 else f"{1e3 * error:.0f} mm"
+
+
+def network_words(robot: Robot) -> str:
+    """How many winches and cables a robot has."""
+    return f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+
+
+def solution(robot: Robot, reached: tuple[ReachedPose, ...]) -> Solution:
+    """What is sent of a network."""
+    return Solution(
+        winches=robot.winches, cables=robot.cables, reaches=tuple(map(_reach, reached)), error=rms_error(reached)
+    )
+
+
+def _reach(reached: ReachedPose) -> Reach:
+    pose, solved = reached.wanted, reached.pose
+    places = {name: tuple(np.asarray(solved.markers[name]).tolist()) for name in pose.targets}
+    return Reach(
+        pose=pose,
+        nodes=solved.nodes,
+        contractions=solved.contractions,
+        tensions=solved.tensions,
+        places=places,
+        errors=dict(reached.errors),
+        error=reached.rms_error,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,12 +12,18 @@ from hydrostat.design import RouteOptions
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.designing.asked import Asked, asked_for, wished_poses
-from hydrostat.studio.designing.candidate import Candidate, Reach, network_words, told_error
-from hydrostat.studio.designing.design_work import Found, Glimpse, design_work
+from hydrostat.studio.designing.design_work import (
+    Candidate,
+    Found,
+    Glimpse,
+    Reach,
+    design_work,
+    network_words,
+    told_error,
+)
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
-from hydrostat.studio.designing.run import Mark, Run, beginning, error_at_rest
+from hydrostat.studio.designing.run import Asked, Mark, Run, asked_for, beginning, error_at_rest, wished_poses
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs

@@ -4,8 +4,94 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hydrostat.design import Constraints, RouteOptions
+from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
-from hydrostat.studio.designing.asked import Asked
+from hydrostat.studio.records.wishes import Paint, Wishes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Asked:
+    """All that a design begins with.
+
+    Attributes:
+        robot: to design for.
+        poses: to reach.
+        winches: how many, or "auto".
+        cables: how many in all.
+        constraints: to keep.
+        options: of the search.
+        improve: whether to begin with the robot's own network.
+    """
+
+    robot: Robot
+    poses: tuple[Pose, ...]
+    winches: int | str
+    cables: int
+    constraints: Constraints
+    options: RouteOptions
+    improve: bool
+
+
+def asked_for(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> Asked:
+    """What a person's wishes for a robot ask of a design.
+
+    Args:
+        robot: to design for.
+        wishes: of the person.
+        options: of the search; but for the tolerance, which is wished for.
+
+    Raises:
+        InputError: no pose, or wishes that do not fit the robot.
+    """
+    constraints = wished_constraints(robot, wishes)
+    constraints.check(robot)
+    given = options or RouteOptions(tolerance=wishes.tolerance)
+    return Asked(
+        robot=robot,
+        poses=wished_poses(robot, wishes),
+        winches=wishes.winches or "auto",
+        cables=wishes.cables,
+        constraints=constraints,
+        options=given,
+        improve=wishes.improve,
+    )
+
+
+def wished_poses(robot: Robot, wishes: Wishes) -> tuple[Pose, ...]:
+    """The poses to reach: those that are named and still there; all if none is.
+
+    Raises:
+        InputError: the robot has no pose.
+    """
+    if not robot.poses:
+        raise InputError("there is no pose to design for; drag the body in Pose and store how it should be")
+    named = [pose for name, pose in robot.poses.items() if name in wishes.poses]
+    return tuple(named or robot.poses.values())
+
+
+def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
+    """What can be built, as a person wishes it; winches and cables to keep that are gone are passed over.
+
+    Raises:
+        InputError: limits that cannot be.
+    """
+    zones = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
+    names = {winch.name for winch in robot.winches}
+    return Constraints(
+        winch_zones=zones[Paint.WINCH_ZONES],
+        keep_out=zones[Paint.KEEP_OUT],
+        still=zones[Paint.STILL],
+        mirror=wishes.mirror,
+        tension=wishes.tension,
+        clearance=wishes.clearance,
+        cables_per_winch=wishes.cables_per_winch,
+        slack=wishes.slack,
+        spool_ratio=2.0 if wishes.stepped else 1.0,
+        torque=wishes.torque,
+        locked_winches=tuple(name for name in wishes.kept_winches if name in names),
+        locked_cables=tuple(number for number in wishes.kept_cables if number < len(robot.cables)),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

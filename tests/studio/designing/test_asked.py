@@ -7,8 +7,7 @@ import pytest
 from hydrostat.design import Constraints, RouteOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, gallery_folder, load_robot
-from hydrostat.studio.designing.asked import asked_for, wished_constraints, wished_poses
-from hydrostat.studio.designing.run import beginning
+from hydrostat.studio.designing.run import asked_for, beginning, wished_constraints, wished_poses
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 

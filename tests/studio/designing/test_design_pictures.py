@@ -7,13 +7,10 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.design import Constraints, RouteOptions
-from hydrostat.studio.designing.asked import Asked
-from hydrostat.studio.designing.candidate import Candidate
-from hydrostat.studio.designing.chart import Chart, ticks
+from hydrostat.studio.designing.charts import Chart, front, front_chart, growth_chart, ticks
+from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.ease import DURATION, Ease
-from hydrostat.studio.designing.front_chart import front, front_chart
-from hydrostat.studio.designing.growth_chart import growth_chart
-from hydrostat.studio.designing.run import Mark, Run
+from hydrostat.studio.designing.run import Asked, Mark, Run
 from hydrostat.studio.designing.sketch import EDGE, MARGIN, BodySketch
 
 

@@ -9,8 +9,7 @@ from builders import box_robot
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.studio.bell import Bell
-from hydrostat.studio.designing.painter import Painter
-from hydrostat.studio.designing.zones import LEAST, lasso
+from hydrostat.studio.designing.painter import LEAST, Painter, lasso
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.wishes import Paint
 from hydrostat.studio.records.work import Work

@@ -10,9 +10,9 @@ from scipy.sparse.csgraph import dijkstra
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.polyline import length
-from hydrostat.design.region import Region, Route
-from hydrostat.design.tree_options import TreeOptions
+from hydrostat.design.polyline import Route, length
+from hydrostat.design.region import Region
+from hydrostat.design.request import TreeOptions
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh

@@ -7,9 +7,9 @@ import pytest
 from builders import mesh_body, strip_mesh
 
 from hydrostat.design import Constraints, TreeOptions
-from hydrostat.design.body_region import body_region
+from hydrostat.design.region import body_region
 from hydrostat.design.trees.design_trees import _apart, _shares
-from hydrostat.design.trees.winch_tree import WinchTrees, tree_score
+from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
 from hydrostat.geometry.mesh import Mesh
 
 OPTIONS, LIMITS = TreeOptions(), Constraints()

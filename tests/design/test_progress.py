@@ -8,8 +8,8 @@ from test_design_routes import DOWN, SMALL, UP, bare
 from test_judge import POSES, shifted
 
 from hydrostat.design import RouteTrace, Stage, design_cables
+from hydrostat.design.progress import Better
 from hydrostat.design.trees.judge import judge
-from hydrostat.design.watch import Better
 
 
 def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) -> None:

@@ -1,4 +1,4 @@
-"""`way_violations`: where cables run: how near to the edge, and through which zones."""
+"""`clearance_violations`, `hole_violations`, `bend_violations`: where cables run, their holes, how they turn."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from hydrostat.design.along import least_along
-from hydrostat.design.checks.parts import LENGTH, Parts, mm, place
+from hydrostat.design.checks.parts import ANGLE, LENGTH, Parts, mm, place
+from hydrostat.design.polyline import least_along
 from hydrostat.design.zone import Zone
+from hydrostat.robot import Mount
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,7 @@ class _Segments:
         return f"cable[{self.cables[index]}] between points {first} and {first + 1}"
 
 
-def way_violations(parts: Parts) -> Iterator[str]:
+def clearance_violations(parts: Parts) -> Iterator[str]:
     """Points and segments near the edge, segments in forbidden zones, bare ones in still zones, needless sheaths."""
     if not parts.new_cables:
         return
@@ -122,3 +123,109 @@ def _sheathed_for_nothing(parts: Parts, segments: _Segments) -> Iterator[str]:
         needed |= zone.least(starts, ends, limit=LENGTH) < LENGTH
     for index in chosen[~needed]:
         yield f"{segments.name(index)} runs in a sheath outside the still zones, and leads are not allowed"
+
+
+SAME = 1e-5
+"""Points no farther apart than this [m] share a hole."""
+
+Hole = tuple[int, int]
+"""A hole: number of the cable, and of its point."""
+
+
+def hole_violations(parts: Parts) -> Iterator[str]:
+    """Via points of cables too near to each other, or to a winch in the body that pulls other cables.
+
+    The first point of a cable, at its winch, is no hole.
+    """
+    cables = parts.robot.cables
+    holes = [(index, at) for index, cable in enumerate(cables) for at in range(1, len(cable.points))]
+    if not holes:
+        return
+    places = np.concatenate([points[1:] for points in parts.points])
+    new = np.isin([index for index, _ in holes], parts.new_cables)
+    yield from _holes_near_each_other(parts, holes, places, new)
+    yield from _holes_near_winches(parts, holes, places, new)
+
+
+def _holes_near_each_other(
+    parts: Parts, holes: list[tuple[int, int]], places: np.ndarray, new: np.ndarray
+) -> Iterator[str]:
+    least = parts.constraints.hole_gap
+    gaps = np.linalg.norm(places[:, None] - places, axis=2)
+    close = (gaps < least - LENGTH) & (gaps > SAME * (1 + 1e-6)) & (new[:, None] | new)
+    for one, other in np.argwhere(np.triu(close, 1)):
+        yield (
+            f"{_hole_name(holes[other])} is {mm(gaps[one, other])} from {_hole_name(holes[one])}, "
+            f"less than the hole_gap of {mm(least)}"
+        )
+
+
+def _holes_near_winches(
+    parts: Parts, holes: list[tuple[int, int]], places: np.ndarray, new: np.ndarray
+) -> Iterator[str]:
+    owners = np.array([parts.numbers[parts.robot.cables[index].winch] for index, _ in holes])
+    for number, winch in enumerate(parts.robot.winches):
+        if winch.mount is Mount.WORLD:
+            continue
+        gaps = np.linalg.norm(places - np.array(winch.at), axis=1)
+        least = 2 * winch.spool_radius
+        asked = (owners != number) & (new | (number in parts.new_winches))
+        for index in np.flatnonzero(asked & (gaps < least - LENGTH)):
+            yield (
+                f"{_hole_name(holes[index])} is {mm(gaps[index])} from {parts.winch_name(number)}, which pulls "
+                f"other cables, less than two spool radii of {mm(least)}"
+            )
+
+
+def _hole_name(hole: Hole) -> str:
+    return f"cable[{hole[0]}].points[{hole[1]}]"
+
+
+def bend_violations(parts: Parts) -> Iterator[str]:
+    """Turns and arcs that are too sharp, cables that are too long or too loose, spools that differ too much."""
+    for index in parts.new_cables:
+        yield from _sharp_bends(parts, index)
+        yield from _wrong_lengths(parts, index)
+    yield from _wrong_spools(parts)
+
+
+def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
+    """The arc fits a turn if it touches both segments no farther from the corner than the middle of the shorter."""
+    limits, spans = parts.constraints, np.diff(parts.points[index], axis=0)
+    if len(spans) < 2:
+        return
+    lengths = np.linalg.norm(spans, axis=1)
+    units = spans / lengths[:, None]
+    before, after = units[:-1], units[1:]
+    turns = 2 * np.arctan2(np.linalg.norm(after - before, axis=1), np.linalg.norm(after + before, axis=1))
+    tangents = 0.5 * np.minimum(lengths[:-1], lengths[1:])
+    arcs = tangents / np.maximum(np.tan(0.5 * turns), np.finfo(float).tiny)
+    gentler = np.tan(0.5 * np.maximum(turns - np.radians(ANGLE), 0.0))
+    for corner, (turn, arc) in enumerate(zip(np.degrees(turns), arcs, strict=True)):
+        name = f"cable[{index}].points[{corner + 1}]"
+        if turn > limits.turn + ANGLE:
+            yield f"{name} turns by {turn:.4g} degrees, more than the turn of {limits.turn:g}"
+        if limits.bend_radius * gentler[corner] > tangents[corner] + LENGTH:
+            yield f"{name} bends with a radius of {mm(arc)}, less than the bend_radius of {mm(limits.bend_radius)}"
+
+
+def _wrong_lengths(parts: Parts, index: int) -> Iterator[str]:
+    cable, limits = parts.robot.cables[index], parts.constraints
+    if limits.longest is not None and cable.length > limits.longest + LENGTH:
+        yield f"cable[{index}] is {mm(cable.length)} long, more than the longest of {mm(limits.longest)}"
+    if cable.slack > limits.slack + LENGTH:
+        yield f"cable[{index}] has a slack of {mm(cable.slack)}, more than {mm(limits.slack)}"
+
+
+def _wrong_spools(parts: Parts) -> Iterator[str]:
+    most, ratios = parts.constraints.spool_ratio * (1 + _ROUNDING), parts.robot.spool_ratios
+    for index in parts.new_cables:
+        if not 1 / most <= ratios[index] <= most:
+            yield (
+                f"cable[{index}] winds on a spool {ratios[index]:.4g} times as large as its winch's, "
+                f"beyond the spool_ratio of {parts.constraints.spool_ratio:g}"
+            )
+
+
+_ROUNDING = 1e-5
+"""Radii are rounded by no larger a share."""

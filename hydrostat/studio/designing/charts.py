@@ -1,0 +1,199 @@
+"""`front_chart`, `growth_chart`: what more cables gain, and how the error falls while a design runs, as SVG."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from hydrostat.plot.palette import WINCHES
+from hydrostat.studio.designing.design_work import Candidate
+from hydrostat.studio.designing.run import Mark, Run
+from hydrostat.units import counted
+
+LEFT, RIGHT, TOP, BOTTOM = 34.0, 10.0, 20.0, 32.0
+"""Room for the numbers and words around a chart."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chart:
+    """A chart whose both scales begin at 0.
+
+    Attributes:
+        width: of the picture.
+        height: of the picture.
+        across: the largest value across.
+        up: the largest value upwards.
+        name: of what runs upwards, written at the top.
+        below: of what runs across, written at the bottom.
+        whole: whether values across are whole numbers.
+    """
+
+    width: float
+    height: float
+    across: float
+    up: float
+    name: str
+    below: str
+    whole: bool = False
+
+    def x(self, value: float) -> float:
+        """Where a value across is."""
+        return LEFT + (self.width - LEFT - RIGHT) * value / self.across
+
+    def y(self, value: float) -> float:
+        """Where a value upwards is."""
+        return self.height - BOTTOM - (self.height - TOP - BOTTOM) * value / self.up
+
+    def drawn(self, inside: str, *, label: str) -> str:
+        """The chart with what is drawn inside.
+
+        Args:
+            inside: SVG.
+            label: for who cannot see it.
+        """
+        parts = [
+            f'<svg viewBox="0 0 {self.width:g} {self.height:g}" class="chart" role="img" aria-label="{label}">',
+            f'<text x="0" y="12" class="chart-word">{self.name}</text>',
+            f'<text x="{self.width - RIGHT:g}" y="{self.height - 1:g}" class="chart-word" text-anchor="end">'
+            f"{self.below}</text>",
+        ]
+        right = self.width - RIGHT
+        for value in ticks(self.up, most=3):
+            y = self.y(value)
+            parts.append(f'<line x1="{LEFT:g}" x2="{right:g}" y1="{y:.1f}" y2="{y:.1f}" class="chart-grid"/>')
+            parts.append(_tick(LEFT - 6, y + 4, value, "end"))
+        below = ticks(self.across, most=6, least=1.0 if self.whole else 0.0)
+        parts += [_tick(self.x(value), self.height - BOTTOM + 14, value, "middle") for value in below]
+        return "".join(parts) + inside + "</svg>"
+
+
+def _tick(x: float, y: float, value: float, anchor: str) -> str:
+    return f'<text x="{x:.1f}" y="{y:.1f}" class="chart-tick" text-anchor="{anchor}">{value:g}</text>'
+
+
+def ticks(largest: float, *, most: int, least: float = 0.0) -> list[float]:
+    """Round values from 0 up to the largest.
+
+    Args:
+        largest: none is above.
+        most: so many steps at most.
+        least: no step is smaller.
+    """
+    raw = max(largest / most, least, 1e-9)
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= raw * (1 - 1e-9))
+    if least:
+        step = max(round(step), 1)
+    return [float(f"{index * step:.6g}") for index in range(int(largest / step * (1 + 1e-9)) + 1)]
+
+
+def polyline(points: list[tuple[float, float]], place: Callable[[float, float], tuple[float, float]]) -> str:
+    """A line through points, for the attribute `points`."""
+    return " ".join("{:.1f},{:.1f}".format(*place(x, y)) for x, y in points)
+
+
+FRONT_WIDTH, FRONT_HEIGHT = 300.0, 176.0
+
+
+def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: int | None) -> str:
+    """A dot for each candidate, in the colour of its number of winches, small ones for networks on the way, as SVG.
+
+    The line goes through what is better than all with fewer cables: what more of them gain.
+
+    Args:
+        candidates: to compare.
+        trail: networks on the way of the last design.
+        chosen: number of the candidate with a ring.
+    """
+    errors = [(len(one.robot.cables), 1e3 * one.error) for one in candidates]
+    way = [(mark.cables, 1e3 * mark.error) for mark in trail]
+    chart = Chart(
+        width=FRONT_WIDTH,
+        height=FRONT_HEIGHT,
+        across=max([cables for cables, _ in (*errors, *way)], default=1) + 0.6,
+        up=1.1 * max([1e-3, *(error for _, error in (*errors, *way))]),
+        name="error, mm",
+        below="cables",
+        whole=True,
+    )
+
+    def place(x: float, y: float) -> tuple[float, float]:
+        return chart.x(x), chart.y(y)
+
+    line = polyline([(float(x), y) for x, y in front([*errors, *way])], place)
+    parts = [f'<polyline points="{line}" class="chart-front"/>']
+    for cables, error in way:
+        x, y = place(cables, error)
+        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" class="chart-way"/>')
+    for one, (cables, error) in zip(candidates, errors, strict=True):
+        x, y = place(cables, error)
+        ring = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="9" class="chart-ring"/>' if one.number == chosen else ""
+        colour = winch_count_colour(len(one.robot.winches))
+        parts.append(f'{ring}<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{colour}" class="chart-dot"/>')
+    counts = sorted({len(one.robot.winches) for one in candidates})
+    keys = [(winch_count_colour(count), counted(count, "winch")) for count in counts]
+    return chart.drawn("".join([*parts, _legend(keys)]), label="error against number of cables")
+
+
+def front(points: Sequence[tuple[int, float]]) -> list[tuple[int, float]]:
+    """Of cables and errors, those with a smaller error than all with as few cables."""
+    kept: list[tuple[int, float]] = []
+    for cables, error in sorted(points):
+        if not kept or error < kept[-1][1]:
+            kept.append((cables, error))
+    return kept
+
+
+def winch_count_colour(winches: int) -> str:
+    """The colour of all networks with so many winches."""
+    return WINCHES[(winches - 1) % len(WINCHES)]
+
+
+def _legend(keys: list[tuple[str, str]]) -> str:
+    """Colours with their words, at the top from the right."""
+    parts, x = [], FRONT_WIDTH - 8
+    for colour, words in reversed(keys[:3]):
+        parts.append(f'<text x="{x:g}" y="12" class="chart-word" text-anchor="end">{words}</text>')
+        x -= 7.4 * len(words) + 10
+        parts.append(f'<circle cx="{x + 4:g}" cy="8" r="4" fill="{colour}"/>')
+        x -= 8
+    return "".join(parts)
+
+
+GROWTH_WIDTH, GROWTH_HEIGHT = 316.0, 132.0
+
+
+def growth_chart(run: Run, seconds: float) -> str:
+    """The error against time, as SVG.
+
+    Args:
+        run: so far.
+        seconds: since it began.
+    """
+    errors = [1e3 * run.rest, *(1e3 * mark.error for mark in run.trail)]
+    times = [0.0, *(mark.seconds for mark in run.trail)]
+    end = max(seconds, times[-1], 1.0)
+    chart = Chart(
+        width=GROWTH_WIDTH,
+        height=GROWTH_HEIGHT,
+        across=end,
+        up=1.05 * max(*errors, 1e-3),
+        name="error, mm",
+        below="seconds",
+    )
+    steps = [(0.0, errors[0])]
+    for time, before, after in zip(times[1:], errors, errors[1:], strict=False):
+        steps += [(time, before), (time, after)]
+    steps.append((end, errors[-1]))
+
+    def place(x: float, y: float) -> tuple[float, float]:
+        return chart.x(x), chart.y(y)
+
+    line = polyline(steps, place)
+    floor = chart.y(0.0)
+    area = f"{chart.x(0.0):.1f},{floor:.1f} {line} {chart.x(end):.1f},{floor:.1f}"
+    x, y = place(end, errors[-1])
+    inside = (
+        f'<polygon points="{area}" class="chart-area"/><polyline points="{line}" class="chart-line"/>'
+        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" class="chart-now"/>'
+    )
+    return chart.drawn(inside, label=f"error of the best network, now {errors[-1]:.1f} mm")
