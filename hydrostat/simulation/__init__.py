@@ -9,7 +9,7 @@ from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
 from hydrostat.simulation.pose_file import pose_facts, write_pose
-from hydrostat.simulation.profile import Profile, read_profile, write_profile
+from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, read_profile, write_profile
 from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -29,6 +29,7 @@ __all__ = [
     "PathDependence",
     "PinShifts",
     "Profile",
+    "ProfileTable",
     "RigSlopes",
     "Sensitivity",
     "Simulation",
@@ -39,6 +40,7 @@ __all__ = [
     "follow_branch",
     "path_dependence",
     "pose_facts",
+    "profile_text",
     "read_profile",
     "rig_slopes",
     "round_off",

@@ -1,10 +1,8 @@
 """`write_motion`: a motion as motion.csv, and as motion.pvd with a mesh for each frame, which ParaView plays."""
 
-import csv
 import shutil
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,6 +14,7 @@ from hydrostat.errors import NotConvergedError
 from hydrostat.geometry.files.mesh_file import write_mesh
 from hydrostat.robot import Robot, replace_file
 from hydrostat.simulation.motion import Motion
+from hydrostat.simulation.profile import csv_text
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,7 +71,7 @@ def write_motion(
         _replace_folder(folder / "frames", Path(part))
     table = _table(robot, seen)
     files = [
-        replace_file(folder / "motion.csv", _csv(robot, table).encode()),
+        replace_file(folder / "motion.csv", _csv(robot, table)),
         replace_file(folder / "motion.pvd", _pvd(frames).encode()),
     ]
     if stopped is not None:
@@ -119,7 +118,7 @@ def _replace_folder(folder: Path, part: Path) -> None:
         file.replace(folder / file.name)
 
 
-def _csv(robot: Robot, table: MotionTable) -> str:
+def _csv(robot: Robot, table: MotionTable) -> bytes:
     """Times in s, lengths in mm, tensions in N, energies in J."""
     axes = "xyz"[: robot.body.mesh.dim]
     head = ["time_s", *(f"{winch.name}_mm" for winch in robot.winches)]
@@ -127,11 +126,7 @@ def _csv(robot: Robot, table: MotionTable) -> str:
     head += [f"cable_{index + 1}_N" for index in range(len(robot.cables))] + ["kinetic_J", "potential_J"]
     places = table.markers.reshape(len(table.times), -1)
     columns = [table.times[:, None], 1e3 * table.contractions, 1e3 * places, table.tensions, table.energies]
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows([f"{value:.9g}" for value in row] for row in np.concatenate(columns, axis=1))
-    return text.getvalue()
+    return csv_text(head, ([f"{value:.9g}" for value in row] for row in np.concatenate(columns, axis=1)))
 
 
 def _pvd(frames: list[tuple[float, str]]) -> str:

@@ -1,6 +1,8 @@
-"""`Profile`: contractions in time."""
+"""`Profile`: contractions in time; `ProfileTable`: the one table that holds them, written and read."""
 
 import csv
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
@@ -12,6 +14,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, replace_file
+from hydrostat.units import quote
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,48 +60,124 @@ class Profile:
         return (1 - share) * self.values[place] + share * self.values[place + 1]
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ProfileTable:
+    """A CSV of moves: a column `time_s`, and one for each winch that moves, by its name, in millimetres.
+
+    The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
+
+    Attributes:
+        name: of its file.
+        profile: what it says, along lines from row to row.
+        lines: of the file, in which its rows stand.
+    """
+
+    name: str
+    profile: Profile
+    lines: tuple[int, ...] = field(repr=False)
+
+    @classmethod
+    def read(cls, content: bytes, robot: Robot, *, name: str) -> Self:
+        """Read the bytes of a file.
+
+        Args:
+            content: of the file.
+            robot: whose winches it names; those that it does not name take in nothing.
+            name: of the file, for messages.
+
+        Raises:
+            InputError: it is no such table; the text names the line, the column, and what is allowed.
+        """
+        try:
+            reader = csv.reader(StringIO(content.decode("utf-8-sig"), newline=""))
+            rows = [(reader.line_num, row) for row in reader]
+        except (UnicodeDecodeError, csv.Error) as error:
+            raise InputError(f"{name}: cannot be read as a table ({error})") from None
+        head = [cell.strip() for cell in rows[0][1]] if rows else []
+        names = [winch.name for winch in robot.winches]
+        if TIME not in head or len(set(head)) != len(head):
+            raise InputError(f"{name}, line 1: name the columns: {TIME} and the winches, each once")
+        for column in head:
+            if column not in (TIME, *names):
+                raise InputError(f'{name}, line 1: there is no winch "{column}"; winches are: {", ".join(names)}')
+        lines, times, values = [], [], []
+        for line, row in rows[1:]:
+            if any(cell.strip() for cell in row):
+                numbers = _numbers(f"{name}, line {line}", head, row)
+                if times and numbers[TIME] <= times[-1]:
+                    raise InputError(
+                        f"{name}, line {line}, column {TIME}: the times must rise from row to row; "
+                        f"{numbers[TIME]:g} comes after {times[-1]:g}"
+                    )
+                lines.append(line)
+                times.append(numbers[TIME])
+                values.append([1e-3 * numbers.get(winch, 0.0) for winch in names])
+        if not times:
+            raise InputError(f"{name}: has no row of numbers below the names of its columns")
+        profile = Profile(times=np.array(times), values=np.array(values).reshape(len(times), len(names)))
+        return cls(name=name, profile=profile, lines=tuple(lines))
+
+    @classmethod
+    def open(cls, path: Path, robot: Robot) -> Self:
+        """Read a file.
+
+        Raises:
+            InputError: it cannot be read, or see `read`.
+        """
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise InputError(f"{path}: cannot be read as a table ({error.strerror or error})") from None
+        return cls.read(content, robot, name=str(path))
+
+
+def profile_text(robot: Robot, profile: Profile) -> bytes:
+    """The bytes of a `ProfileTable` of a profile; a gentle one loses that."""
+    rows = zip(profile.times, 1e3 * profile.values + 0.0, strict=True)
+    return csv_text(
+        [TIME, *(winch.name for winch in robot.winches)],
+        ([f"{time:.15g}", *(f"{value:.9g}" for value in row)] for time, row in rows),
+    )
+
+
 def read_profile(path: Path, robot: Robot) -> Profile:
-    """A profile from a table: a column `time_s`, and one for each winch that moves, by its name, in millimetres.
+    """A profile from a `ProfileTable`.
 
     Raises:
         InputError: the file cannot be read, or is no such table; the text names the line.
     """
-    try:
-        rows = list(csv.reader(StringIO(path.read_text(encoding="utf-8-sig"))))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{path}: cannot be read as a table ({error})") from None
-    head = [name.strip() for name in rows[0]] if rows else []
-    if "time_s" not in head or len(set(head)) != len(head):
-        raise InputError(f"{path}, line 1: name the columns: time_s and the winches, each once")
-    names = [winch.name for winch in robot.winches]
-    for name in head:
-        if name != "time_s" and name not in names:
-            raise InputError(f'{path}, line 1: there is no winch "{name}"; winches are: {", ".join(names)}')
-    times, values = [], []
-    for number, row in enumerate(rows[1:], start=2):
-        if not any(cell.strip() for cell in row):
-            continue
-        cells = _numbers(path, number, head, row)
-        times.append(cells.pop("time_s"))
-        values.append([1e-3 * cells.get(name, 0.0) for name in names])
-    try:
-        return Profile(times=np.array(times), values=np.array(values).reshape(len(times), len(names)))
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+    return ProfileTable.open(path, robot).profile
 
 
 def write_profile(path: Path, robot: Robot, profile: Profile) -> Path:
     """Write a profile as `read_profile` reads it, whole or not at all; returns its path. A gentle one loses that."""
+    return replace_file(path, profile_text(robot, profile))
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:
+    """A CSV in UTF-8, a line for the names of the columns and one for each row."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time_s", *(winch.name for winch in robot.winches)])
-    for time, row in zip(profile.times, 1e3 * profile.values, strict=True):
-        writer.writerow([f"{time:.15g}", *(f"{value:.9g}" for value in row + 0.0)])
-    return replace_file(path, text.getvalue().encode())
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue().encode()
 
 
-def _numbers(path: Path, number: int, head: list[str], row: list[str]) -> dict[str, float]:
-    try:
-        return {name: float(cell) for name, cell in zip(head, row, strict=True)}
-    except ValueError:
-        raise InputError(f"{path}, line {number}: write a number in each of the {len(head)} columns") from None
+def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, float]:
+    """The numbers of a row by the names of their columns."""
+    if len(row) != len(head):
+        raise InputError(f"{place}: write a number in each of the {len(head)} columns, not {len(row)} of them")
+    found = {}
+    for column, cell in zip(head, row, strict=True):
+        try:
+            found[column] = float(cell)
+        except ValueError:
+            found[column] = math.nan
+        if not math.isfinite(found[column]):
+            unit = "seconds" if column == TIME else "millimetres"
+            raise InputError(f"{place}, column {column}: write a number of {unit}, not {quote(cell.strip())}")
+    return found
+
+
+TIME = "time_s"
+"""Name of the column of times [s]."""

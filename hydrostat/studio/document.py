@@ -5,11 +5,11 @@ from functools import cached_property
 from pathlib import Path
 from threading import RLock
 
+from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell, Topic
-from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import folder_stamp

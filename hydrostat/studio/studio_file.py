@@ -6,10 +6,10 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from hydrostat import units
+from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import replace_file
 from hydrostat.robot.tables_file import read_bytes
-from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.records.wishes import Wishes
 
 FILE = "studio.json"

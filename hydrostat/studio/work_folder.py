@@ -4,13 +4,13 @@ import hashlib
 import tomllib
 from pathlib import Path
 
+from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Source, load_robot, robot_text, save_robot
 from hydrostat.robot.merge import lost_comments, merged_text
 from hydrostat.robot.read import FILE
 from hydrostat.robot.tables_file import read_text
 from hydrostat.studio import studio_file
-from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.studio_file import read_studio_file, write_studio_file

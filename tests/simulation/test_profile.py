@@ -7,7 +7,7 @@ import pytest
 from builders import strip_robot
 
 import hydrostat as hs
-from hydrostat.simulation import read_profile, write_profile
+from hydrostat.simulation import ProfileTable, read_profile, write_profile
 
 
 def test_a_profile_goes_through_its_values() -> None:
@@ -46,11 +46,13 @@ def test_a_table_is_read(tmp_path: Path) -> None:
         ("down\n1\n", "line 1: name the columns"),
         ("time_s,down,down\n0,1,1\n", "each once"),
         ("time_s,sideways\n0,1\n", 'line 1: there is no winch "sideways"; winches are: up, down'),
-        ("time_s,down\n0,1\n1,much\n", "line 3: write a number in each of the 2 columns"),
-        ("time_s,down\n0,1\n1\n", "line 3: write a number"),
-        ("time_s,down\n0,1\n0,2\n", "must rise"),
-        ("time_s,down\n0,1\n1,nan\n", "not finite"),
-        ("time_s,down\n", "needs contractions for each time"),
+        ("time_s,down\n0,1\n1,much\n", 'line 3, column down: write a number of millimetres, not "much"'),
+        ("time_s,down\n0,1\n\nsoon,1\n", 'line 4, column time_s: write a number of seconds, not "soon"'),
+        ("time_s,down\n0,1\n1\n", "line 3: write a number in each of the 2 columns, not 1 of them"),
+        ("time_s,down\n0,1\n0,2\n", "line 3, column time_s: the times must rise from row to row; 0 comes after 0"),
+        ("time_s,down\n0,1\n1,nan\n", 'line 3, column down: write a number of millimetres, not "nan"'),
+        ("time_s,down\n1,-inf\n", 'line 2, column down: write a number of millimetres, not "-inf"'),
+        ("time_s,down\n", "has no row of numbers"),
     ],
 )
 def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, message: str) -> None:
@@ -61,6 +63,15 @@ def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, message: str
     assert str(path) in str(refused.value)
     with pytest.raises(hs.InputError, match="cannot be read"):
         read_profile(tmp_path / "none.csv", strip_robot(columns=4, rows=2))
+
+
+def test_each_row_knows_its_line(tmp_path: Path) -> None:
+    """Oracle: the lines counted by eye; line ends of all systems, a mark at the beginning, a line within quotes."""
+    for end in ("\n", "\r\n", "\r"):
+        text = end.join(["time_s,down", "0,0", "", "1,2", ' ,"', '"', "2,3"])
+        table = ProfileTable.read(b"\xef\xbb\xbf" + text.encode(), strip_robot(columns=4, rows=2), name="wave.csv")
+        assert table.lines == (2, 4, 7)
+        assert table.profile.times.tolist() == [0.0, 1.0, 2.0]
 
 
 def test_what_is_written_is_read_back(tmp_path: Path) -> None:

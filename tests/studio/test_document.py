@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import MOST_STEPS, Document
-from hydrostat.studio.records.timeline import Key, Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 

@@ -1,19 +1,20 @@
 """`Driver`: the stage "drive"."""
 
-from collections.abc import Sequence
-from math import isfinite
+from collections.abc import Callable, Sequence
+from math import inf, isfinite
 
 import numpy as np
 
+from hydrostat.arrays import Vector
+from hydrostat.control import Link, Motors, SimulatedLink, read_timeline, timeline_table
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.driving.contraction_table import read_table, table_bytes
+from hydrostat.studio.driving.film import Recorder
 from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.driving.machine import Machine
-from hydrostat.studio.driving.recorder import Recorder
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things
@@ -28,15 +29,21 @@ class Driver(Stage):
         keyframes: the timeline, edited.
         recorder: films of it.
         player: the playhead.
-        motors: of the winches.
     """
 
-    def __init__(self, document: Document, jobs: Jobs) -> None:
+    def __init__(self, document: Document, jobs: Jobs, *, connect: Callable[[Vector], Link] = SimulatedLink) -> None:
+        """A stage for a document.
+
+        Args:
+            document: of the open robot.
+            jobs: for films.
+            connect: makes the link to the motors of a robot, whose winches have taken in so much [m].
+        """
         self.keyframes, self.recorder = Keyframes(document), Recorder(document, jobs)
         self._document = document
-        self._machine = Machine(document, self.keyframes)
+        self._machine = Machine(document, self.keyframes, connect)
         self._lock = self._machine.lock
-        self.player, self.motors = self._machine.player, self._machine.motors
+        self.player = self._machine.player
         self._pull: tuple[str, float, Hit] | None = None
 
     def shape(self) -> Shape:
@@ -47,6 +54,11 @@ class Driver(Stage):
         """All parts of the robot, the winch that is pulled marked."""
         chosen = () if self._pull is None else (f"winch:{self._pull[0]}",)
         return robot_things(self._document.robot, tensions=self.shape().tensions, scale=self.strongest, chosen=chosen)
+
+    @property
+    def motors(self) -> Motors:
+        """The motors of the winches; others when the robot is another one."""
+        return self._machine.motors
 
     @property
     def strongest(self) -> float:
@@ -181,7 +193,7 @@ class Driver(Stage):
 
     def set_loop(self, loop: bool) -> None:
         """Whether playing begins anew at the end."""
-        self.player.loop = loop
+        self.player.rounds = inf if loop else 1
         self._tell()
 
     def set_speed(self, speed: float) -> None:
@@ -280,12 +292,12 @@ class Driver(Stage):
         self._tell()
 
     def table(self) -> bytes:
-        """The timeline as a CSV; see `table_bytes`."""
-        return table_bytes(self._document.robot, self.keyframes.timeline)
+        """The timeline as a CSV; see `timeline_table`."""
+        return timeline_table(self._document.robot, self.keyframes.timeline)
 
     def load_table(self, name: str, content: bytes) -> None:
-        """Put a CSV in place of the timeline; see `read_table`."""
-        timeline = read_table(self._document.robot, name, content)
+        """Put a CSV in place of the timeline; see `read_timeline`."""
+        timeline = read_timeline(self._document.robot, name, content)
         with self._lock:
             self._machine.halt()
             self.keyframes.replace_all(timeline, f"import {name}")

@@ -4,10 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isfinite
 
+from hydrostat.control import Key, Timeline
+from hydrostat.control.timeline import LONGEST
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.document import Document
-from hydrostat.studio.records.timeline import LONGEST, Key, Timeline
 
 APART = 0.5
 """A copy of a key is put so much later [s]."""

@@ -1,5 +1,6 @@
 """`Machine`: the motors, the body that follows them, and the playhead that commands them."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 from threading import RLock
@@ -7,19 +8,67 @@ from threading import RLock
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.control import Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document
-from hydrostat.studio.driving.follower import Follower
 from hydrostat.studio.driving.keyframes import Keyframes
-from hydrostat.studio.driving.motors import Motors
-from hydrostat.studio.driving.player import Player
-from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.view.shape import Shape, rest_shape
 
 TICK = 1 / 70
 """Motors are told and read once in this time [s], however often there is a step: about 60 times a second."""
+
+
+ROUGH = 1e-3
+"""Force that may be left over while it moves, as a share of the largest: 2 micrometres off, in half the time."""
+
+FEW = 6
+"""Steps of Newton in which a body that moves should get there; else it is solved with all care."""
+
+
+class Follower:
+    """Solves for the newest contractions, from the last good pose; where there is none, the last good one stays.
+
+    Attributes:
+        failure: why the last contractions have no shape; "" if they have.
+    """
+
+    def __init__(self) -> None:
+        self.failure = ""
+        self._simulation: Simulation | None = None
+        self._last: SolvedPose | None = None
+
+    def follow(self, simulation: Simulation, contractions: Vector, *, rough: bool = False) -> Shape:
+        """The body at these contractions [m], or as it was last; `failure` tells which.
+
+        Args:
+            simulation: of the robot.
+            contractions: of its winches [m].
+            rough: whether it moves on at once, so that the last digits do not matter.
+        """
+        if simulation is not self._simulation:
+            self._simulation, self._last = simulation, None
+        pose = self._roughly(simulation, contractions) if rough else None
+        if pose is None:
+            pose = simulation.solve(contractions, start=self._last, strict=False)
+        if pose.result.converged and upright(simulation.robot, pose):
+            self._last, self.failure = pose, ""
+        else:
+            why = pose.result.reason if not pose.result.converged else "the body would turn inside out"
+            self.failure = f"no shape was found there ({why}); the last one is shown: go back a little"
+        if self._last is None:
+            return rest_shape(simulation.robot)
+        return Shape(nodes=self._last.nodes, tensions=self._last.tensions, contractions=self._last.contractions)
+
+    def _roughly(self, simulation: Simulation, contractions: Vector) -> SolvedPose | None:
+        """From the last pose in a few steps; None if that does not do, or friction makes the way matter."""
+        last = self._last
+        if last is None or simulation.friction is not None:
+            return None
+        near = simulation.stiffness(last)
+        found = simulation.relax(last.nodes, contractions, near, iterations=FEW, tolerance=ROUGH)
+        return simulation.posed(contractions, found) if found.converged else None
 
 
 class Machine:
@@ -32,12 +81,14 @@ class Machine:
         lock: for what must not change meanwhile; never held for long.
     """
 
-    def __init__(self, document: Document, keyframes: Keyframes) -> None:
-        self.player, self.motors = Player(), Motors()
+    def __init__(self, document: Document, keyframes: Keyframes, connect: Callable[[Vector], Link]) -> None:
+        self._connect = connect
+        self.player, self.motors = Player(), Motors((), connect(np.zeros(0)), patience=inf)
         self.notice = ""
         self.lock = RLock()
         self._document, self._keyframes = document, keyframes
         self._follower = Follower()
+        self._robot: Robot | None = None
         self._posed: tuple[Robot, Shape] | None = None
         self._timeline: Timeline | None = None
         self._rough = False
@@ -59,9 +110,13 @@ class Machine:
 
     def meet(self, robot: Robot | None = None) -> None:
         """The robot, the one that is open if left out, may be another one than before."""
-        if self.motors.meet(robot or self._document.robot):
-            self.halt()
-            self._good = np.zeros(len(self.motors.names))
+        robot = robot or self._document.robot
+        if robot is self._robot:
+            return
+        self._robot = robot
+        self.motors = self._motors_of(robot, self.motors)
+        self.halt()
+        self._good = np.zeros(len(self.motors.names))
 
     def halt(self, why: str = "") -> None:
         """Play no further."""
@@ -121,6 +176,25 @@ class Machine:
         """Whether there is more to do."""
         return self.player.playing or self.motors.moving
 
+    def _motors_of(self, robot: Robot, before: Motors) -> Motors:
+        """Motors of a robot; winches of the same name keep what they have taken in, and what they shall take in."""
+        names = [winch.name for winch in robot.winches]
+
+        def kept(values: Vector) -> Vector:
+            known = dict(zip(before.names, values.tolist(), strict=True))
+            return np.array([known.get(name, 0.0) for name in names], dtype=float)
+
+        places, link = kept(before.places), before.link
+        if names != list(before.names):
+            places = np.clip(
+                places, [-winch.release for winch in robot.winches], [winch.travel for winch in robot.winches]
+            )
+            link.close()
+            link = self._connect(places)
+        motors = Motors(robot.winches, link, places=places, fastest=before.fastest, patience=inf)
+        motors.ask(kept(before.command))
+        return motors
+
     def _play(self, now: float) -> None:
         """Let the playhead run, and the commands with it; at a limit it stops."""
         timeline = self._keyframes.timeline
@@ -166,3 +240,9 @@ def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
         f"a cable of {robot.cables[index].winch} pulls {tensions[index]:.1f} N, more than {most:g} N"
         for index in np.flatnonzero(tensions > most)[:3]
     )
+
+
+def upright(robot: Robot, pose: SolvedPose) -> bool:
+    """Whether no element is inverted."""
+    corners = pose.nodes[robot.body.mesh.elements]
+    return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())

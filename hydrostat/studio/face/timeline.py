@@ -5,11 +5,11 @@ from typing import Any
 
 from nicegui import events, ui
 
+from hydrostat.control import Timeline
+from hydrostat.control.player import Player
 from hydrostat.plot.palette import winch_colours
 from hydrostat.robot import Robot
-from hydrostat.studio.driving.player import Player
 from hydrostat.studio.face.sent_number import sent_number
-from hydrostat.studio.records.timeline import Timeline
 
 HINT = "Turn the knobs and press Add; move the playhead, turn them again, add again. Then play."
 

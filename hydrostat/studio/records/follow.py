@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+from hydrostat.control import Timeline
 from hydrostat.robot import Robot
-from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 

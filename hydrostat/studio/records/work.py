@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from hydrostat.control import Timeline
 from hydrostat.robot import Robot
-from hydrostat.studio.records.timeline import Timeline
 from hydrostat.studio.records.wishes import Wishes
 
 

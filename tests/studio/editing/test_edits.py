@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Mount, Robot, gallery_folder, load_robot
@@ -20,7 +21,6 @@ from hydrostat.studio.editing.remesh import remesh
 from hydrostat.studio.editing.remove import remove
 from hydrostat.studio.editing.sheaths import sheathed_segments, sheaths
 from hydrostat.studio.records.follow import after_design, followed
-from hydrostat.studio.records.timeline import Key, Timeline
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 

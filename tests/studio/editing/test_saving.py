@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, Winch, gallery_folder, load_robot, robot_text
 from hydrostat.robot.merge import lost_comments, merged_text
@@ -19,7 +20,6 @@ from hydrostat.studio.editing.change import change, rename, set_gravity
 from hydrostat.studio.editing.move import move
 from hydrostat.studio.editing.part import keys_of, place_of
 from hydrostat.studio.editing.remove import remove
-from hydrostat.studio.records.timeline import Key, Timeline
 from hydrostat.studio.records.wishes import Paint, Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import (

@@ -133,14 +133,14 @@ class _Card:
 
 def _motors(page: Page) -> None:
     """How fast the simulated motors are."""
-    motors = page.session.driver.motors
+    driver = page.session.driver
     with ui.element("div").classes("studio-row").style("margin-top: 6px"):
         ui.label("Motors: simulated, at most").classes("studio-hint")
         ui.space()
-        speed = ui.number(min=1, max=1000, step=10, value=1e3 * motors.fastest, format="%.0f", suffix="mm/s")
+        speed = ui.number(min=1, max=1000, step=10, value=1e3 * driver.motors.fastest, format="%.0f", suffix="mm/s")
         speed.props('dense outlined debounce=400 aria-label="Largest speed of the motors"').style("width: 120px")
     speed.on_value_change(
-        lambda event: page.act(motors.set_fastest, 1e-3 * event.value) if event.value is not None else None
+        lambda event: page.act(driver.motors.set_fastest, 1e-3 * event.value) if event.value is not None else None
     )
 
 

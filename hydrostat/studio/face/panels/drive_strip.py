@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.driving.record_work import FilmKind, film_kinds
+from hydrostat.studio.driving.film import FilmKind, film_kinds
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.sent_number import sent_number
 from hydrostat.studio.face.timeline import TimelineView

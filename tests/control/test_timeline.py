@@ -2,8 +2,8 @@
 
 import pytest
 
+from hydrostat.control.timeline import MOST_KEYS, SAME, Key, Timeline
 from hydrostat.errors import InputError
-from hydrostat.studio.records.timeline import MOST_KEYS, SAME, Key, Timeline
 
 
 def two_keys(*, smooth: bool = False) -> Timeline:

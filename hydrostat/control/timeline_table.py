@@ -1,15 +1,14 @@
-"""`table_bytes`, `read_table`: a timeline as the table that `hydrostat simulate --play` reads."""
+"""`timeline_table`, `read_timeline`: a timeline as the table of contractions that every command reads."""
 
 from dataclasses import replace
-from pathlib import Path, PurePath
-from tempfile import TemporaryDirectory
+from pathlib import PurePath
 
 import numpy as np
 
+from hydrostat.control.timeline import LONGEST, SAME, SHORTEST, Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Profile, read_profile, write_profile
-from hydrostat.studio.records.timeline import LONGEST, SAME, SHORTEST, Key, Timeline
+from hydrostat.simulation import Profile, ProfileTable, profile_text
 
 STEP = 0.02
 """A table is read along lines, so a smooth timeline is written in steps of this time [s]."""
@@ -18,8 +17,8 @@ LARGEST = 4_000_000
 """No table has more bytes."""
 
 
-def table_bytes(robot: Robot, timeline: Timeline) -> bytes:
-    """Contractions in time as a CSV: seconds, and millimetres for each winch.
+def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
+    """Contractions in time as a CSV: seconds, and millimetres for each winch; see `ProfileTable`.
 
     Raises:
         InputError: there are no keyframes.
@@ -28,12 +27,10 @@ def table_bytes(robot: Robot, timeline: Timeline) -> bytes:
         raise InputError("there are no keyframes to export; turn the knobs and press Add")
     profile = timeline.profile([winch.name for winch in robot.winches])
     times = _times(timeline)
-    profile = Profile(times=times, values=np.array([profile.at(time) for time in times]))
-    with TemporaryDirectory(prefix="hydrostat-") as folder:
-        return write_profile(Path(folder) / "contractions.csv", robot, profile).read_bytes()
+    return profile_text(robot, Profile(times=times, values=np.array([profile.at(time) for time in times])))
 
 
-def read_table(robot: Robot, name: str, content: bytes) -> Timeline:
+def read_timeline(robot: Robot, name: str, content: bytes) -> Timeline:
     """A timeline from such a table, its times counted from its first row.
 
     Args:
@@ -47,13 +44,7 @@ def read_table(robot: Robot, name: str, content: bytes) -> Timeline:
     if len(content) > LARGEST:
         raise InputError(f"{name}: a table may have {LARGEST / 1e6:g} MB, not {len(content) / 1e6:.1f} MB")
     shown = PurePath(name.replace("\\", "/")).name or "table"
-    with TemporaryDirectory(prefix="hydrostat-") as folder:
-        path = Path(folder) / "table.csv"
-        path.write_bytes(content)
-        try:
-            profile = read_profile(path, robot)
-        except InputError as error:
-            raise InputError(str(error).replace(str(path), shown)) from None
+    profile = ProfileTable.read(content, robot, name=shown).profile
     times = profile.times - profile.times[0]
     if times[-1] > LONGEST:
         raise InputError(f"{shown}: it lasts {times[-1]:.1f} s; a timeline may last {LONGEST:g} s")

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hydrostat.control import Key, Timeline
+from hydrostat.control.timeline_table import LARGEST, read_timeline, timeline_table
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import read_profile
-from hydrostat.studio.driving.contraction_table import LARGEST, read_table, table_bytes
-from hydrostat.studio.records.timeline import Key, Timeline
 
 KEYS = (
     Key(time=0.5, contractions={"left": 0.01}),
@@ -27,7 +27,7 @@ def starfish() -> Robot:
 def test_the_command_line_plays_what_the_studio_plays(starfish: Robot, tmp_path: Path, smooth: bool) -> None:
     timeline = Timeline(keys=KEYS, smooth=smooth)
     path = tmp_path / "contractions.csv"
-    path.write_bytes(table_bytes(starfish, timeline))
+    path.write_bytes(timeline_table(starfish, timeline))
     played, shown = read_profile(path, starfish), timeline.profile([winch.name for winch in starfish.winches])
     # a line of 20 ms in the place of 3 s^2 - 2 s^3 is off by at most h^2/8 times its curvature, 6 x 30 mm / s^2
     allowed = 0.02**2 / 8 * 6 * 0.03 + 1e-9
@@ -37,7 +37,7 @@ def test_the_command_line_plays_what_the_studio_plays(starfish: Robot, tmp_path:
 
 
 def test_what_was_exported_is_imported(starfish: Robot) -> None:
-    timeline = read_table(starfish, "mine.csv", table_bytes(starfish, Timeline(keys=KEYS, length=3.0)))
+    timeline = read_timeline(starfish, "mine.csv", timeline_table(starfish, Timeline(keys=KEYS, length=3.0)))
     assert [key.time for key in timeline.keys] == pytest.approx([0.0, 1.0, 2.5])
     assert timeline.keys[1].contractions == pytest.approx({"right": 0.0, "left": 0.03, "feet": 0.02})
     assert timeline.seconds == pytest.approx(2.5)
@@ -45,7 +45,7 @@ def test_what_was_exported_is_imported(starfish: Robot) -> None:
 
 def test_rows_that_lie_on_lines_are_left_out(starfish: Robot) -> None:
     rows = [f"{time:g},{10 * min(time, 1.0):.6f}" for time in np.linspace(0, 2, 201)]
-    timeline = read_table(starfish, "dense.csv", "\n".join(["time_s,left", *rows]).encode())
+    timeline = read_timeline(starfish, "dense.csv", "\n".join(["time_s,left", *rows]).encode())
     assert [key.time for key in timeline.keys] == pytest.approx([0.0, 1.0, 2.0])
 
 
@@ -54,25 +54,25 @@ def test_rows_that_lie_on_lines_are_left_out(starfish: Robot) -> None:
     [
         (b"", "mine.csv, line 1: name the columns"),
         (b"time_s,tail\n0,1\n", 'mine.csv, line 1: there is no winch "tail"'),
-        (b"time_s,left\n0,much\n", "mine.csv, line 2: write a number"),
-        (b"time_s,left\n0,1\n0,2\n", "mine.csv: the times of a profile must rise"),
+        (b"time_s,left\n0,much\n", "mine.csv, line 2, column left: write a number"),
+        (b"time_s,left\n0,1\n0,2\n", "mine.csv, line 3, column time_s: the times must rise"),
         (b"time_s,left\n0,1\n700,2\n", "mine.csv: it lasts 700.0 s"),
-        (b"time_s,left\n0,nan\n", "mine.csv: a profile has a number that is not finite"),
+        (b"time_s,left\n0,nan\n", "mine.csv, line 2, column left: write a number"),
         (b"\xff\xfe\x00time", "mine.csv: cannot be read"),
-        (b"time_s,left\n", "mine.csv: a profile needs"),
+        (b"time_s,left\n", "mine.csv: has no row"),
     ],
 )
 def test_a_wrong_table_is_refused_by_its_own_name(starfish: Robot, text: bytes, words: str) -> None:
     with pytest.raises(InputError) as caught:
-        read_table(starfish, "../../mine.csv", text)
+        read_timeline(starfish, "../../mine.csv", text)
     assert str(caught.value).startswith(words)
 
 
 def test_a_huge_table_is_refused_unread(starfish: Robot) -> None:
     with pytest.raises(InputError, match="may have 4 MB"):
-        read_table(starfish, "huge.csv", b"0" * (LARGEST + 1))
+        read_timeline(starfish, "huge.csv", b"0" * (LARGEST + 1))
 
 
 def test_nothing_to_export_is_told(starfish: Robot) -> None:
     with pytest.raises(InputError, match="no keyframes to export"):
-        table_bytes(starfish, Timeline())
+        timeline_table(starfish, Timeline())

@@ -6,15 +6,14 @@ from threading import Event
 import numpy as np
 import pytest
 
+from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
-from hydrostat.studio.driving.record_work import FilmKind, check_film, film_frames, film_kinds, record_film
-from hydrostat.studio.driving.recorder import Recorder
+from hydrostat.studio.driving.film import FilmKind, Recorder, check_film, film_frames, film_kinds, record_film
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.timeline import Key, Timeline
 from hydrostat.studio.records.work import Work
 
 pytestmark = pytest.mark.usefixtures("unchecked")

@@ -1,34 +1,27 @@
-"""`SimulatedLink`: motors that turn no faster than they can."""
+"""`SimulatedLink`: motors that turn no faster than they are told."""
 
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.studio.driving.link import SILENCE, Link
-
-FASTEST = 0.15
-"""Largest speed of the cables [m/s] unless told otherwise: brisk for a small geared motor, and knobs feel direct."""
+from hydrostat.control.link import SILENCE, Link
 
 
 class SimulatedLink(Link):
-    """Each motor goes straight to its newest command, at its largest speed; its watchdog is like that of a real one.
+    """Each motor goes straight to its newest command; its watchdog is like that of a real one."""
 
-    Attributes:
-        speed: largest speed of the cables [m/s].
-    """
-
-    def __init__(self, contractions: Vector, *, speed: float = FASTEST) -> None:
+    def __init__(self, contractions: Vector) -> None:
         """Motors that have taken in so much [m] and stand still."""
-        self.speed = speed
         self._places = self._goal = contractions.copy()
+        self._speed = 0.0
         self._time = self._heard = -np.inf
 
-    def send(self, contractions: Vector, now: float) -> None:
+    def send(self, contractions: Vector, now: float, *, speed: float) -> None:
         """Go there."""
         self._move(now)
-        self._goal, self._heard = contractions.copy(), now
+        self._goal, self._heard, self._speed = contractions.copy(), now, speed
 
     def read(self, now: float) -> Vector:
-        """Where they are by now."""
+        """Where they are by now [m]."""
         self._move(now)
         return self._places.copy()
 
@@ -37,7 +30,7 @@ class SimulatedLink(Link):
         self._goal = self._places
 
     def close(self) -> None:
-        """As `stop`."""
+        """Stop; there is nothing to let go."""
         self.stop()
 
     def _move(self, now: float) -> None:
@@ -45,5 +38,5 @@ class SimulatedLink(Link):
         seconds = min(now, self._heard + SILENCE) - self._time
         self._time = max(self._time, now)
         if np.isfinite(seconds) and seconds > 0:
-            reach = self.speed * seconds
+            reach = self._speed * seconds
             self._places = self._places + np.clip(self._goal - self._places, -reach, reach)

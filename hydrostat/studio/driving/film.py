@@ -1,19 +1,22 @@
-"""`record_film`: a timeline as a film, in a process of its own."""
+"""`Recorder`: films of the timeline, each made by `record_film` in a process of its own."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from enum import StrEnum
 from math import ceil
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.plot import find_ffmpeg, save_gif, save_glb, save_mp4
 from hydrostat.plot.frame import Frame
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
-from hydrostat.studio.driving.follower import upright
-from hydrostat.studio.jobs import Report
-from hydrostat.studio.records.timeline import Timeline
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.document import Document
+from hydrostat.studio.driving.machine import upright
+from hydrostat.studio.jobs import Jobs, JobState, Report
 
 LONGEST_FILM = 60.0
 """No film is longer [s]."""
@@ -105,3 +108,57 @@ def film_frames(robot: Robot, timeline: Timeline, step: float, tell: Callable[[s
         frames.append(Frame.of(last))
         tell("solving", number + 1, count)
     return frames
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recording:
+    """A film to take home.
+
+    Attributes:
+        name: of its file.
+        content: of it.
+    """
+
+    name: str
+    content: bytes
+
+
+class Recorder:
+    """Lets a film be made in another process.
+
+    Attributes:
+        latest: the film that was made last; None before the first.
+    """
+
+    def __init__(self, document: Document, jobs: Jobs) -> None:
+        self.latest: Recording | None = None
+        self._document, self._jobs = document, jobs
+        self._title = ""
+
+    @property
+    def state(self) -> JobState | None:
+        """How far the film is that was asked for last; None if other work has begun since."""
+        state = self._jobs.state
+        return state if state is not None and state.title == self._title else None
+
+    def stop(self) -> None:
+        """Give up a film that is being made."""
+        if self.state is not None and self.state.running:
+            self._jobs.stop()
+
+    def start(self, kind: FilmKind) -> None:
+        """Begin with a film of the timeline as it is now.
+
+        Raises:
+            InputError: it cannot be filmed, or other work is in progress.
+        """
+        work = self._document.work
+        check_film(work.timeline, kind)
+        name = f"{work.robot.name}.{kind}"
+
+        def done(content: bytes) -> None:
+            self.latest = Recording(name=name, content=content)
+            self._document.bell.ring(Topic.DRIVE)
+
+        self._title = f"Filming {work.robot.name} ({kind})"
+        self._jobs.start(self._title, record_film, work.robot, work.timeline, kind, on_done=done)

@@ -1,0 +1,55 @@
+"""`Link`: the contract of what turns winches: motors that are simulated, or real ones."""
+
+from abc import ABC, abstractmethod
+
+from hydrostat.arrays import Vector
+
+SILENCE = 0.5
+"""Motors that are told nothing for so long [s] stop where they are (watchdog)."""
+
+
+class Link(ABC):
+    """What lies between commands and motors. A new kind of motor is one class, and its caller passes an instance.
+
+    Contractions are what each winch takes in [m], beyond its length at rest, in the order of the robot's winches;
+    speeds are those of the cables [m/s]; times are of one clock that only runs forward, such as `time.monotonic` [s].
+
+    Only `Motors` uses a link, from one thread at a time. While anything shall move it calls `send` and `read` in turn,
+    about 60 times a second, and less often where solving is slow; only the newest command counts, none is queued.
+    Neither waits for a motor. A link that fails raises a `HydrostatError` that says what to do. On that, and on any
+    other error, `stop` is called and nothing is sent before somebody asks anew.
+
+    Whoever puts real motors behind this keeps four promises: they stop `SILENCE` seconds after the last `send`, even
+    if this process has died, so the watch is on the side of the motors; they stop on any error of theirs, and on
+    `stop`, and hold what they have; no command makes them move beyond the limits of their winch, or faster than it
+    says, which `Motors` asks for too.
+    """
+
+    @abstractmethod
+    def send(self, contractions: Vector, now: float, *, speed: float) -> None:
+        """Go there; it returns at once.
+
+        Args:
+            contractions: of each winch [m].
+            now: time of the clock [s].
+            speed: largest speed of the cables on the way [m/s].
+
+        Raises:
+            HydrostatError: it cannot be sent.
+        """
+
+    @abstractmethod
+    def read(self, now: float) -> Vector:
+        """Contraction of each winch at this time [m], as last heard of.
+
+        Raises:
+            HydrostatError: the motors report an error, or nothing.
+        """
+
+    @abstractmethod
+    def stop(self) -> None:
+        """Stay where it is. It may be called at any time and never raises."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop, and let the motors go for good. It may be called twice and never raises."""

@@ -1,0 +1,147 @@
+"""`Motors`: what the winches shall take in, and what they have."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.link import SILENCE, Link
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Winch
+
+FASTEST = 0.15
+"""Largest speed of the cables [m/s] unless told otherwise: brisk for a small geared motor, and knobs feel direct."""
+
+SPEEDS = (1e-3, 1.0)
+"""Slowest and fastest that motors may be told to turn [m/s]."""
+
+NEAR = 1e-7
+"""Contractions this close [m] are the same."""
+
+
+class Motors:
+    """The winches of a robot behind a link: no command leaves their limits, and on any error or silence they hold.
+
+    It is used from one thread at a time, by whoever calls `drive` again and again while anything shall move, and
+    `hold` when nothing shall any more.
+
+    Attributes:
+        names: of the winches.
+        low: the least that each can take in [m]; below 0 it lets out.
+        high: the most that each can take in [m].
+        command: what each shall take in [m].
+        places: what each had taken in when it was last read [m].
+        fastest: largest speed of their cables [m/s].
+        link: that turns them.
+        patience: from one `drive` to the next, before they hold for want of commands [s].
+    """
+
+    def __init__(
+        self,
+        winches: Sequence[Winch],
+        link: Link,
+        *,
+        places: Vector | None = None,
+        fastest: float = FASTEST,
+        patience: float = SILENCE,
+    ) -> None:
+        """Motors that stand still.
+
+        Args:
+            winches: of the robot.
+            link: that turns them.
+            places: what they have taken in [m]; nothing if left out.
+            fastest: largest speed of their cables [m/s].
+            patience: infinite where gaps are usual, and the watch of the link itself is enough [s].
+        """
+        self.names = tuple(winch.name for winch in winches)
+        self.low = np.array([-winch.release for winch in winches], dtype=float)
+        self.high = np.array([winch.travel for winch in winches], dtype=float)
+        self.places = np.zeros(len(winches)) if places is None else places.copy()
+        self.command = self._within(self.places)
+        self.link, self.fastest, self.patience = link, fastest, patience
+        self._driven: float | None = None
+
+    @property
+    def moving(self) -> bool:
+        """Whether they are not yet where they shall be."""
+        return bool(np.abs(self.places - self.command).max(initial=0.0) > NEAR)
+
+    def set_fastest(self, speed: float) -> None:
+        """Let the cables be so fast [m/s].
+
+        Raises:
+            InputError: that is too slow or too fast.
+        """
+        if not SPEEDS[0] <= speed <= SPEEDS[1]:
+            low, high = 1e3 * SPEEDS[0], 1e3 * SPEEDS[1]
+            raise InputError(f"motors may turn from {low:g} to {high:g} mm/s, not {1e3 * speed:g}")
+        self.fastest = speed
+
+    def ask(self, contractions: Vector) -> str:
+        """Command as much of these contractions [m] as the winches can; says which cannot, "" if all can.
+
+        Raises:
+            InputError: one is no finite number; the command stays.
+        """
+        self.command = self._within(contractions)
+        beyond = np.abs(contractions - self.command)
+        if beyond.max(initial=0.0) <= NEAR:
+            return ""
+        index = int(beyond.argmax())
+        limit, wanted = 1e3 * self.command[index], 1e3 * contractions[index]
+        return f"{self.names[index]} is at its limit of {limit:.1f} mm and was asked for {wanted:.1f} mm"
+
+    def turn(self, name: str, contraction: float) -> None:
+        """Command one winch [m], within its limits.
+
+        Raises:
+            InputError: it is no finite number; the command stays.
+        """
+        command = self.command.copy()
+        command[self.names.index(name)] = contraction
+        self.command = self._within(command)
+
+    def drive(self, now: float) -> bool:
+        """Send the command and read where the motors are; whether any has moved. On any error they hold.
+
+        Args:
+            now: time of a clock that only runs forward, such as `time.monotonic` [s].
+
+        Raises:
+            HydrostatError: of the link, or there was no `drive` for too long; then they hold, and must be asked anew.
+        """
+        before = self.places
+        try:
+            gap = 0.0 if self._driven is None else now - self._driven
+            if gap > self.patience:
+                raise HydrostatError(
+                    f"the motors were told nothing for {gap:.1f} s, longer than {self.patience:g} s, and hold"
+                )
+            self.link.send(self.command, now, speed=self.fastest)
+            self.places = self._read(now)
+            self._driven = now
+        except BaseException:
+            self.hold()
+            raise
+        return bool(np.abs(self.places - before).max(initial=0.0) > NEAR)
+
+    def hold(self) -> None:
+        """Stop where they are."""
+        with suppress(Exception):
+            self.link.stop()
+        self.command, self._driven = self.places.copy(), None
+
+    def _read(self, now: float) -> Vector:
+        """Contractions [m] that the link has read; one that is no number is an error of the motors."""
+        places = self.link.read(now)
+        if places.shape != self.command.shape or not np.isfinite(places).all():
+            raise HydrostatError("the motors do not tell where each of them is; look at their wires, then begin again")
+        return places
+
+    def _within(self, contractions: Vector) -> Vector:
+        for name, value in zip(self.names, contractions, strict=True):
+            if not np.isfinite(value):
+                raise InputError(f"{name}: the contraction must be a finite number")
+        return np.clip(contractions, self.low, self.high)

@@ -1,0 +1,149 @@
+"""`Player`: the playhead, and how it runs; `play`: contractions in time on motors, in real time."""
+
+import time
+from collections.abc import Callable
+from math import floor, inf, isfinite
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.motors import Motors
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.simulation import Profile
+
+SPEEDS = (0.1, 4.0)
+"""Slowest and fastest, as times the timeline's own."""
+
+TICK = 1 / 60
+"""Motors that play are told and read once in this time [s]."""
+
+LATE = 2.0
+"""Motors may take so much longer [s] to where they shall be than at their largest speed."""
+
+
+class Player:
+    """The playhead follows a clock; whoever looks seldom misses what was between, so nothing is ever late.
+
+    Attributes:
+        time: of the playhead [s].
+        playing: whether it runs.
+        rounds: how often it runs from start to end before it stops; infinite: until it is stopped.
+        done: how often it has come to the end since it was last let run.
+        speed: seconds of the timeline in a second.
+    """
+
+    def __init__(self) -> None:
+        self.time = 0.0
+        self.playing = False
+        self.rounds = inf
+        self.done = 0
+        self.speed = 1.0
+        self._seen: float | None = None
+
+    @property
+    def loop(self) -> bool:
+        """Whether it begins anew at the end until it is stopped."""
+        return self.rounds == inf
+
+    def play(self, seconds: float) -> None:
+        """Run, from the start if it stands at the end of a timeline so long [s]."""
+        if self.time >= seconds - 1e-9:
+            self.time = 0.0
+        self.playing, self.done, self._seen = True, 0, None
+
+    def stop(self) -> None:
+        """Stand still."""
+        self.playing, self._seen = False, None
+
+    def set_speed(self, speed: float) -> None:
+        """Run at another speed.
+
+        Raises:
+            InputError: it is too slow or too fast.
+        """
+        if not (isfinite(speed) and SPEEDS[0] <= speed <= SPEEDS[1]):
+            raise InputError(f"the speed must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} times, not {speed:g}")
+        self.speed = speed
+
+    def advance(self, now: float, seconds: float) -> None:
+        """Go on with the clock; at the end begin anew, or stop there.
+
+        Args:
+            now: time of the clock [s]; the playhead runs from when it is first told.
+            seconds: length of the timeline [s].
+        """
+        if not self.playing:
+            return
+        passed = 0.0 if self._seen is None else max(0.0, now - self._seen)
+        self._seen = now
+        self.time += self.speed * passed
+        if self.time < seconds:
+            return
+        self.done += floor(self.time / seconds) if seconds > 0 else 1
+        if self.done >= self.rounds:
+            self.time = seconds
+            self.stop()
+        else:
+            self.time = self.time % seconds if seconds > 0 else 0.0
+
+
+def play(
+    motors: Motors,
+    profile: Profile,
+    player: Player,
+    *,
+    tell: Callable[[], None] = lambda: None,
+    clock: Callable[[], float] = time.monotonic,
+    wait: Callable[[float], None] = time.sleep,
+) -> None:
+    """Play contractions in time on motors, in real time; they hold at its end, on any error and when interrupted.
+
+    First they go to where it begins. What the player is told meanwhile counts at once: its speed, its rounds, to stop.
+
+    Args:
+        motors: that play; they stand still.
+        profile: what their winches take in, from 0 s to its last time.
+        player: the playhead, where it shall begin.
+        tell: called after each command.
+        clock: that only runs forward [s].
+        wait: lets so much time pass [s].
+
+    Raises:
+        InputError: a winch cannot take in what it should.
+        HydrostatError: of the link; or motors do not get to where they should be.
+    """
+    seconds = float(profile.times[-1])
+
+    def drive(contractions: Vector) -> None:
+        if beyond := motors.ask(contractions):
+            raise InputError(beyond)
+        motors.drive(clock())
+        tell()
+
+    def arrive(contractions: Vector) -> None:
+        latest = clock() + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest + LATE
+        drive(contractions)
+        while motors.moving:
+            if clock() > latest:
+                raise HydrostatError(f"{_slowest(motors)}; see what holds it")
+            wait(TICK)
+            drive(contractions)
+
+    try:
+        player.play(seconds)
+        arrive(profile.at(player.time))
+        while player.playing:
+            player.advance(clock(), seconds)
+            drive(profile.at(player.time))
+            wait(TICK)
+        arrive(profile.at(player.time))
+    finally:
+        player.stop()
+        motors.hold()
+
+
+def _slowest(motors: Motors) -> str:
+    """The motor that is farthest from where it should be, in words."""
+    index = int(np.abs(motors.command - motors.places).argmax())
+    there, wanted = 1e3 * motors.places[index], 1e3 * motors.command[index]
+    return f"{motors.names[index]} stays at {there:.1f} mm and should be at {wanted:.1f} mm"
