@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
-from hydrostat.geometry.files.mesh_file import write_mesh
+from hydrostat.geometry.files.vtu_file import write_vtu
 from hydrostat.robot import Robot, replace_file
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.profile import csv_text
@@ -106,7 +106,7 @@ def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
 def _write_frame(robot: Robot, motion: Motion, folder: Path, number: int) -> str:
     name = f"motion_{number:04d}.vtu"
     data = {"rest": robot.body.mesh.nodes, "velocity": motion.velocities}
-    write_mesh(folder / name, robot.body.mesh, motion.nodes, data)
+    (folder / name).write_bytes(write_vtu(robot.body.mesh, motion.nodes, data))
     return f"frames/{name}"
 
 

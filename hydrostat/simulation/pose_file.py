@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.geometry.files.mesh_file import write_mesh
+from hydrostat.geometry.files.vtu_file import write_vtu
 from hydrostat.robot import Robot, replace_file, robot_hash
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -52,11 +52,11 @@ def write_pose(
     folder.mkdir(parents=True, exist_ok=True)
     robot = simulation.robot
     facts = {**pose_facts(robot, pose), **(extra or {})}
-    vtu = folder / "pose.vtu"
-    part = folder / ".pose.part.vtu"
-    write_mesh(part, robot.body.mesh, pose.nodes, {"rest": robot.body.mesh.nodes})
-    part.replace(vtu)
-    written = [replace_file(folder / "pose.json", (json.dumps(facts, indent=2) + "\n").encode()), vtu]
+    mesh = write_vtu(robot.body.mesh, pose.nodes, {"rest": robot.body.mesh.nodes})
+    written = [
+        replace_file(folder / "pose.json", (json.dumps(facts, indent=2) + "\n").encode()),
+        replace_file(folder / "pose.vtu", mesh),
+    ]
     if jacobian:
         buffer = BytesIO()
         np.savez_compressed(buffer, jacobian=simulation.jacobian(pose))

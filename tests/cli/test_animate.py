@@ -55,12 +55,12 @@ def test_without_poses_one_winch_after_the_other(run: Run, tmp_path: Path) -> No
 def save_strip(folder: Path) -> None:
     from dataclasses import replace
 
-    from hydrostat.geometry.files.mesh_file import write_mesh
+    from hydrostat.geometry.files.vtu_file import write_vtu
 
     folder.mkdir()
     robot = strip_robot(columns=8, rows=2)
     file = folder / "strip.vtu"
-    write_mesh(file, robot.body.mesh, robot.body.mesh.nodes, {})
+    file.write_bytes(write_vtu(robot.body.mesh, robot.body.mesh.nodes, {}))
     body = replace(robot.body, file=file.name, content=file.read_bytes())
     save_robot(replace(robot, body=body, length_unit="m"), folder)
 

@@ -9,7 +9,7 @@ import pytest
 from builders import box_mesh
 
 from hydrostat.cli.main import main
-from hydrostat.geometry.files.mesh_file import write_mesh
+from hydrostat.geometry.files.vtu_file import write_vtu
 
 Check = Callable[[Path], list[str]]
 
@@ -75,7 +75,7 @@ def test_body_in_space(check: Check, tmp_path: Path) -> None:
     """Oracle: 192 cm^3, 7.68 g; cubes cut in six have 45 degrees between two faces; risky lines are counted."""
     for cells, risks in (((12, 4, 4), 0), ((6, 2, 2), 1)):
         mesh = box_mesh(cells, size=(0.12, 0.04, 0.04))
-        write_mesh(tmp_path / "solid.vtu", mesh, mesh.nodes, {})
+        (tmp_path / "solid.vtu").write_bytes(write_vtu(mesh, mesh.nodes, {}))
         (tmp_path / "robot.toml").write_text(SOLID)
         lines = check(tmp_path)
         assert lines[1] == "polyester fibre: 7.68 g, 192 cm^3"

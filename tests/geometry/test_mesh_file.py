@@ -7,7 +7,8 @@ import pytest
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.geometry.files.mesh_file import read_mesh, write_mesh
+from hydrostat.geometry.files.mesh_file import read_mesh
+from hydrostat.geometry.files.vtu_file import write_vtu
 
 _NODES = np.array([[0, 0, 0], [10, 0, 0], [0, 20, 0], [0, 0, 30], [10, 20, 30.5]], dtype=float)
 _TETRAHEDRA = np.array([[0, 1, 2, 3], [1, 4, 2, 3]])
@@ -57,13 +58,37 @@ def test_what_meshio_writes_is_read(kind: str, tmp_path: Path, capsys) -> None:
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-def test_what_is_written_is_read(dim: int, tmp_path: Path) -> None:
-    flat = Mesh(1e-3 * _NODES[[0, 1, 2]][:, :2], np.array([[0, 1, 2]]))
-    mesh = flat if dim == 2 else Mesh(1e-3 * _NODES[:4], np.array([[0, 1, 2, 3]]))
-    write_mesh(tmp_path / "a.vtu", mesh, mesh.nodes, {})
-    again = read_mesh(tmp_path / "a.vtu")
-    np.testing.assert_array_equal(again.nodes, mesh.nodes)
-    np.testing.assert_array_equal(again.elements, mesh.elements)
+@pytest.mark.parametrize("copies", [1, 1024])
+def test_what_is_written_is_read_by_us_and_by_meshio(dim: int, copies: int, tmp_path: Path) -> None:
+    """Nodes, elements and numbers at the nodes, bit for bit; packed in one block, and in many, the last full."""
+    import meshio
+
+    corners = np.vstack([np.zeros(dim), np.eye(dim)])
+    nodes = np.concatenate([1e-3 * (corners + 1 / 3 + number) for number in range(copies)])
+    mesh = Mesh(nodes, np.arange(len(nodes)).reshape(copies, dim + 1))
+    moved = nodes + 0.1
+    data = {"rest": nodes, 'height & "depth"': np.arange(len(nodes)), "whole": np.full((len(nodes), 3), np.pi)}
+    (tmp_path / "a.vtu").write_bytes(write_vtu(mesh, moved, data))
+    again, other = read_mesh(tmp_path / "a.vtu"), meshio.read(tmp_path / "a.vtu")
+    for read, elements in (
+        (again.nodes, again.elements),
+        (other.points, other.cells_dict[("triangle", "tetra")[dim - 2]]),
+    ):
+        np.testing.assert_array_equal(read[:, :dim], moved)
+        np.testing.assert_array_equal(elements, mesh.elements)
+    assert other.points.shape == (len(nodes), 3)
+    assert other.point_data.keys() == data.keys()
+    for name, values in data.items():
+        found = other.point_data[name]
+        assert found.dtype == values.dtype
+        np.testing.assert_array_equal(found[:, :dim] if name == "rest" else found, values)
+    assert not other.points[:, dim:].any()
+    assert not other.point_data["rest"][:, dim:].any()
+
+
+def test_the_same_mesh_gives_the_same_bytes() -> None:
+    mesh = Mesh(1e-3 * _NODES[:4], np.array([[0, 1, 2, 3]]))
+    assert write_vtu(mesh, mesh.nodes, {}) == write_vtu(mesh, mesh.nodes, {})
 
 
 def _vtu(encoding: str, order: str = "LittleEndian", packed: bool = False) -> bytes:

@@ -1,10 +1,5 @@
-"""Meshes from and to files.
+"""Meshes from files, by our own lines, which believe no count before the bytes for it are there."""
 
-They are read by our own lines, which believe no count before the bytes for it are there; meshio writes them.
-"""
-
-import sys
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -60,19 +55,3 @@ def _simplices(name: str, points: np.ndarray, cells: np.ndarray, dim: int, unit:
     flipped = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0
     elements[flipped] = elements[flipped][:, [1, 0, *range(2, dim + 1)]]
     return Mesh(nodes, elements)
-
-
-def write_mesh(path: Path, mesh: Mesh, nodes: np.ndarray, point_data: Mapping[str, np.ndarray]) -> None:
-    """Write a mesh with its nodes moved to `nodes` [m] as VTU, which ParaView opens."""
-    import meshio
-
-    kind = "triangle" if mesh.dim == 2 else "tetra"
-    data = meshio.Mesh(
-        _in_space(nodes), [(kind, mesh.elements)], {key: _in_space(array) for key, array in point_data.items()}
-    )
-    meshio.write(path, data, file_format="vtu", binary=sys.byteorder == "little")
-
-
-def _in_space(array: np.ndarray) -> np.ndarray:
-    """Vectors of the plane with a third component zero, which VTK wants."""
-    return np.pad(array, ((0, 0), (0, 1))) if array.ndim == 2 and array.shape[1] == 2 else array

@@ -1,23 +1,29 @@
-"""VTU files: unstructured grids as XML, their arrays as text, base64 or appended bytes, packed by zlib or not."""
+"""VTU files: unstructured grids as XML; read with arrays as text, base64 or appended bytes, packed or not; written."""
 
 import base64
 import binascii
 import re
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.cursor import Cells, Cursor, whole_numbers
 from hydrostat.geometry.files.soup import MOST_BYTES
-from hydrostat.geometry.files.vtk_file import cells_of
+from hydrostat.geometry.files.vtk_file import TETRAHEDRON, TRIANGLE, cells_of
+from hydrostat.geometry.mesh import Mesh
 
 _KINDS = {
     "Int8": "i1", "UInt8": "u1", "Int16": "i2", "UInt16": "u2", "Int32": "i4", "UInt32": "u4", "Int64": "i8",
     "UInt64": "u8", "Float32": "f4", "Float64": "f8",
 }  # fmt: skip
+_NAMES = {code: name for name, code in _KINDS.items()}
+_BLOCK = 32768  # bytes that are packed at once, as VTK does
 _MOST_DEPTH = 50
 _MOST_PIECES = 1000
 _APPENDED = re.compile(rb"<AppendedData([^>]{0,1000})>\s*_")
@@ -32,7 +38,7 @@ class _Array:
 
 
 @dataclass
-class _Grid:
+class _GridText:
     """What the XML says: of the whole file, and the arrays of each piece by name."""
 
     attributes: dict[str, str] = field(default_factory=dict)
@@ -71,9 +77,9 @@ def read_vtu(content: bytes, name: str) -> Cells:
     return Cells(np.concatenate(points), np.concatenate(tetrahedra), np.concatenate(triangles))
 
 
-def _parse(content: bytes, name: str) -> _Grid:
+def _parse(content: bytes, name: str) -> _GridText:
     """Walk through the XML and keep the arrays that matter; refuse what is broken, deep, or declares entities."""
-    grid, path = _Grid(), []
+    grid, path = _GridText(), []
     now: _Array | None = None
 
     def start(tag: str, attributes: dict[str, str]) -> None:
@@ -197,3 +203,46 @@ class _Reader:
         if len(piece) != count:
             raise ValueError
         return piece
+
+
+def write_vtu(mesh: Mesh, nodes: Nodes, point_data: Mapping[str, np.ndarray]) -> bytes:
+    """Give a mesh with its nodes moved as a VTU file, which ParaView opens; the same bytes for the same mesh.
+
+    Args:
+        mesh: its elements are written.
+        nodes: where its nodes are [m], (nodes, dim).
+        point_data: numbers at the nodes by name, (nodes,) or (nodes, components); to vectors of the plane a third
+            component zero is added, as to the nodes: VTK wants it.
+    """
+    count, corners = mesh.elements.shape
+    sections: dict[str, Mapping[str, np.ndarray]] = {
+        "PointData": point_data,
+        "Points": {"Points": nodes},
+        "Cells": {
+            "connectivity": mesh.elements.ravel(),
+            "offsets": corners * np.arange(1, count + 1, dtype=np.int64),
+            "types": np.full(count, TRIANGLE if mesh.dim == 2 else TETRAHEDRON, dtype=np.uint8),
+        },
+    }
+    lines = [
+        '<?xml version="1.0"?>',
+        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt32" '
+        'compressor="vtkZLibDataCompressor">',
+        f'<UnstructuredGrid><Piece NumberOfPoints="{len(nodes)}" NumberOfCells="{count}">',
+    ]
+    for tag, arrays in sections.items():
+        lines += [f"<{tag}>", *(_data_array(name, values) for name, values in arrays.items()), f"</{tag}>"]
+    return "\n".join([*lines, "</Piece></UnstructuredGrid>", "</VTKFile>", ""]).encode()
+
+
+def _data_array(name: str, values: np.ndarray) -> str:
+    """An array as an XML element: blocks packed one by one behind their number and sizes, in base64."""
+    if values.ndim == 2 and values.shape[1] == 2:
+        values = np.pad(values, ((0, 0), (0, 1)))
+    kind = _NAMES[values.dtype.str[1:]]
+    width = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    content = values.astype(values.dtype.newbyteorder("<")).tobytes()
+    blocks = [zlib.compress(content[start : start + _BLOCK]) for start in range(0, len(content), _BLOCK)]
+    head = np.array([len(blocks), _BLOCK, len(content) % _BLOCK, *map(len, blocks)], dtype="<u4").tobytes()
+    text = base64.b64encode(head) + base64.b64encode(b"".join(blocks))
+    return f'<DataArray type="{kind}" Name={quoteattr(name)}{width} format="binary">{text.decode()}</DataArray>'
