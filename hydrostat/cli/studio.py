@@ -29,7 +29,7 @@ def studio(
             raise
         raise InputError('the studio needs the extra `studio`: pip install "hydrostat[studio]"') from None
     from hydrostat.studio.session import Session
-    from hydrostat.studio.starting.state_folder import state_folder
+    from hydrostat.studio.starting.shelf import state_folder
 
     session = Session(state_folder())
     if robot is not None:

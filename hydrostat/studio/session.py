@@ -20,8 +20,8 @@ from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
 from hydrostat.studio.view.colouring import Colouring, Scale, node_values, scale
-from hydrostat.studio.view.shape import rest_shape
-from hydrostat.studio.view.show import Show, Shown
+from hydrostat.studio.view.picture import Show, Shown
+from hydrostat.studio.view.things import rest_shape
 from hydrostat.studio.work_folder import open_note, save_work
 
 MOST_NOTES = 50

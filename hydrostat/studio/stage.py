@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from hydrostat.robot import Point
-from hydrostat.studio.view.shape import Shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing
 
 
 class StageName(StrEnum):
@@ -45,7 +44,7 @@ class Stage(ABC):
     """
 
     @abstractmethod
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """Where the body is now."""
 
     @abstractmethod

@@ -1,19 +1,73 @@
-"""`save_work`, `open_work`: a robot's folder, as the studio keeps it."""
+"""`save_work`, `open_work`: a robot's folder as the studio keeps it: robot.toml and, beside it, studio.json."""
 
 import hashlib
 import tomllib
 from pathlib import Path
+from typing import Literal
 
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from hydrostat import units
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
-from hydrostat.robot import Source, load_robot, robot_text, save_robot
+from hydrostat.robot import Source, load_robot, replace_file, robot_text, save_robot
 from hydrostat.robot.merge import lost_comments, merged_text
 from hydrostat.robot.read import FILE
-from hydrostat.robot.tables_file import read_text
-from hydrostat.studio import studio_file
+from hydrostat.robot.tables_file import read_bytes, read_text
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
-from hydrostat.studio.studio_file import read_studio_file, write_studio_file
+
+STUDIO_FILE = "studio.json"
+
+LARGEST = 20_000_000
+"""The file may have this many bytes."""
+
+
+class StudioFile(BaseModel):
+    """The whole file; what it does not know is an error, and so is a number that is none.
+
+    Attributes:
+        format: of the file.
+        timeline: keyframes.
+        wishes: for a design.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    format: Literal[1] = 1
+    timeline: Timeline
+    wishes: Wishes
+
+
+def write_studio_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
+    """Write the file whole or not at all.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    text = StudioFile(timeline=timeline, wishes=wishes).model_dump_json(indent=2)
+    replace_file(folder / STUDIO_FILE, text.encode() + b"\n")
+
+
+def read_studio_file(folder: Path) -> StudioFile:
+    """What the file says; nothing special if there is none.
+
+    Raises:
+        InputError: it cannot be read or says something else, in one line.
+    """
+    file = folder / STUDIO_FILE
+    if not file.exists():
+        return StudioFile(timeline=Timeline(), wishes=Wishes())
+    content = read_bytes(file, STUDIO_FILE, LARGEST)
+    try:
+        return StudioFile.model_validate_json(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))[:80]
+        raise InputError(units.printable(": ".join(filter(None, (STUDIO_FILE, place, first["msg"])))[:300])) from None
+    except InputError as error:
+        raise InputError(f"{STUDIO_FILE}: {error}") from None
+
 
 MOST_TOLD = 5
 """So many lost comments are told one by one."""
@@ -55,7 +109,7 @@ def save_work(work: Work, folder: Path, text: str = "") -> None:
     """
     folder = _home(folder)
     save_robot(work.robot, folder, text=_text(work, folder, text))
-    if (folder / studio_file.FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes():
+    if (folder / STUDIO_FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes():
         write_studio_file(folder, work.timeline, work.wishes)
 
 
@@ -65,7 +119,7 @@ def folder_stamp(folder: Path) -> str:
     if not (home / FILE).is_file():
         return ""
     body = _body_file(home)
-    files = [home / FILE, home / studio_file.FILE, *([home / body] if body else [])]
+    files = [home / FILE, home / STUDIO_FILE, *([home / body] if body else [])]
     stamp = hashlib.sha256()
     try:
         for file in files:
@@ -117,7 +171,7 @@ def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
         asked.append("Comments in robot.toml would be lost, as what they speak of is gone:\n" + "\n".join(told))
     note = open_note(folder)
     if note:
-        asked.append(f"{studio_file.FILE} cannot be read and would be replaced.")
+        asked.append(f"{STUDIO_FILE} cannot be read and would be replaced.")
     return asked
 
 

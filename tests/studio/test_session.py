@@ -13,8 +13,7 @@ from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.packet import opened
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 
 class Diary(Stage):
@@ -23,7 +22,7 @@ class Diary(Stage):
     def __init__(self, session: Session) -> None:
         self.session, self.told, self.complaint = session, [], ""
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         return rest_shape(self.session.document.robot)
 
     def things(self) -> Sequence[Thing]:

@@ -27,12 +27,11 @@ from hydrostat.studio.designing.run import Asked, Mark, Run, asked_for, beginnin
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.follow import after_design
 from hydrostat.studio.records.wishes import Paint, Wishes
+from hydrostat.studio.records.work import after_design
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things, target_things
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 TITLE = "Designing cables"
 
@@ -213,7 +212,7 @@ class Designer(Stage):
         self.painter.take(None)
         self.chosen = self.pose = None
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """The body at rest, or as the chosen candidate brings it into the chosen pose, or on the way there."""
         robot, ease = self._document.robot, self._ease
         if ease is None or len(ease.nodes) != len(robot.body.mesh.nodes):
@@ -221,7 +220,7 @@ class Designer(Stage):
         reach = self._reach()
         pulled = np.zeros(len(self._shown().winches)) if reach is None else reach.contractions
         errors = {} if reach is None else reach.errors
-        return Shape(nodes=ease.nodes, tensions=ease.tensions, contractions=pulled, errors=errors)
+        return RobotShape(nodes=ease.nodes, tensions=ease.tensions, contractions=pulled, errors=errors)
 
     def things(self) -> Sequence[Thing]:
         """The network that is shown, targets, zones."""

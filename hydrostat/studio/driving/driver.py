@@ -18,8 +18,7 @@ from hydrostat.studio.driving.machine import Machine
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.shape import Shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing
 
 
 class Driver(Stage):
@@ -46,7 +45,7 @@ class Driver(Stage):
         self.player = self._machine.player
         self._pull: tuple[str, float, Hit] | None = None
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """The body as the motors pull it."""
         return self._machine.shape()
 

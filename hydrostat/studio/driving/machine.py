@@ -14,7 +14,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.keyframes import Keyframes
-from hydrostat.studio.view.shape import Shape, rest_shape
+from hydrostat.studio.view.things import RobotShape, rest_shape
 
 TICK = 1 / 70
 """Motors are told and read once in this time [s], however often there is a step: about 60 times a second."""
@@ -39,7 +39,7 @@ class Follower:
         self._simulation: Simulation | None = None
         self._last: SolvedPose | None = None
 
-    def follow(self, simulation: Simulation, contractions: Vector, *, rough: bool = False) -> Shape:
+    def follow(self, simulation: Simulation, contractions: Vector, *, rough: bool = False) -> RobotShape:
         """The body at these contractions [m], or as it was last; `failure` tells which.
 
         Args:
@@ -59,7 +59,7 @@ class Follower:
             self.failure = f"no shape was found there ({why}); the last one is shown: go back a little"
         if self._last is None:
             return rest_shape(simulation.robot)
-        return Shape(nodes=self._last.nodes, tensions=self._last.tensions, contractions=self._last.contractions)
+        return RobotShape(nodes=self._last.nodes, tensions=self._last.tensions, contractions=self._last.contractions)
 
     def _roughly(self, simulation: Simulation, contractions: Vector) -> SolvedPose | None:
         """From the last pose in a few steps; None if that does not do, or friction makes the way matter."""
@@ -89,13 +89,13 @@ class Machine:
         self._document, self._keyframes = document, keyframes
         self._follower = Follower()
         self._robot: Robot | None = None
-        self._posed: tuple[Robot, Shape] | None = None
+        self._posed: tuple[Robot, RobotShape] | None = None
         self._timeline: Timeline | None = None
         self._rough = False
         self._ran = -inf
         self._good = self.motors.places
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """The body as the motors pull it."""
         robot, posed = self._document.robot, self._posed
         if posed is None or posed[0] is not robot:

@@ -1,11 +1,15 @@
-"""`rename`, `change`: other names and numbers of a robot's parts."""
+"""`rename`, `change`, `remesh`: other names and numbers of a robot's parts and of its body."""
 
 from collections.abc import Collection
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
+from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Cable, Mount, Robot, Source, find_material, outline_body
+from hydrostat.robot.body import Body, surface_body
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.name import check_name
 from hydrostat.studio.editing.part import Kind, find_part
@@ -96,3 +100,57 @@ def check_range(name: str, value: float, least: float, most: float) -> None:
 def _free(name: str, names: list[str]) -> None:
     if names.count(name) > 1:
         raise InputError(f'there is one of the name "{name}" already; names must be unique')
+
+
+def sheathed_segments(cable: Cable) -> list[int]:
+    """Numbers of the segments in a sheath, counted from 0 at the winch."""
+    return np.flatnonzero(~cable.bare).tolist()
+
+
+def sheaths(segments: Collection[int]) -> tuple[tuple[int, int], ...]:
+    """Pairs of point indices for `Cable.sheathed`; segments in a row are one sheath."""
+    pairs: list[tuple[int, int]] = []
+    for segment in sorted(set(segments)):
+        if pairs and pairs[-1][1] == segment:
+            pairs[-1] = (pairs[-1][0], segment + 1)
+        else:
+            pairs.append((segment, segment + 1))
+    return tuple(pairs)
+
+
+BODY_RANGE = (1e-4, 20.0)
+"""Least and most thickness and element size that a person may ask for [m]."""
+
+
+def remesh(
+    robot: Robot, *, element_size: float | None = None, thickness: float | None = None, material: str | None = None
+) -> Body:
+    """The body of a robot, made anew; takes a while if the elements are others.
+
+    Args:
+        robot: whose body it is.
+        element_size: length of a mesh edge [m]; as it was if left out, as are the others.
+        thickness: of a flat body [m].
+        material: a name of the table.
+
+    Raises:
+        InputError: a number out of its range, an unknown material, or a body whose elements are given.
+    """
+    body = robot.body
+    for name, value in (("thickness", thickness), ("element_size", element_size)):
+        if value is not None:
+            check_range(name, value, *BODY_RANGE)
+    if material is not None:
+        body = replace(body, material=find_material(material))
+    if thickness is not None:
+        body = replace(body, thickness=thickness)
+    if element_size is None or element_size == body.element_size:
+        return body
+    if body.source is Source.MESH:
+        raise InputError("a ready mesh has its own elements, their size cannot be chosen")
+    given = {"file": body.file, "material": body.material, "element_size": element_size, "size": body.size}
+    if body.source is Source.SURFACE:
+        unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
+        return surface_body(body.content, unit=unit, volume=body.volume, **given)
+    assert body.thickness is not None
+    return outline_body(body.content, thickness=body.thickness, volume=body.volume, **given)

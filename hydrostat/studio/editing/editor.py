@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -10,25 +11,33 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.editing.add import add_marker, add_pin, add_winch
-from hydrostat.studio.editing.change import change, rename, set_gravity
-from hydrostat.studio.editing.draft import Draft, begin_cable, end_cable
+from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_cable, overlay
+from hydrostat.studio.editing.change import change, remesh, rename, set_gravity
 from hydrostat.studio.editing.findings import Findings, look_over
-from hydrostat.studio.editing.hold import Hold, take_hold
-from hydrostat.studio.editing.inside import below_skin, inside
+from hydrostat.studio.editing.hold import Hold, below_skin, inside, take_hold
 from hydrostat.studio.editing.mirror import Mirror
-from hydrostat.studio.editing.move import move
-from hydrostat.studio.editing.overlay import overlay
 from hydrostat.studio.editing.part import find_part, title_of
-from hydrostat.studio.editing.remesh import remesh
-from hydrostat.studio.editing.remove import remove
-from hydrostat.studio.editing.tool import KEYS, Tool
+from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.records.follow import followed
+from hydrostat.studio.records.work import followed
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+
+
+class Tool(StrEnum):
+    """The tools."""
+
+    MOVE = "move"
+    PIN = "pin"
+    MARKER = "marker"
+    WINCH = "winch"
+    CABLE = "cable"
+
+
+KEYS = {"v": Tool.MOVE, "p": Tool.PIN, "m": Tool.MARKER, "w": Tool.WINCH, "c": Tool.CABLE}
+"""The key of each tool."""
+
 
 QUIET = 0.2
 """The robot is checked when nothing was changed for so long [s]."""
@@ -55,7 +64,7 @@ class Editor(Stage):
         self.tool = Tool.MOVE
         self.mirror: Mirror | None = None
         self.depth = DEPTH
-        self.draft: Draft | None = None
+        self.draft: CableDraft | None = None
         self._chosen = ""
         self._hold: Hold | None = None
         self._holds = 0
@@ -76,7 +85,7 @@ class Editor(Stage):
         checked = self._checked
         return checked[1] if checked is not None and checked[0] is self._document.robot else None
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """The rest shape."""
         shape = rest_shape(self._document.robot)
         return replace(shape, notes=(self._refused,)) if self._refused else shape

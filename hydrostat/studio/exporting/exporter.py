@@ -13,17 +13,14 @@ from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.exporting.archive import archive, file_name
-from hydrostat.studio.exporting.download import Download
-from hydrostat.studio.exporting.kit_made import KitMade
-from hydrostat.studio.exporting.kit_work import make_kit
+from hydrostat.studio.exporting.download import Download, archive, file_name
+from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.picture_work import make_pictures
 from hydrostat.studio.exporting.report_work import make_report
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.studio.work_folder import save_work
 
 _ONCE = InverseOptions(restarts=0)
@@ -162,13 +159,13 @@ class Exporter(Stage):
         """A process stands ready, so that work begins at once."""
         self._jobs.warm(make_kit.__module__)
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """The pose that is shown, once it is solved; till then the rest shape."""
         posed = self._posed
         if posed is not None and self._is_wanted(posed):
             reached: ReachedPose = posed.value
             pose = reached.pose
-            return Shape(
+            return RobotShape(
                 nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions, errors=dict(reached.errors)
             )
         return rest_shape(self._document.robot)

@@ -1,12 +1,49 @@
-"""`make_kit`: the kit of a robot, in a process of its own."""
+"""`make_kit`: the kit of a robot with pictures of its pages, in a process of its own."""
 
-from hydrostat.fabrication import KitOptions, UnbuildableError, build_kit
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hydrostat.fabrication import Check, KitOptions, UnbuildableError, build_kit
 from hydrostat.robot import Robot
-from hydrostat.studio.exporting.archive import archive, file_name
-from hydrostat.studio.exporting.download import Download
-from hydrostat.studio.exporting.kit_made import KitMade
-from hydrostat.studio.exporting.page_pictures import page_pictures
+from hydrostat.studio.exporting.download import Download, archive, file_name
 from hydrostat.studio.jobs import Report
+
+
+@dataclass(frozen=True, kw_only=True)
+class KitMade:
+    """A kit, or why there is none.
+
+    Attributes:
+        options: that it was made with.
+        refused: why the robot cannot be built well; then there is nothing but these.
+        zip: all files; None if it was refused.
+        count: of the files.
+        summary: what is in it, a line each.
+        warnings: what to mind.
+        problems: why it cannot be built well, where it was made all the same.
+        checks: whether the files are true to the robot that was simulated.
+        pages: of the assembly sheet, as PNG.
+        pattern: of a plush robot, as SVG.
+    """
+
+    options: KitOptions
+    refused: tuple[str, ...] = ()
+    zip: Download | None = None
+    count: int = 0
+    summary: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()
+    checks: tuple[Check, ...] = ()
+    pages: tuple[bytes, ...] = ()
+    pattern: bytes | None = None
+
+    @property
+    def told(self) -> str:
+        """How many checks hold, such as "8 of 8 checks hold"."""
+        held = sum(check.passed for check in self.checks)
+        return f"{held} of {len(self.checks)} checks hold"
+
 
 SHEET, PATTERN = "assembly_sheet.pdf", "pattern/pattern.svg"
 
@@ -42,3 +79,29 @@ def _seen(pattern: bytes) -> bytes:
     """A pattern with lines as thin as a screen shows, rather than as a laser cuts."""
     head, end, rest = pattern.partition(b"<title>")
     return head + THICK + end + rest
+
+
+DOTS = 110.0
+"""To the inch: fine enough to be read where a page is as wide as a window."""
+
+MOST_PAGES = 12
+
+
+def page_pictures(pdf: bytes) -> tuple[bytes, ...]:
+    """Each page as PNG; none if the typesetter at hand is too old to read PDF."""
+    import typst
+
+    with TemporaryDirectory() as folder:
+        sheet, source = Path(folder) / "sheet.pdf", Path(folder) / "pages.typ"
+        sheet.write_bytes(pdf)
+        pages = []
+        for number in range(1, MOST_PAGES + 1):
+            source.write_text(_PAGE.format(number=number), encoding="utf-8")
+            try:
+                pages.append(typst.compile(source, format="png", ppi=DOTS))
+            except (RuntimeError, typst.TypstError):  # the sheet has no such page
+                break
+    return tuple(pages)
+
+
+_PAGE = '#set page(width: auto, height: auto, margin: 0pt)\n#image("sheet.pdf", page: {number})\n'

@@ -1,19 +1,50 @@
-"""`make_pictures`: a robot at rest and in its poses, in a process of its own."""
+"""`make_pictures`, `solve_poses`: a robot at rest and in its poses, in a process of its own."""
 
 import io
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from matplotlib.figure import Figure
 
+from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.ik import ReachedPose, solve_ik
 from hydrostat.plot import draw_network, draw_portrait, draw_reached, draw_rest, save_png
 from hydrostat.plot.palette import PAPER
 from hydrostat.plot.picture_file import drawing
 from hydrostat.robot import Robot
-from hydrostat.studio.exporting.archive import file_name
-from hydrostat.studio.exporting.download import Download
-from hydrostat.studio.exporting.solved_poses import SolvedPoses, solve_poses
+from hydrostat.simulation import Simulation
+from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.jobs import Report
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SolvedPoses:
+    """What the winches make of the poses.
+
+    Attributes:
+        robot: whose they are.
+        reached: those that were solved, in their order.
+        missed: a line for each that was not.
+    """
+
+    robot: Robot
+    reached: tuple[ReachedPose, ...]
+    missed: tuple[str, ...]
+
+
+def solve_poses(report: Report, robot: Robot) -> SolvedPoses:
+    """Solve all poses by inverse kinematics; none of a robot without cables."""
+    simulation = Simulation(robot)
+    reached, missed = [], []
+    poses = list(robot.poses.values()) if robot.cables else []
+    for done, pose in enumerate(poses):
+        report.progress(f"Pose {pose.name}", done, len(poses))
+        try:
+            reached.append(solve_ik(simulation, pose))
+        except (InputError, NotConvergedError) as error:
+            missed.append(f"{pose.name}: {error}")
+    return SolvedPoses(robot=robot, reached=tuple(reached), missed=tuple(missed))
 
 
 def make_pictures(report: Report, robot: Robot) -> tuple[Download, ...]:

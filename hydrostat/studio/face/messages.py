@@ -1,6 +1,6 @@
-"""What a screen may say to the studio: small JSON messages, checked before anything is done with them."""
+"""What a screen may say to the studio: small JSON messages and numbers, checked before anything is done with them."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
@@ -32,7 +32,7 @@ class Pointer(_Message):
     stamp: Annotated[float, Field(ge=0, le=1e15, allow_inf_nan=False)] = 0.0
 
 
-class Release(_Message):
+class LetGo(_Message):
     """The pointer has let go."""
 
     kind: Literal["release"]
@@ -45,7 +45,7 @@ class Seen(_Message):
     count: Annotated[int, Field(ge=1, le=1000)] = 1
 
 
-Message = Pointer | Release | Seen
+Message = Pointer | LetGo | Seen
 _ADAPTER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
 
 
@@ -62,3 +62,18 @@ def read_message(text: str) -> Message:
     except (ValidationError, RecursionError) as error:
         what = error.errors()[0]["msg"] if isinstance(error, ValidationError) else "nested too deep"
         raise InputError(f"a message is not understood: {what}") from None
+
+
+LARGEST_NUMBER = 1e9
+"""No number of a screen is larger."""
+
+
+def sent_number(value: Any) -> float | None:
+    """The number, or that of a text which a person is typing; None if it is none yet."""
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        return None
+    try:
+        number = float(value)
+    except (ValueError, OverflowError):
+        return None
+    return number if -LARGEST_NUMBER <= number <= LARGEST_NUMBER else None

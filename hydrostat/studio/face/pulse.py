@@ -8,7 +8,7 @@ from threading import Event, Thread
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.session import Session, Tone
-from hydrostat.studio.view.show import Shown
+from hydrostat.studio.view.picture import Shown
 
 SHORTEST = 1 / 60
 """One step is taken in this time [s], and one more for each drag that waits for its answer."""

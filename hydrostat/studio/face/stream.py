@@ -10,10 +10,10 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Point
-from hydrostat.studio.face.messages import Pointer, Release, Seen, read_message
+from hydrostat.studio.face.messages import LetGo, Pointer, Seen, read_message
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit
-from hydrostat.studio.view.show import Shown
+from hydrostat.studio.view.picture import Shown
 
 MOST_MISTAKES = 20
 """A screen that says so much that is not understood is sent away."""
@@ -85,7 +85,7 @@ class Stream:
         message = read_message(text)
         if isinstance(message, Seen):
             screen.saw(message.count)
-        elif isinstance(message, Release):
+        elif isinstance(message, LetGo):
             self._session.release(name)
         else:
             hit = self._hit(message)

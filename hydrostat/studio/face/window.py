@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.dialogs import save_dialog
 from hydrostat.studio.face.page import HEARTBEAT, Page
 from hydrostat.studio.face.panels.design_panel import design_panel
 from hydrostat.studio.face.panels.drive_panel import drive_panel
@@ -14,14 +16,23 @@ from hydrostat.studio.face.panels.edit_panel import edit_panel
 from hydrostat.studio.face.panels.export_panel import export_panel
 from hydrostat.studio.face.panels.pose_panel import pose_panel
 from hydrostat.studio.face.panels.start_panel import start_panel
-from hydrostat.studio.face.save_dialog import save_dialog
-from hydrostat.studio.face.stage_words import STAGES
-from hydrostat.studio.face.theme import dress
-from hydrostat.studio.face.tour import Tour, help_dialog, offer_tour
+from hydrostat.studio.face.tour import STAGES, Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
 from hydrostat.studio.face.viewport import Side, Viewport
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
+
+STATIC = Path(__file__).parent / "static"
+
+
+def dress() -> ui.dark_mode:
+    """Dress the page of this window; returns its switch between light and dark."""
+    ui.colors(primary="#0b5fa5", secondary="#b9774b", accent="#a8256f", positive="#00795f", negative="#c8243f",
+              dark="#2a2732")  # fmt: skip
+    for style in sorted(STATIC.glob("*.css")):
+        ui.add_css(style.read_text(encoding="utf-8"))
+    return ui.dark_mode(None)
+
 
 PANELS = {
     StageName.START: start_panel,
@@ -143,7 +154,7 @@ SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 
 def _key(page: Page, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> Any:
-    """What a key does; see `keys.KEYS`. Returns what is still to be waited for, if anything."""
+    """What a key does; see `tour.KEYS`. Returns what is still to be waited for, if anything."""
     if not event.action.keydown:
         return None
     name = str(event.key.name)

@@ -8,9 +8,9 @@ import numpy as np
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import Closeness, InverseReason, Limits, PointGoal, Tracker
 from hydrostat.simulation import Simulation, SolvedPose
-from hydrostat.studio.posing.held import Held
-from hydrostat.studio.posing.mover import Anchored, Mover
-from hydrostat.studio.view.shape import Shape
+from hydrostat.studio.posing.held import Anchored, Held
+from hydrostat.studio.posing.mover import Mover
+from hydrostat.studio.view.things import RobotShape
 
 PATIENCE = 150
 """So many updates are made towards targets that stay where they are."""
@@ -70,12 +70,12 @@ class CableMover(Mover):
         """The same in the same pose with another limit on the tension [N]."""
         return CableMover(self._simulation, tension=tension, start=self._pose, notes=self._notes)
 
-    def rest(self) -> Shape:
+    def rest(self) -> RobotShape:
         """Back to rest at once."""
         self._begin(self._simulation.rest)
         return self._shape({}, ())
 
-    def update(self, held: Mapping[str, Held]) -> tuple[Shape, bool]:
+    def update(self, held: Mapping[str, Held]) -> tuple[RobotShape, bool]:
         """One step of the tracker; without targets the winches stay as they are."""
         if not held:
             return self._shape({}, ()), False
@@ -122,9 +122,9 @@ class CableMover(Mover):
         self._exact = simulation is self._simulation
         self._tracker = Tracker(simulation, limits=Limits(tension=self.tension), start=self._pose)
 
-    def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> Shape:
+    def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> RobotShape:
         pose = self._pose
-        return Shape(
+        return RobotShape(
             nodes=pose.nodes,
             tensions=pose.tensions,
             contractions=pose.contractions,

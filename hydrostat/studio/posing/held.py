@@ -1,10 +1,16 @@
-"""`Held`, `Wish`: what a person holds where, as one value that is replaced whole."""
+"""`Held`, `Wish`, `Now`: what a person holds where, and where the body is, as values that are replaced whole."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
-from hydrostat.robot import Point
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points
+from hydrostat.geometry.anchors import Anchors, locate
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot import Point, Robot
+from hydrostat.studio.view.things import Ghost, RobotShape
 
 
 class Mode(StrEnum):
@@ -42,3 +48,89 @@ class Wish:
     mode: Mode
     held: Mapping[str, Held] = field(default_factory=dict)
     rests: int = 0
+
+
+class Anchored:
+    """Where held points are stuck to the mesh, found once for as long as they are the same; any thread may ask."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        """Points of this body."""
+        self._mesh = mesh
+        self._found: tuple[tuple[Point, ...], Anchors] = ((), locate(mesh, np.zeros((0, mesh.dim))))
+
+    def anchors(self, held: Mapping[str, Held]) -> Anchors:
+        """The points as anchors, in their order."""
+        places = tuple(point.at for point in held.values())
+        known, anchors = self._found
+        if places != known:
+            anchors = locate(self._mesh, np.array(places, dtype=float).reshape(-1, self._mesh.dim))
+            self._found = places, anchors
+        return anchors
+
+    def goals(self, held: Mapping[str, Held]) -> Points:
+        """Where they should go [m], (points, dim)."""
+        return np.array([point.target for point in held.values()], dtype=float).reshape(-1, self._mesh.dim)
+
+    def places(self, held: Mapping[str, Held], nodes: Nodes) -> Points:
+        """Where they are when the nodes are at `nodes` [m], (points, dim)."""
+        return self.anchors(held).positions(nodes)
+
+    def errors(self, held: Mapping[str, Held], nodes: Nodes) -> dict[str, float]:
+        """How far each is from its target [m]."""
+        misses = np.linalg.norm(self.places(held, nodes) - self.goals(held), axis=1)
+        return dict(zip(held, misses.tolist(), strict=True))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Now:
+    """What belongs together, so that no thread sees an old wish with a new body.
+
+    Attributes:
+        robot: that is posed.
+        wish: what a person wants of it.
+        anchored: where held points are stuck to its mesh.
+        shape: where its body is.
+        ghost: a shape to compare with, if any.
+    """
+
+    robot: Robot
+    wish: Wish
+    anchored: Anchored
+    shape: RobotShape
+    ghost: Ghost | None = None
+
+    def known(self, name: str) -> str:
+        """The name, if a point that is held or a marker has it, else ""."""
+        found = name in self.wish.held or any(marker.name == name for marker in self.robot.markers)
+        return name if found else ""
+
+    def adapted(self, robot: Robot) -> "Now":
+        """The same for a robot of the same nodes, whose markers, cables and winches may be others.
+
+        Markers that are gone are held no more, but what was held as a plain point stays held.
+        """
+        names, places = renamed_markers(self.robot, robot), {marker.name: marker.at for marker in robot.markers}
+        held: dict[str, Held] = {}
+        for old, point in self.wish.held.items():
+            name = names.get(old, old)
+            if name in places or not point.marker:
+                held[name] = replace(point, at=places.get(name, point.at))
+        mode = self.wish.mode if robot.cables else Mode.MUSCLES
+        return replace(
+            self, robot=robot, wish=replace(self.wish, held=held, mode=mode), shape=with_network_of(robot, self.shape)
+        )
+
+
+def renamed_markers(before: Robot, after: Robot) -> Mapping[str, str]:
+    """New names of markers by their old ones: those that are new where one is gone."""
+    old, new = {marker.name for marker in before.markers}, {marker.name for marker in after.markers}
+    fresh = {marker.at: marker.name for marker in after.markers if marker.name not in old}
+    gone = [marker for marker in before.markers if marker.name not in new]
+    return {marker.name: fresh[marker.at] for marker in gone if marker.at in fresh}
+
+
+def with_network_of(robot: Robot, shape: RobotShape) -> RobotShape:
+    """A shape for a robot whose winches and cables may be others."""
+    if len(shape.tensions) == len(robot.cables) and len(shape.contractions) == len(robot.winches):
+        return shape
+    return replace(shape, tensions=np.zeros(len(robot.cables)), contractions=np.zeros(len(robot.winches)))

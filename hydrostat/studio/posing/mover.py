@@ -1,16 +1,14 @@
-"""`Mover`: the contract of what makes a body follow points that are held."""
+"""`Mover`: the contract of what makes a body follow points that are held; `MuscleMover`: the body's own muscles."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Points
-from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.geometry.mesh import Mesh
-from hydrostat.robot import Point, Robot
-from hydrostat.studio.posing.held import Held
-from hydrostat.studio.view.shape import Shape
+from hydrostat.design.muscles.free_posing import FreePosing
+from hydrostat.robot import Robot
+from hydrostat.studio.posing.held import Anchored, Held
+from hydrostat.studio.view.things import RobotShape
 
 
 class Mover(ABC):
@@ -23,40 +21,53 @@ class Mover(ABC):
     robot: Robot
 
     @abstractmethod
-    def rest(self) -> Shape:
+    def rest(self) -> RobotShape:
         """Back to rest at once: nothing pulls."""
 
     @abstractmethod
-    def update(self, held: Mapping[str, Held]) -> tuple[Shape, bool]:
+    def update(self, held: Mapping[str, Held]) -> tuple[RobotShape, bool]:
         """One step towards the targets; the shape, and whether there is more to gain."""
 
 
-class Anchored:
-    """Where held points are stuck to the mesh, found once for as long as they are the same; any thread may ask."""
+PATIENCE = 120
+"""So many updates are made towards targets that stay where they are."""
 
-    def __init__(self, mesh: Mesh) -> None:
-        """Points of this body."""
-        self._mesh = mesh
-        self._found: tuple[tuple[Point, ...], Anchors] = ((), locate(mesh, np.zeros((0, mesh.dim))))
+MISSED = 0.01
+"""From this distance on a target counts as out of reach, in sizes of the body."""
 
-    def anchors(self, held: Mapping[str, Held]) -> Anchors:
-        """The points as anchors, in their order."""
-        places = tuple(point.at for point in held.values())
-        known, anchors = self._found
-        if places != known:
-            anchors = locate(self._mesh, np.array(places, dtype=float).reshape(-1, self._mesh.dim))
-            self._found = places, anchors
-        return anchors
 
-    def goals(self, held: Mapping[str, Held]) -> Points:
-        """Where they should go [m], (points, dim)."""
-        return np.array([point.target for point in held.values()], dtype=float).reshape(-1, self._mesh.dim)
+class MuscleMover(Mover):
+    """Free posing on muscle fibres: no cable pulls (R36 to R38)."""
 
-    def places(self, held: Mapping[str, Held], nodes: Nodes) -> Points:
-        """Where they are when the nodes are at `nodes` [m], (points, dim)."""
-        return self.anchors(held).positions(nodes)
+    def __init__(self, robot: Robot) -> None:
+        """Begin at rest; the sparse pattern is made here."""
+        self.robot = robot
+        self._posing, self._anchored = FreePosing(robot), Anchored(robot.body.mesh)
+        self._held: Mapping[str, Held] = {}
+        self._updates = 0
 
-    def errors(self, held: Mapping[str, Held], nodes: Nodes) -> dict[str, float]:
-        """How far each is from its target [m]."""
-        misses = np.linalg.norm(self.places(held, nodes) - self.goals(held), axis=1)
-        return dict(zip(held, misses.tolist(), strict=True))
+    def rest(self) -> RobotShape:
+        """Back to rest at once."""
+        self._posing.rest()
+        return self._shape({}, False)
+
+    def update(self, held: Mapping[str, Held]) -> tuple[RobotShape, bool]:
+        """One step of the muscles; without targets they let go, a step at a time."""
+        if held is not self._held:
+            self._held, self._updates = held, 0
+        self._updates += 1
+        more = self._posing.update(self._anchored.anchors(held), self._anchored.goals(held))
+        more = more and self._updates < PATIENCE
+        return self._shape(held, more), more
+
+    def _shape(self, held: Mapping[str, Held], more: bool) -> RobotShape:
+        nodes, robot = self._posing.nodes, self.robot
+        errors = self._anchored.errors(held, nodes)
+        far = not more and max(errors.values(), default=0.0) > MISSED * robot.body.mesh.size
+        return RobotShape(
+            nodes=nodes,
+            tensions=np.zeros(len(robot.cables)),
+            contractions=np.zeros(len(robot.winches)),
+            errors=errors,
+            notes=("as far as muscles bring this body",) if far else (),
+        )

@@ -9,8 +9,7 @@ from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document
 from hydrostat.studio.posing.cable_mover import CableMover
 from hydrostat.studio.posing.held import Mode
-from hydrostat.studio.posing.mover import Mover
-from hydrostat.studio.posing.muscle_mover import MuscleMover
+from hydrostat.studio.posing.mover import Mover, MuscleMover
 
 RUBBING = "posed without friction: with it the pose depends on the way there"
 

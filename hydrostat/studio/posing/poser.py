@@ -13,11 +13,8 @@ from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing.bars import Bar, bars
-from hydrostat.studio.posing.held import Held, Mode, Wish
-from hydrostat.studio.posing.mover import Anchored
+from hydrostat.studio.posing.held import Anchored, Held, Mode, Now, Wish, renamed_markers, with_network_of
 from hydrostat.studio.posing.movers import Movers, same_body
-from hydrostat.studio.posing.now import Now, fitted, renamed
 from hydrostat.studio.posing.poses import (
     checked_name,
     held_of,
@@ -26,12 +23,11 @@ from hydrostat.studio.posing.poses import (
     with_pose,
     without_pose,
 )
-from hydrostat.studio.posing.reach import Reach
-from hydrostat.studio.records.fresh_name import fresh_name
+from hydrostat.studio.posing.reach import MarkerReach
+from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.view.robot_things import MARKER, robot_things, target_things
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.things import Dot, Ghost, Look, Thing
+from hydrostat.studio.view.robot_things import MARKER, Bar, robot_things, target_things, winch_bars
+from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 
 READY = "getting ready ..."
 """Said while the physics of a robot is made."""
@@ -72,7 +68,7 @@ class Poser(Stage):
     def __init__(self, document: Document, jobs: Jobs) -> None:
         """Poses of the robot of a document."""
         self._document = document
-        self.reach = Reach(document, jobs)
+        self.reach = MarkerReach(document, jobs)
         self._lock = RLock()
         self._movers = Movers(document)
         self._now: Now | None = None
@@ -104,7 +100,7 @@ class Poser(Stage):
         """Name of the held point or marker that is chosen; "" if none is."""
         return self._chosen
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """The body as it follows; at rest until the first step."""
         return self._fit().shape
 
@@ -271,7 +267,7 @@ class Poser(Stage):
     def bars(self) -> list[Bar]:
         """What each winch does."""
         now = self._fit()
-        return bars(now.robot, now.shape, self._document.work.wishes.tension)
+        return winch_bars(now.robot, now.shape, self._document.work.wishes.tension)
 
     def step(self, now: float) -> bool:
         """One update of the mover; the first only says that it may take a while."""
@@ -302,11 +298,11 @@ class Poser(Stage):
             self._done = (robot, wish, tension)
         return more or self._fit().wish is not wish
 
-    def _publish(self, robot: Robot, shape: Shape) -> None:
+    def _publish(self, robot: Robot, shape: RobotShape) -> None:
         with self._lock:
             now = self._now
             if now is not None and same_body(now.robot, robot):
-                self._now = replace(now, shape=fitted(now.robot, shape))
+                self._now = replace(now, shape=with_network_of(now.robot, shape))
         self._document.bell.ring(Topic.SHAPE)
 
     def _ring(self) -> None:
@@ -344,7 +340,7 @@ class Poser(Stage):
 
     def _rename(self, before: Now, now: Now) -> None:
         """Follow the new names of markers; let go of those that are gone."""
-        names, hold = renamed(before.robot, now.robot), self._hold
+        names, hold = renamed_markers(before.robot, now.robot), self._hold
         self._chosen = now.known(names.get(self._chosen, self._chosen))
         self._armed = now.known(names.get(self._armed, self._armed))
         if hold is not None:

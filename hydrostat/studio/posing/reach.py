@@ -1,25 +1,86 @@
-"""`Reach`: all that a marker can reach, as a cloud that grows while it is found."""
+"""`MarkerReach`: all that a marker can reach, as a cloud that grows while it is found."""
 
 from dataclasses import dataclass, replace
+from math import ceil, log2
 
 import numpy as np
+from scipy.stats import qmc
 
-from hydrostat.arrays import Points
-from hydrostat.errors import InputError
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Point, Robot
+from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.jobs import Jobs, Report
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
-from hydrostat.studio.posing.workspace import COUNT, sweep
 from hydrostat.studio.view.things import Cloud
+
+COUNT = 400
+"""So many poses are tried."""
+
+PORTION = 8
+"""So many are told at once."""
+
+SEED = 8
+
+
+def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int = COUNT) -> int:
+    """Poses for contractions spread evenly over what all winches can do; tells where the marker is, a few at a time.
+
+    Poses that do not converge, are not stable or ask a cable for more than its limit are left out.
+
+    Args:
+        report: is told the places, (points, dim) [m].
+        robot: whose marker it is.
+        marker: its name.
+        tension: the most that a cable bears [N].
+        count: how many poses are tried.
+
+    Returns:
+        How many of them can be held.
+    """
+    simulation = Simulation(robot)
+    last, held, places = simulation.rest, 0, []
+    for index, contractions in enumerate(spread(robot, count)):
+        report.progress("trying poses", index, count)
+        try:
+            pose = simulation.solve(contractions, start=last, strict=False)
+        except HydrostatError:
+            continue
+        if pose.result.converged and pose.result.stable and pose.tensions.max(initial=0.0) <= tension:
+            last = pose
+            held += 1
+            places.append(pose.markers[marker])
+        if len(places) == PORTION:
+            report.part(np.array(places))
+            places = []
+    if places:
+        report.part(np.array(places))
+    return held
+
+
+def spread(robot: Robot, count: int) -> list[Vector]:
+    """Contractions of all winches [m], by Sobol's sequence, each near the one before so that solves are short."""
+    low = np.array([-winch.release for winch in robot.winches])
+    high = np.array([winch.travel for winch in robot.winches])
+    drawn = qmc.Sobol(len(robot.winches), rng=SEED).random_base2(max(ceil(log2(count)), 1))[:count]
+    left = list(range(count))
+    order, here = [], np.clip(-low / (high - low), 0.0, 1.0)
+    while left:
+        near = left[int(np.argmin(((drawn[left] - here) ** 2).sum(axis=1)))]
+        left.remove(near)
+        order.append(near)
+        here = drawn[near]
+    return [low + share * (high - low) for share in drawn[order]]
+
 
 COLOUR = "#1787b8"
 
 
 @dataclass(eq=False)
-class _Search:
+class _ReachSearch:
     """One search, of one marker of one robot, with what it has found so far."""
 
     robot: Robot
@@ -34,13 +95,13 @@ class _Search:
         return same and same_physics(self.robot, robot, Mode.CABLES)
 
 
-class Reach:
+class MarkerReach:
     """The cloud of one marker at a time; it is forgotten when the robot moves in another way."""
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
         """Clouds of the robot of a document."""
         self._document, self._jobs = document, jobs
-        self._search: _Search | None = None
+        self._search: _ReachSearch | None = None
         document.bell.listen(self._heard)
 
     @property
@@ -77,7 +138,7 @@ class Reach:
         if not robot.cables:
             raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
         free = replace(robot, cables=tuple(replace(cable, friction=0.0) for cable in robot.cables))
-        before, search = self._search, _Search(free, marker, tension)
+        before, search = self._search, _ReachSearch(free, marker, tension)
         self._search = search  # work may tell something, or be over, before it is said to have begun
         try:
             self._jobs.start(
@@ -114,13 +175,13 @@ class Reach:
         if not search.fits(work.robot, work.wishes.tension):
             self.clear()
 
-    def _grow(self, search: _Search, points: Points) -> None:
+    def _grow(self, search: _ReachSearch, points: Points) -> None:
         known = points if search.cloud is None else np.concatenate([search.cloud.points, points])
         search.cloud = Cloud(name="reach", points=known, colour=COLOUR)
         if search is self._search:
             self._document.bell.ring(Topic.THINGS)
 
-    def _end(self, search: _Search) -> None:
+    def _end(self, search: _ReachSearch) -> None:
         search.running = False
         self._document.bell.ring(Topic.THINGS)
 

@@ -7,17 +7,78 @@ both cases what was done while a copy is written.
 import json
 import logging
 import os
+import sys
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from secrets import token_hex
 from shutil import rmtree
 from threading import Lock, Thread
+from typing import IO
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.work import Work
-from hydrostat.studio.starting.held_folder import HeldFolder, is_held
 from hydrostat.studio.work_folder import open_work, save_work, text_of
+
+LOCK = "lock"
+
+
+class HeldFolder:
+    """A new folder with a locked file in it. The system lets go of the lock when the process is gone, even if killed.
+
+    Attributes:
+        path: of the folder.
+    """
+
+    def __init__(self, parent: Path) -> None:
+        """Make it.
+
+        Raises:
+            OSError: it cannot be made.
+        """
+        self.path = parent / f"{os.getpid()}-{token_hex(4)}"
+        self.path.mkdir(parents=True)
+        self._file: IO[bytes] = (self.path / LOCK).open("wb")
+        _lock(self._file)
+
+    def remove(self) -> None:
+        """Remove the folder with all that is in it."""
+        self.let_go()
+        rmtree(self.path, ignore_errors=True)
+
+    def let_go(self) -> None:
+        """Leave the folder behind; another process may have it."""
+        self._file.close()
+
+
+def is_held(folder: Path) -> bool:
+    """Whether a process that lives holds a folder."""
+    try:
+        with (folder / LOCK).open("r+b") as file:
+            _lock(file)
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+    return False
+
+
+def _lock(file: IO[bytes]) -> None:
+    """Lock a file until it is closed.
+
+    Raises:
+        OSError: another has locked it.
+    """
+    if sys.platform == "win32":
+        import msvcrt
+
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
+
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+
 
 PATIENCE = 2.0
 """Work is kept when nothing has changed for so long [s]."""

@@ -1,4 +1,4 @@
-"""`Draft`: what a robot is to be made of, and with which numbers."""
+"""`BodyDraft`: what a robot is to be made of, and with which numbers."""
 
 import re
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from pathlib import PurePath
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
 from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
-from hydrostat.robot import find_material
+from hydrostat.robot import Material, find_material
 from hydrostat.robot.name import check_name
 from hydrostat.units import quote
 
@@ -31,7 +31,7 @@ _CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Draft:
+class BodyDraft:
     """A drawing or a surface, and what is asked of the robot made of it; None where nothing is asked.
 
     Attributes:
@@ -78,7 +78,7 @@ class Draft:
         return self.file.endswith(OUTLINE_SUFFIXES)
 
 
-def new_draft(name: str, content: bytes) -> Draft:
+def new_draft(name: str, content: bytes) -> BodyDraft:
     """A draft of a file that a person brings, with nothing asked yet but the size of a picture.
 
     Raises:
@@ -91,7 +91,7 @@ def new_draft(name: str, content: bytes) -> Draft:
         raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
     material = "polyester fibre" if file.endswith(OUTLINE_SUFFIXES) else "flexfoam-it x"
     size = PICTURE_SIZE if file.endswith((".png", ".jpg", ".jpeg")) else None
-    return Draft(file=file, content=content, name=_robot_name(PurePath(file).stem), material=material, size=size)
+    return BodyDraft(file=file, content=content, name=_robot_name(PurePath(file).stem), material=material, size=size)
 
 
 def safe_name(name: str) -> str:
@@ -117,3 +117,21 @@ def _robot_name(stem: str) -> str:
         return check_name(stem)
     except InputError:
         return "robot"
+
+
+_SOFTNESS = ((20e3, "as soft as jelly"), (100e3, "soft"), (500e3, "rather firm"), (2e6, "firm"))
+
+
+def material_words(material: Material) -> str:
+    """Such as "soft, Young's modulus 30 kPa, 40 kg/m3, may be squeezed by 60 % and stretched by 50 %"."""
+    feel = next((words for most, words in _SOFTNESS if material.young < most), "stiff")
+    words = f"{feel}, Young's modulus {young_words(material)}, {material.density:.0f} kg/m³"
+    if material.largest_squeeze is None or material.largest_stretch is None:
+        return words
+    squeeze, stretch = 100 * material.largest_squeeze, 100 * (material.largest_stretch - 1)
+    return f"{words}, may be squeezed by {squeeze:.0f} % and stretched by {stretch:.0f} %"
+
+
+def young_words(material: Material) -> str:
+    """Young's modulus to three digits, such as "30 kPa"."""
+    return f"{material.young / 1e6:.3g} MPa" if material.young >= 1e6 else f"{material.young / 1e3:.3g} kPa"

@@ -1,4 +1,4 @@
-"""`Corner`, `read_loops`, `loops_svg`, `fitted`: an outline as few corners, as a person draws it."""
+"""`LoopCorner`, `read_loops`, `loops_svg`, `fitted`: an outline as few corners, as a person draws it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ _SHARP, _WINDOW = np.deg2rad(50.0), 0.004
 
 
 @dataclass(frozen=True)
-class Corner:
+class LoopCorner:
     """A corner of a loop.
 
     Attributes:
@@ -42,7 +42,7 @@ class Corner:
     smooth: bool = False
 
 
-Loop = tuple[Corner, ...]
+Loop = tuple[LoopCorner, ...]
 """Corners in order, the last joined to the first."""
 
 
@@ -53,7 +53,7 @@ def read_loops(raw: Any) -> tuple[Loop, ...]:
         InputError: they are no such thing, or too many.
     """
     try:
-        loops = tuple(tuple(Corner(float(x), float(y), bool(smooth)) for x, y, smooth in loop) for loop in raw)
+        loops = tuple(tuple(LoopCorner(float(x), float(y), bool(smooth)) for x, y, smooth in loop) for loop in raw)
     except (TypeError, ValueError, OverflowError):
         raise InputError("the outline that was sent is not understood") from None
     if len(loops) > MOST_LOOPS or sum(map(len, loops)) > MOST_CORNERS:
@@ -138,7 +138,8 @@ def _fitted(rim: Ring, size: float) -> Loop:
     knots = [int(index) for index in np.linspace(0, len(ring), min(_FIRST, len(ring)), endpoint=False)]
     while True:
         loop = tuple(
-            Corner(round(float(ring[knot, 0]), 2), round(float(ring[knot, 1]), 2), not sharp[knot]) for knot in knots
+            LoopCorner(round(float(ring[knot, 0]), 2), round(float(ring[knot, 1]), 2), not sharp[knot])
+            for knot in knots
         )
         dense = curve(loop)
         missed = np.asarray(distance(places, LinearRing(dense)))

@@ -1,14 +1,34 @@
-"""`Outlining`: an outline while a person draws it."""
+"""`Outlining`, `reshaped`: an outline while a person draws it, and a robot that is given it."""
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from hydrostat.design import Zone
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Robot
-from hydrostat.studio.records.work import Work
-from hydrostat.studio.starting.loops import Corner, Loop, fitted, loops_svg, outline_of, read_loops
-from hydrostat.studio.starting.reshape import Reshaped, reshaped
+from hydrostat.geometry.files.outline_file import read_drawing
+from hydrostat.robot import Body, Cable, Mount, Pin, Point, Pose, Robot, outline_body
+from hydrostat.studio.records.work import Work, followed
+from hydrostat.studio.starting.loops import Loop, LoopCorner, fitted, loops_svg, outline_of, read_loops
+from hydrostat.units import counted
+
+Move = Callable[[Point], Point]
+"""From a place in the old body to the same in the new."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Reshaped:
+    """A robot with another outline.
+
+    Attributes:
+        work: with the new body.
+        dropped: what lay outside it and is gone, in words, such as "marker tip".
+    """
+
+    work: Work
+    dropped: tuple[str, ...]
 
 
 class Outlining:
@@ -79,10 +99,10 @@ class Outlining:
 
 def beginnings() -> dict[str, tuple[Loop, ...]]:
     """Simple shapes to begin with, by name."""
-    disc = tuple(Corner(100 * _cos(k, 8), 70 * _sin(k, 8), True) for k in range(8))
-    bar = (Corner(-120, -25), Corner(120, -25), Corner(120, 25), Corner(-120, 25))
-    star = tuple(Corner((120 if k % 2 else 45) * _cos(k + 1.5, 10), (120 if k % 2 else 45) * _sin(k + 1.5, 10), True)
-                 for k in range(10))  # fmt: skip
+    disc = tuple(LoopCorner(100 * _cos(k, 8), 70 * _sin(k, 8), True) for k in range(8))
+    bar = (LoopCorner(-120, -25), LoopCorner(120, -25), LoopCorner(120, 25), LoopCorner(-120, 25))
+    radii = [120 if k % 2 else 45 for k in range(10)]
+    star = tuple(LoopCorner(r * _cos(k + 1.5, 10), r * _sin(k + 1.5, 10), True) for k, r in enumerate(radii))
     return {"Disc": (disc,), "Bar": (bar,), "Star": (star,)}
 
 
@@ -92,3 +112,126 @@ def _cos(step: float, steps: int) -> float:
 
 def _sin(step: float, steps: int) -> float:
     return round(float(np.sin(2 * np.pi * step / steps)), 3)
+
+
+def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
+    """Give a flat robot another outline; thickness, element size and material stay.
+
+    Coordinates of a body count from the middle of its drawing, so what stays is moved when that moves.
+
+    Args:
+        work: with the robot.
+        drawing: an SVG in millimetres.
+        corner: what of the robot lies in the upper left corner of the drawing [mm].
+
+    Raises:
+        InputError: the drawing is no body, or no pin lies in it.
+    """
+    old = work.robot.body
+    if old.thickness is None or old.element_size is None:
+        raise InputError("only flat bodies have an outline that can be edited")
+    file = old.file if old.file.lower().endswith(".svg") else "outline.svg"
+    numbers = {"element_size": old.element_size, "thickness": old.thickness}
+    body = outline_body(drawing, file=file, material=old.material, volume=old.volume, **numbers)
+    x, y = read_drawing(drawing, name=file).page.origin
+    middle = np.array([1e-3 * (corner[0] + x), 1e-3 * (corner[1] - y)])
+
+    def move(point: Point) -> Point:
+        return tuple(float(value) for value in np.round(np.array(point) - middle, 9))
+
+    robot, numbers, dropped = _within_body(_moved(work.robot, move), work.robot, body)
+    return Reshaped(work=_matching(work, robot, numbers, move), dropped=dropped)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Parts:
+    """All that lies on a body."""
+
+    pins: tuple[Pin, ...]
+    rest: dict[str, tuple]
+    poses: tuple[Pose, ...]
+
+
+def _moved(robot: Robot, move: Move) -> _Parts:
+    def pin_moved(pin: Pin) -> Pin:
+        if pin.at is not None:
+            return replace(pin, at=move(pin.at))
+        assert pin.box is not None
+        return replace(pin, box=(move(pin.box[0]), move(pin.box[1])))
+
+    def pose_moved(pose: Pose) -> Pose:
+        return replace(pose, targets={name: move(place) for name, place in pose.targets.items()})
+
+    return _Parts(
+        pins=tuple(map(pin_moved, robot.pins)),
+        rest={
+            "winches": tuple(replace(winch, at=move(winch.at)) for winch in robot.winches),
+            "cables": tuple(replace(cable, points=tuple(map(move, cable.points))) for cable in robot.cables),
+            "markers": tuple(replace(marker, at=move(marker.at)) for marker in robot.markers),
+        },
+        poses=tuple(map(pose_moved, robot.poses.values())),
+    )
+
+
+def _within_body(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, dict[int, int], tuple[str, ...]]:
+    """The robot with all parts that lie in the body, new numbers of its cables by their old ones, the rest in words."""
+    dropped: list[str] = []
+
+    def fits(words: str, points: tuple[Point, ...]) -> bool:
+        good = not len(points) or bool((body.distances(np.array(points)) <= 0).all())
+        if not good:
+            dropped.append(words)
+        return good
+
+    pins = []
+    for number, pin in enumerate(parts.pins, start=1):
+        try:
+            pin.anchors(body.mesh)
+            pins.append(pin)
+        except InputError:
+            dropped.append(f"pin {number}")
+    if not pins:
+        raise InputError("no pin would lie in the new outline; keep the part that is held, or move a pin first")
+    worlds = {winch.name for winch in robot.winches if winch.mount is Mount.WORLD}
+    winches = [
+        winch for winch in parts.rest["winches"] if winch.name in worlds or fits(f"winch {winch.name}", (winch.at,))
+    ]
+    standing = {winch.name for winch in winches}
+    cables: dict[int, Cable] = {}
+    for number, cable in enumerate(parts.rest["cables"]):
+        inside = cable.points[1:] if cable.winch in worlds else cable.points
+        if cable.winch not in standing:
+            dropped.append(f"cable {number + 1}")
+        elif fits(f"cable {number + 1}", inside):
+            cables[number] = cable
+    markers = [marker for marker in parts.rest["markers"] if fits(f"marker {marker.name}", (marker.at,))]
+    poses = _poses_of(parts.poses, {marker.name for marker in markers}, dropped)
+    options = {"pins": tuple(pins), "markers": tuple(markers), "poses": poses}
+    made = replace(robot, body=body, winches=tuple(winches), cables=tuple(cables.values()), **options)
+    return made, {old: new for new, old in enumerate(cables)}, tuple(dropped)
+
+
+def _poses_of(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) -> dict[str, Pose]:
+    """Poses of the markers that are left."""
+    kept = {}
+    for pose in poses:
+        targets = {name: place for name, place in pose.targets.items() if name in markers}
+        lost = len(pose.targets) - len(targets)
+        if targets or not pose.targets:
+            kept[pose.name] = replace(pose, targets=targets)
+        if lost:
+            dropped.append(f"{counted(lost, 'target')} of pose {pose.name}")
+    return kept
+
+
+def _matching(work: Work, robot: Robot, cables: dict[int, int], move: Move) -> Work:
+    """Wishes and keyframes that fit the robot."""
+
+    def zone_moved(zone: Zone) -> Zone:
+        at = None if zone.at is None else move(zone.at)
+        box = None if zone.box is None else (move(zone.box[0]), move(zone.box[1]))
+        return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
+
+    zones = tuple((paint, zone_moved(zone)) for paint, zone in work.wishes.zones)
+    timeline, wishes = followed(work, robot, cables=cables)
+    return replace(work, robot=robot, timeline=timeline, wishes=replace(wishes, zones=zones))

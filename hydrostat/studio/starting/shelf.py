@@ -1,5 +1,8 @@
-"""`Card`, `gallery_cards`, `robots_in`: robots to choose from, told without reading their bodies."""
+"""`Recent`, `gallery_cards`, `robots_in`: robots to choose from, told without reading their bodies."""
 
+import json
+import os
+import sys
 import tomllib
 from collections import Counter
 from contextlib import suppress
@@ -7,7 +10,8 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 
-from hydrostat.robot import gallery_folder, gallery_names
+from hydrostat.errors import HydrostatError
+from hydrostat.robot import gallery_folder, gallery_names, replace_file
 from hydrostat.studio.starting.draw_gallery import PICTURES
 from hydrostat.units import counted
 
@@ -102,3 +106,47 @@ def _words(folder: Path) -> str:
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return ""
     return ", ".join([kind, *(part for part in parts if not part.startswith("0 "))])
+
+
+MOST_RECENT = 12
+"""So many are remembered."""
+
+
+class Recent:
+    """A short list in a file."""
+
+    def __init__(self, file: Path | None) -> None:
+        """Remember in a file; None: nowhere."""
+        self._file = file
+
+    def folders(self) -> list[Path]:
+        """Folders that still hold a robot, the latest first."""
+        return [folder for folder in self._read() if (folder / "robot.toml").is_file()]
+
+    def add(self, folder: Path) -> None:
+        """Put a folder first; that it cannot be remembered is no reason to stop."""
+        if self._file is None:
+            return
+        folder = folder.resolve()
+        folders = [folder, *(other for other in self._read() if other != folder)][:MOST_RECENT]
+        with suppress(OSError, HydrostatError):
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            replace_file(self._file, json.dumps([str(folder) for folder in folders]).encode())
+
+    def _read(self) -> list[Path]:
+        if self._file is None:
+            return []
+        with suppress(OSError, ValueError):
+            known = json.loads(self._file.read_text(encoding="utf-8"))
+            if isinstance(known, list):
+                return [Path(path) for path in known if isinstance(path, str)][:MOST_RECENT]
+        return []
+
+
+def state_folder() -> Path:
+    """The folder of this person's studio; it need not be there yet."""
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
+    else:
+        base = os.environ.get("XDG_STATE_HOME") or str(Path.home() / ".local" / "state")
+    return Path(base) / "hydrostat" / "studio"

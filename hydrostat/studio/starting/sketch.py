@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, SurfaceSketch, sketch_robot, sketch_surface
 from hydrostat.studio.jobs import Report
-from hydrostat.studio.starting.draft import Draft
+from hydrostat.studio.starting.draft import BodyDraft
 
 MOST_MEMORY = 6 * 2**30
 """The process may have so much memory [bytes]; a file that needs more is refused."""
@@ -30,7 +30,7 @@ class Sketch:
         repair: of what was mended, likewise; "" if nothing was.
     """
 
-    draft: Draft
+    draft: BodyDraft
     robot: Robot
     lines: tuple[str, ...]
     clean: bool
@@ -38,7 +38,7 @@ class Sketch:
     repair: str = ""
 
 
-def make_sketch(report: Report, draft: Draft) -> Sketch:
+def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
     """Read, heal, mesh and draw.
 
     Raises:
@@ -53,7 +53,7 @@ def make_sketch(report: Report, draft: Draft) -> Sketch:
         raise InputError(f"{draft.file}: is nested too deep; export it again") from None
 
 
-def _sketch(report: Report, draft: Draft) -> Sketch:
+def _sketch(report: Report, draft: BodyDraft) -> Sketch:
     report.progress("reading and meshing", 0, 3)
     if draft.is_drawing and draft.inflate is None:
         robot, lines = _flat(draft)
@@ -78,7 +78,7 @@ def _sketch(report: Report, draft: Draft) -> Sketch:
     return replace(made, robot=_posed(sketch.robot))
 
 
-def _flat(draft: Draft) -> tuple[Robot, tuple[str, ...]]:
+def _flat(draft: BodyDraft) -> tuple[Robot, tuple[str, ...]]:
     from hydrostat.geometry.files.outline_file import read_drawing
 
     notes = read_drawing(draft.content, name=draft.file, size=draft.size).notes
@@ -95,7 +95,7 @@ def _flat(draft: Draft) -> tuple[Robot, tuple[str, ...]]:
     return robot, notes
 
 
-def _inflated(draft: Draft) -> tuple[bytes, tuple[str, ...]]:
+def _inflated(draft: BodyDraft) -> tuple[bytes, tuple[str, ...]]:
     from hydrostat.geometry.files.outline_file import read_drawing
     from hydrostat.geometry.files.surface_file import write_ply
     from hydrostat.geometry.inflate import inflate
@@ -111,7 +111,9 @@ def _posed(robot: Robot) -> Robot:
     return with_first_pose(robot)
 
 
-def _drawn(report: Report, draft: Draft, robot: Robot, lines: tuple[str, ...], sketch: SurfaceSketch | None) -> Sketch:
+def _drawn(
+    report: Report, draft: BodyDraft, robot: Robot, lines: tuple[str, ...], sketch: SurfaceSketch | None
+) -> Sketch:
     """With its pictures."""
     from hydrostat.plot import draw_healing, draw_rest, inline_svg
 

@@ -14,14 +14,12 @@ from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.starting.autosave import Autosave
-from hydrostat.studio.starting.draft import Draft, new_draft
+from hydrostat.studio.starting.draft import BodyDraft, new_draft
 from hydrostat.studio.starting.outlining import Outlining
-from hydrostat.studio.starting.recent import Recent
-from hydrostat.studio.starting.shelf import Card, card_of, robots_in, told_apart
+from hydrostat.studio.starting.shelf import Card, Recent, card_of, robots_in, told_apart
 from hydrostat.studio.starting.sketch import Sketch, make_sketch
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.studio.work_folder import open_work, text_of
 
 TITLE = "Meshing"
@@ -60,18 +58,18 @@ class Starter(Stage):
         """
         self._document, self._jobs = document, jobs
         self.autosave = Autosave(document, None if state is None else state / "work")
-        self.draft: Draft | None = None
+        self.draft: BodyDraft | None = None
         self.sketch: Sketch | None = None
         self.problem = ""
         self.outlining: Outlining | None = None
         self._recent = Recent(None if state is None else state / "recent.json")
         self._known: Path | None = None
-        self._working: Draft | None = None
+        self._working: BodyDraft | None = None
         self._halted = self._eager = False
         self._lock = RLock()
         document.bell.listen(self._hear)
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         """The rest shape."""
         return rest_shape(self._document.robot)
 
@@ -130,7 +128,7 @@ class Starter(Stage):
             self._take(draft)
 
     def revise(self, **changes: Any) -> None:
-        """Ask for other numbers; see `Draft`. What needs no new mesh is done at once.
+        """Ask for other numbers; see `BodyDraft`. What needs no new mesh is done at once.
 
         Raises:
             InputError: a number out of its range.
@@ -224,7 +222,7 @@ class Starter(Stage):
         self.outlining = None
         self._document.bell.ring(Topic.JOB)
 
-    def _take(self, draft: Draft) -> None:
+    def _take(self, draft: BodyDraft) -> None:
         """Make a sketch of a draft as soon as the one before is out of the way."""
         self.draft, self.problem, self._halted = draft, "", False
         if self._working is None:
@@ -233,7 +231,7 @@ class Starter(Stage):
             self._end()
         self._document.bell.ring(Topic.JOB)
 
-    def _begin(self, draft: Draft) -> None:
+    def _begin(self, draft: BodyDraft) -> None:
         self._working = draft
         try:
             self._jobs.start(TITLE, make_sketch, draft, on_part=self._found, on_done=self._found, on_end=self._ended)
@@ -271,7 +269,7 @@ class Starter(Stage):
             self._recent.add(folder)
 
 
-def _with_light(sketch: Sketch, draft: Draft) -> Sketch:
+def _with_light(sketch: Sketch, draft: BodyDraft) -> Sketch:
     """The same sketch of another name and material."""
     body = replace(sketch.robot.body, material=find_material(draft.material))
     return replace(sketch, draft=draft, robot=replace(sketch.robot, name=draft.name, body=body))

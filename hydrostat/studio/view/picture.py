@@ -1,6 +1,7 @@
-"""`Picture`: a body and things, made ready to be shown again and again while only places change."""
+"""`Show`, `Picture`: what all screens show, as bytes that are made anew only where something has changed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,9 +12,12 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.packet import packet
-from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Line, Thing
+from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Polyline, RobotShape, Thing
 
 Table = Float[np.ndarray, "rows 3"]
+
+KINDS_OF_THINGS = {Dot: "dot", Polyline: "line", Ghost: "ghost", Cloud: "cloud", Area: "area"}
+"""What a screen calls each."""
 
 
 class Picture:
@@ -84,7 +88,7 @@ class Picture:
         points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
         if self._stuck.any():
             points[self._stuck] = self._anchors.positions(nodes) + self._beside
-        loads = np.array([thing.load for thing in things if isinstance(thing, Line)], dtype=np.float32)
+        loads = np.array([thing.load for thing in things if isinstance(thing, Polyline)], dtype=np.float32)
         arrays = {"nodes": _in_space(nodes[self._shown]), "points": _in_space(points), "loads": loads}
         if values is not None:
             arrays["values"] = values[self._shown].astype(np.float32)
@@ -117,7 +121,7 @@ def _points(thing: Thing) -> Points:
     """The points of a thing that are sent with every frame."""
     if isinstance(thing, Dot):
         return np.array([thing.at], dtype=float)
-    if isinstance(thing, Line):
+    if isinstance(thing, Polyline):
         return np.array(thing.points, dtype=float)
     if isinstance(thing, Area):
         return np.array(thing.outline or (thing.at,), dtype=float)
@@ -132,7 +136,7 @@ def _stuck(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
         stuck = np.ones(len(points), dtype=bool)
         if isinstance(thing, Dot):
             stuck[:] = thing.stuck
-        elif isinstance(thing, Line):
+        elif isinstance(thing, Polyline):
             stuck[: len(points) if thing.loose < 0 else thing.loose] = False
         flags.append(stuck)
         places.append(points)
@@ -144,7 +148,7 @@ def _styles(things: Sequence[Thing]) -> list[dict[str, Any]]:
     styles, first = [], 0
     for thing in things:
         count = len(_points(thing))
-        style = {"kind": type(thing).__name__.lower(), "first": first, "count": count, **_style(thing)}
+        style = {"kind": KINDS_OF_THINGS[type(thing)], "first": first, "count": count, **_style(thing)}
         styles.append(style)
         first += count
     return styles
@@ -156,7 +160,7 @@ def _style(thing: Thing) -> dict[str, Any]:
             "key": thing.key, "look": str(thing.look), "colour": thing.colour, "label": thing.label,
             "chosen": thing.chosen, "radius": thing.radius,
         }  # fmt: skip
-    if isinstance(thing, Line):
+    if isinstance(thing, Polyline):
         return {"key": thing.key, "stroke": str(thing.stroke), "colour": thing.colour, "chosen": thing.chosen}
     if isinstance(thing, Area):
         return {
@@ -172,7 +176,7 @@ def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
     for thing in things:
         if isinstance(thing, Dot):
             marks.append((*_style(thing).values(), thing.at if thing.stuck else None))
-        elif isinstance(thing, Line):
+        elif isinstance(thing, Polyline):
             stuck = thing.points[thing.loose :] if thing.loose >= 0 else len(thing.points)
             marks.append((*_style(thing).values(), thing.loose, stuck))
         elif isinstance(thing, Area):
@@ -180,3 +184,51 @@ def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
         else:
             marks.append((thing.name, thing.colour, id(thing.nodes if isinstance(thing, Ghost) else thing.points)))
     return tuple(marks)
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """One moment.
+
+    Attributes:
+        serial: of its scene.
+        scene: all that stays the same.
+        frame: all that changes.
+    """
+
+    serial: int
+    scene: bytes
+    frame: bytes
+
+
+class Show:
+    """Makes a new scene only when the old one does not fit."""
+
+    def __init__(self) -> None:
+        self._picture: Picture | None = None
+        self._scene = b""
+        self._serial = 0
+
+    def moment(
+        self,
+        robot: Robot,
+        shape: RobotShape,
+        things: Sequence[Thing],
+        head: dict[str, Any],
+        values: Vector | None = None,
+    ) -> Shown:
+        """A robot in a shape, with things.
+
+        Args:
+            robot: whose body it is.
+            shape: where the body is.
+            things: beside it.
+            head: words that go along with the frame.
+            values: of the nodes, to be coloured by.
+        """
+        if self._picture is None or not self._picture.fits(robot, things):
+            self._serial += 1
+            self._picture = Picture(robot, things, self._serial)
+            self._scene = self._picture.scene()
+        frame = self._picture.frame(shape.nodes, things, head, values=values)
+        return Shown(self._serial, self._scene, frame)

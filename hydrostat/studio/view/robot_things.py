@@ -1,13 +1,14 @@
-"""`robot_things`: pins, winches, cables and markers of a robot as dots and lines."""
+"""`robot_things`, `winch_bars`: pins, winches, cables and markers of a robot as dots and lines, its winches as bars."""
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.plot.palette import INK, winch_colours
 from hydrostat.robot import Cable, Mount, Point, Robot
-from hydrostat.studio.view.things import Dot, Line, Look, Stroke, Thing
+from hydrostat.studio.view.things import Dot, Look, Polyline, RobotShape, Stroke, Thing
 
 MARKER = "#2b2833"
 PIN = "#5f5a68"
@@ -75,7 +76,7 @@ def target_things(targets: Mapping[str, Point], places: Mapping[str, Point], *, 
     for name, target in targets.items():
         key = f"target:{name}"
         if name in places:
-            miss = Line(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1)
+            miss = Polyline(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1)
             things.append(miss)
         things.append(
             Dot(key=key, at=target, look=Look.TARGET, colour=INK, label="", stuck=False, chosen=key == chosen)
@@ -87,12 +88,12 @@ def _cable(robot: Robot, index: int, cable: Cable, colour: str, load: float, cho
     """The run of a cable, its sheaths over it."""
     key, loose = f"cable:{index}", int(robot.winch(cable.winch).mount is Mount.WORLD)
     things: list[Thing] = [
-        Line(key=key, points=cable.points, stroke=Stroke.CABLE, colour=colour, loose=loose, load=load,
+        Polyline(key=key, points=cable.points, stroke=Stroke.CABLE, colour=colour, loose=loose, load=load,
              chosen=key in chosen)
     ]  # fmt: skip
     for start, end in cable.sheathed:
         hidden = loose if start == 0 else 0
-        things.append(Line(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, colour=colour, loose=hidden))
+        things.append(Polyline(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, colour=colour, loose=hidden))
     return things
 
 
@@ -110,4 +111,53 @@ def _vias(index: int, cable: Cable, colour: str, chosen: Collection[str], *, eve
             chosen=keys[place] in chosen,
         )
         for place in places
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bar:
+    """What one winch does.
+
+    Attributes:
+        winch: its name.
+        colour: of it.
+        contraction: cable taken in [m].
+        travel: the most it can take in [m].
+        release: the most it can let out [m].
+        tension: the largest of its cables [N].
+        limit: the most that a cable bears [N].
+    """
+
+    winch: str
+    colour: str
+    contraction: float
+    travel: float
+    release: float
+    tension: float
+    limit: float
+
+
+def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
+    """A bar for each winch.
+
+    Args:
+        robot: whose winches they are.
+        shape: what they do.
+        limit: the most that a cable bears [N].
+    """
+    colours = winch_colours(robot)
+    largest = dict.fromkeys(colours, 0.0)
+    for cable, tension in zip(robot.cables, np.asarray(shape.tensions).tolist(), strict=True):
+        largest[cable.winch] = max(largest[cable.winch], tension)
+    return [
+        Bar(
+            winch=winch.name,
+            colour=colours[winch.name],
+            contraction=contraction,
+            travel=winch.travel,
+            release=winch.release,
+            tension=largest[winch.name],
+            limit=limit,
+        )
+        for winch, contraction in zip(robot.winches, np.asarray(shape.contractions).tolist(), strict=True)
     ]

@@ -1,10 +1,40 @@
-"""`Dot`, `Line`, `Ghost`, `Cloud`, `Area`: all that is shown beside the body."""
+"""`RobotShape`, `Dot`, `Polyline`, `Ghost`, `Cloud`, `Area`: where the body is, and all that is shown beside it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
-from hydrostat.arrays import Nodes, Points
-from hydrostat.robot import Point
+import numpy as np
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.robot import Point, Robot
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RobotShape:
+    """A robot as it is shown.
+
+    Attributes:
+        nodes: positions [m].
+        tensions: of each cable [N].
+        contractions: of each winch [m].
+        errors: distance of each held marker from its target [m].
+        notes: what to mind, a line each: limits that hold, why a solver stopped.
+    """
+
+    nodes: Nodes
+    tensions: Vector
+    contractions: Vector
+    errors: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def rest_shape(robot: Robot) -> RobotShape:
+    """A robot as it was drawn."""
+    return RobotShape(
+        nodes=robot.body.mesh.nodes,
+        tensions=np.zeros(len(robot.cables)),
+        contractions=np.zeros(len(robot.winches)),
+    )
 
 
 class Look(StrEnum):
@@ -55,7 +85,7 @@ class Dot:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
+class Polyline:
     """A line through some points.
 
     Attributes:
@@ -130,4 +160,4 @@ class Area:
     chosen: bool = False
 
 
-Thing = Dot | Line | Ghost | Cloud | Area
+Thing = Dot | Polyline | Ghost | Cloud | Area

@@ -11,15 +11,14 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Body, Point, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.editing.editor import QUIET, Editor
+from hydrostat.studio.editing.change import remesh
+from hydrostat.studio.editing.editor import QUIET, Editor, Tool
 from hydrostat.studio.editing.findings import look_over
-from hydrostat.studio.editing.remesh import remesh
-from hydrostat.studio.editing.tool import Tool
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
-from hydrostat.studio.view.things import Dot, Line
+from hydrostat.studio.view.things import Dot, Polyline
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -126,7 +125,7 @@ def test_a_cable_is_laid_click_by_click(editor: Editor, document: Document, star
     for at in ((-0.04, 0.002), (-0.06, 0.01)):
         editor.click(on(at))
     assert document.robot is starfish
-    drawn = [thing for thing in editor.things() if isinstance(thing, Line)]
+    drawn = [thing for thing in editor.things() if isinstance(thing, Polyline)]
     assert drawn[-1].points == ((-0.02, -0.008), (-0.04, 0.002), (-0.06, 0.01))
     if end == "done":
         editor.finish()
@@ -179,7 +178,7 @@ def test_twins_move_and_go_together(editor: Editor, document: Document, starfish
     assert len(left.points) == len(right.points) == len(starfish.cables[0].points) + 1
     assert np.allclose(np.array(left.points) * [-1, 1], right.points)
     editor.choose("cable:0")
-    assert {thing.key for thing in editor.things() if isinstance(thing, Line) and thing.chosen} == {
+    assert {thing.key for thing in editor.things() if isinstance(thing, Polyline) and thing.chosen} == {
         "cable:0",
         "cable:1",
     }

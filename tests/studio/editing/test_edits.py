@@ -9,20 +9,15 @@ from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Mount, Robot, gallery_folder, load_robot
-from hydrostat.studio.editing.add import add_cable, add_marker, add_pin, add_winch, insert_via
-from hydrostat.studio.editing.change import change, rename, set_gravity
-from hydrostat.studio.editing.draft import begin_cable, end_cable
+from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
+from hydrostat.studio.editing.change import change, remesh, rename, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.findings import in_words, look_over
-from hydrostat.studio.editing.inside import below_skin, inside
+from hydrostat.studio.editing.hold import below_skin, inside
 from hydrostat.studio.editing.mirror import Mirror
-from hydrostat.studio.editing.move import move
 from hydrostat.studio.editing.part import find_part, keys_of, place_of
-from hydrostat.studio.editing.remesh import remesh
-from hydrostat.studio.editing.remove import remove
-from hydrostat.studio.editing.sheaths import sheathed_segments, sheaths
-from hydrostat.studio.records.follow import after_design, followed
+from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
 from hydrostat.studio.records.wishes import Wishes
-from hydrostat.studio.records.work import Work
+from hydrostat.studio.records.work import Work, after_design, followed
 
 pytestmark = pytest.mark.filterwarnings("error")
 

@@ -15,11 +15,9 @@ from hydrostat.robot.read import RobotReader
 from hydrostat.robot.toml_blocks import comments
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
-from hydrostat.studio.editing.add import add_cable, add_marker, add_pin, add_winch, insert_via
 from hydrostat.studio.editing.change import change, rename, set_gravity
-from hydrostat.studio.editing.move import move
 from hydrostat.studio.editing.part import keys_of, place_of
-from hydrostat.studio.editing.remove import remove
+from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
 from hydrostat.studio.records.wishes import Paint, Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import (

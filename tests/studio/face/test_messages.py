@@ -5,7 +5,7 @@ import json
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.studio.face.messages import LONGEST, Pointer, Release, Seen, read_message
+from hydrostat.studio.face.messages import LONGEST, LetGo, Pointer, Seen, read_message
 
 POINTER = {"kind": "drag", "key": "body", "rest": [0.1, 0, 0], "world": [0.1, -2, 3.5], "shift": True, "stamp": 12.5}
 
@@ -18,7 +18,7 @@ def test_all_kinds_are_read() -> None:
         short = read_message(json.dumps({"kind": kind, "world": [0, 0, 0]}))
         assert isinstance(short, Pointer)
         assert (short.key, short.rest, short.shift) == ("", None, False)
-    assert isinstance(read_message('{"kind": "release"}'), Release)
+    assert isinstance(read_message('{"kind": "release"}'), LetGo)
     assert isinstance(read_message('{"kind": "seen"}'), Seen)
 
 

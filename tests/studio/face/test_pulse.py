@@ -11,10 +11,9 @@ from hydrostat.studio.face.pulse import SHORTEST, Pulse
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
+from hydrostat.studio.view.picture import Shown
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.show import Shown
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 
 class Busy(Stage):
@@ -24,7 +23,7 @@ class Busy(Stage):
         self.session, self.steps, self.enough = session, 0, Event()
         self.fails = False
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         return rest_shape(self.session.document.robot)
 
     def things(self) -> list[Thing]:

@@ -9,8 +9,7 @@ from hydrostat.studio.face.serve import serve
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.shape import Shape, rest_shape
-from hydrostat.studio.view.things import Thing
+from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 
 class Toy(Stage):
@@ -19,7 +18,7 @@ class Toy(Stage):
     def __init__(self, session: Session) -> None:
         self.session, self.place = session, (0.0, 0.0)
 
-    def shape(self) -> Shape:
+    def shape(self) -> RobotShape:
         shape = rest_shape(self.session.document.robot)
         return replace(shape, nodes=shape.nodes + self.place)
 

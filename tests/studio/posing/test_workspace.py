@@ -15,8 +15,7 @@ from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, Report
-from hydrostat.studio.posing.reach import Reach
-from hydrostat.studio.posing.workspace import spread, sweep
+from hydrostat.studio.posing.reach import MarkerReach, spread, sweep
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 
@@ -76,7 +75,7 @@ def test_the_cloud_grows_in_another_process() -> None:
     document.open(Work(robot=ROBOT))
     jobs = Jobs(document.bell)
     ended = Event()
-    reach = Reach(document, jobs)
+    reach = MarkerReach(document, jobs)
     document.bell.listen(lambda _: ended.set() if reach.marker and not reach.running else None)
     try:
         reach.start(ROBOT.markers[0].name, 16)
@@ -95,7 +94,7 @@ def test_the_cloud_grows_in_another_process() -> None:
 def test_a_reach_needs_a_marker_and_cables() -> None:
     document = Document(Bell())
     document.open(Work(robot=ROBOT.with_network((), ())))
-    reach = Reach(document, Jobs(document.bell))
+    reach = MarkerReach(document, Jobs(document.bell))
     with pytest.raises(InputError, match="no marker"):
         reach.start("nobody")
     with pytest.raises(InputError, match="no cables"):
@@ -114,7 +113,7 @@ class Begun(Jobs):
 def test_a_reach_that_ends_at_once_has_ended_and_keeps_its_places() -> None:
     document = Document(Bell())
     document.open(Work(robot=ROBOT))
-    reach = Reach(document, Begun(document.bell))
+    reach = MarkerReach(document, Begun(document.bell))
     reach.start(ROBOT.markers[0].name)
     assert not reach.running
     cloud = reach.cloud(ROBOT)
@@ -142,7 +141,7 @@ CHANGES: dict[str, Callable[[Robot], Robot]] = {
 def test_places_of_other_physics_are_forgotten(what: str) -> None:
     document = Document(Bell())
     document.open(Work(robot=ROBOT))
-    reach = Reach(document, Begun(document.bell))
+    reach = MarkerReach(document, Begun(document.bell))
     reach.start(ROBOT.markers[0].name)
     document.change("poses", robot=replace(ROBOT, poses={}))
     assert reach.cloud(document.robot) is not None, "poses move nothing"
@@ -154,7 +153,7 @@ def test_places_of_other_physics_are_forgotten(what: str) -> None:
 def test_places_within_another_limit_are_forgotten() -> None:
     document = Document(Bell())
     document.open(Work(robot=ROBOT))
-    reach = Reach(document, Begun(document.bell))
+    reach = MarkerReach(document, Begun(document.bell))
     reach.start(ROBOT.markers[0].name)
     document.change("limit", wishes=replace(Wishes(), tension=3.0))
     assert reach.cloud(document.robot) is None

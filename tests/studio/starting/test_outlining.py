@@ -18,13 +18,21 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.wishes import Paint, Wishes
 from hydrostat.studio.records.work import Work
-from hydrostat.studio.starting.loops import Corner, Loop, curve, fitted, loops_svg, outline_of, read_loops, send_loops
-from hydrostat.studio.starting.outlining import Outlining, beginnings
-from hydrostat.studio.starting.reshape import Reshaped, reshaped
+from hydrostat.studio.starting.loops import (
+    Loop,
+    LoopCorner,
+    curve,
+    fitted,
+    loops_svg,
+    outline_of,
+    read_loops,
+    send_loops,
+)
+from hydrostat.studio.starting.outlining import Outlining, Reshaped, beginnings, reshaped
 from hydrostat.studio.starting.starter import Starter
 
 FLAT = ("letter_e", "letter_s", "pig", "puppy", "robot", "squid", "starfish")
-SQUARE = (Corner(-50, -30), Corner(50, -30), Corner(50, 30), Corner(-50, 30))
+SQUARE = (LoopCorner(-50, -30), LoopCorner(50, -30), LoopCorner(50, 30), LoopCorner(-50, 30))
 
 
 @pytest.mark.parametrize("name", FLAT)
@@ -43,13 +51,13 @@ def test_few_corners_follow_the_outlines_of_the_gallery(name: str) -> None:
 def test_smooth_corners_on_a_circle_make_one(corners: int) -> None:
     """Oracle: the circle's radius, to 1.5 %."""
     places = [(100 * cos(2 * pi * k / corners), 100 * sin(2 * pi * k / corners)) for k in range(corners)]
-    radii = np.linalg.norm(curve(tuple(Corner(x, y, True) for x, y in places)), axis=1)
+    radii = np.linalg.norm(curve(tuple(LoopCorner(x, y, True) for x, y in places)), axis=1)
     assert np.abs(radii - 100).max() < 1.5
 
 
 def test_what_is_drawn_is_what_is_read() -> None:
     """Oracle: the loops' own outline, moved to the middle of its box; a hole stays a hole."""
-    hole = tuple(Corner(20 + 10 * cos(k), 5 + 10 * sin(k), True) for k in (0, 1.5, 3, 4.5))
+    hole = tuple(LoopCorner(20 + 10 * cos(k), 5 + 10 * sin(k), True) for k in (0, 1.5, 3, 4.5))
     loops: tuple[Loop, ...] = (hole, SQUARE)
     drawing, corner = loops_svg(loops)
     assert corner == pytest.approx((-50, 30))
@@ -63,10 +71,13 @@ def test_what_is_drawn_is_what_is_read() -> None:
     ("loops", "words"),
     [
         ((), "no outline yet"),
-        (((Corner(0, 0), Corner(100, 100), Corner(100, 0), Corner(0, 100)),), "crosses itself at (50, 50) mm"),
-        ((SQUARE, (Corner(40, 0), Corner(60, 0), Corner(60, 10))), "crossed or touched by a hole"),
-        (((Corner(0, 0), Corner(1, 0)),), "three corners at least"),
-        (((Corner(0, 0), Corner(1, 0), Corner(2, 0)),), "no area"),
+        (
+            ((LoopCorner(0, 0), LoopCorner(100, 100), LoopCorner(100, 0), LoopCorner(0, 100)),),
+            "crosses itself at (50, 50) mm",
+        ),
+        ((SQUARE, (LoopCorner(40, 0), LoopCorner(60, 0), LoopCorner(60, 10))), "crossed or touched by a hole"),
+        (((LoopCorner(0, 0), LoopCorner(1, 0)),), "three corners at least"),
+        (((LoopCorner(0, 0), LoopCorner(1, 0), LoopCorner(2, 0)),), "no area"),
     ],
 )
 def test_faults_are_told_while_drawing(loops: tuple[Loop, ...], words: str) -> None:

@@ -5,10 +5,10 @@ from nicegui import events, ui
 from hydrostat.plot.palette import ERROR, winch_colours
 from hydrostat.robot import Robot, Winch
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.knob import Knob
+from hydrostat.studio.face.elements import Knob
+from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.drive_strip import drive_strip, unfocused
-from hydrostat.studio.face.sent_number import sent_number
 from hydrostat.studio.stage import StageName
 
 STEP = 0.5

@@ -8,9 +8,9 @@ from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.driving.film import FilmKind, film_kinds
+from hydrostat.studio.face.elements import TimelineView
+from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.face.sent_number import sent_number
-from hydrostat.studio.face.timeline import TimelineView
 from hydrostat.studio.session import Tone
 
 SPEEDS = {0.1: "0.1x", 0.25: "0.25x", 0.5: "0.5x", 1.0: "1x", 2.0: "2x", 4.0: "4x"}

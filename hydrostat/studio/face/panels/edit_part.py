@@ -1,16 +1,75 @@
-"""`part_card`: name, place and numbers of the part that is chosen."""
+"""`part_card`: name, place and numbers of the part that is chosen; `chip` and `EditNumber`, which it is made of."""
 
 from collections.abc import Callable
+from inspect import isawaitable
+from typing import Any
 
 from nicegui import ui
 
 from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.editing.change import sheathed_segments, sheaths
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of, title_of
-from hydrostat.studio.editing.sheaths import sheathed_segments, sheaths
+from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.face.panels.edit_chip import chip, light
-from hydrostat.studio.face.panels.edit_number import EditNumber
+
+
+def chip(words: str, press: Callable[[], Any]) -> ui.button:
+    """A chip that is off."""
+    button = ui.button(words, on_click=press, color=None).props('dense flat padding="1px 10px" no-caps')
+    return button.style("font-size: 13px; border-radius: 9px; min-height: 26px")
+
+
+def light(button: ui.button, on: bool) -> None:
+    """Show whether a chip is on."""
+    button.style(f"background: {'#0b5fa5' if on else 'transparent'}; color: {'white' if on else 'var(--ink)'}")
+
+
+class EditNumber:
+    """Shows a number; calls back once a person has typed another and pressed Enter or gone elsewhere.
+
+    Attributes:
+        box: the element.
+    """
+
+    def __init__(
+        self, label: str, unit: str, take: Callable[[float], Any], *, step: float = 1.0, mark: str = ""
+    ) -> None:
+        """An empty box.
+
+        Args:
+            label: name of the number.
+            unit: shown behind it.
+            take: called with the new number; what it returns is awaited if it can be.
+            step: of the arrow keys.
+            mark: for tests.
+        """
+        self._shown: float | None = None
+        self._take = take
+        self.box = ui.number(label, suffix=unit, step=step, format="%.6g").props("dense outlined hide-bottom-space")
+        self.box.classes("flex-1 studio-figure").style("min-width: 0").mark(mark)
+        self.box.on("keydown.enter", self._send)
+        self.box.on("blur", self._send)
+
+    def show(self, value: float) -> None:
+        """Show a number; one that is being typed is left alone unless another came from elsewhere."""
+        rounded = float(f"{value:.6g}")
+        if rounded != self._shown:
+            self._shown = rounded
+            self.box.set_value(rounded)
+
+    async def _send(self) -> None:
+        number = sent_number(self.box.value)
+        if number is None or self._shown is None:
+            self.box.set_value(self._shown)
+        elif number != self._shown:
+            before, self._shown = self._shown, None
+            result = self._take(number)
+            if isawaitable(result):
+                await result
+            if self._shown is None:  # nobody has shown what came of it: it was refused or is as it was
+                self.show(before)
+
 
 Shows = list[Callable[[Robot, Part], None]]
 """What shows the numbers of the part as they are now."""

@@ -1,5 +1,7 @@
-"""`kit_choices`, `kit_result`: how a kit is made, and what came of it."""
+"""`kit_choices`, `kit_result`: how a kit is made, and what came of it; buttons and pictures of what was made."""
 
+import base64
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -7,10 +9,9 @@ from nicegui import ui
 
 from hydrostat.fabrication import MOTORS, KitOptions, Method, MouldKind, Paper
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.exporting.kit_made import KitMade
+from hydrostat.studio.exporting.download import Download
+from hydrostat.studio.exporting.kit_work import KitMade
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.face.panels.export_download import download_button
-from hydrostat.studio.face.panels.export_pictures import picture, show_large
 from hydrostat.units import counted
 
 METHODS = {"": "Auto", Method.PLUSH.value: "Plush", Method.FOAM.value: "Foam"}
@@ -175,3 +176,52 @@ def _options(before: KitOptions, given: dict[str, Any]) -> KitOptions:
         pattern=replace(before.pattern, seam_allowance=float(given["seam"])),
         parts=replace(before.parts, cable=float(given["cable"]), clearance=float(given["clearance"])),
     )
+
+
+def download_button(download: Download) -> None:
+    """A button that hands over a file."""
+    button = ui.button(on_click=lambda: send(download)).props("unelevated no-caps").classes("w-full")
+    button.props(f'data-testid="download-{download.name}"')
+    with button:
+        ui.icon("download", size="20px").classes("q-mr-sm")
+        ui.label(download.name).classes("ellipsis")
+        ui.label(download.size).classes("export-size")
+
+
+def send(download: Download) -> None:
+    """Hand over a file to the person of this window."""
+    ui.download.content(download.content, download.name, download.media_type)
+
+
+def picture(content: bytes, title: str, enlarge: Callable[[], None], *, kind: str = "png") -> None:
+    """A small picture that shows itself large when it is pressed."""
+    button = ui.button(on_click=enlarge).props(f'flat no-caps padding=none aria-label="{_plain(title)}, larger"')
+    with button.classes("export-picture"), ui.column().classes("w-full gap-0"):
+        ui.image(_address(content, kind)).props("fit=contain no-spinner no-transition").classes("export-thumb")
+        ui.label(title).classes("export-caption")
+
+
+def show_large(pictures: Sequence[bytes], title: str, download: Download | None = None, *, kind: str = "png") -> None:
+    """Pictures below each other, as large as the window; they are gone when they are closed."""
+    with ui.dialog() as dialog, ui.card().classes("export-large"):
+        with ui.element("div").classes("studio-row"):
+            ui.label(title).classes("studio-title flex-1")
+            if download is not None:
+                save = ui.button("Download", icon="download").props("flat no-caps")
+                save.on_click(lambda: ui.download.content(download.content, download.name, download.media_type))
+            ui.button(icon="close", on_click=dialog.close).props('flat round dense aria-label="Close"')
+        with ui.scroll_area().classes("export-pages"):
+            for content in pictures:
+                ui.image(_address(content, kind)).props("no-spinner no-transition").classes("export-page")
+    dialog.on("hide", dialog.delete)
+    dialog.open()
+
+
+def _address(content: bytes, kind: str) -> str:
+    """A picture as an address of its own, so that nothing in it can reach the page."""
+    media = {"png": "image/png", "svg": "image/svg+xml"}[kind]
+    return f"data:{media};base64,{base64.b64encode(content).decode()}"
+
+
+def _plain(words: str) -> str:
+    return words.replace('"', "'")

@@ -5,12 +5,10 @@ from collections.abc import Callable
 from nicegui import ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.exporting.archive import file_name
+from hydrostat.studio.exporting.download import file_name
 from hydrostat.studio.exporting.exporter import Export
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.face.panels.export_download import download_button, send
-from hydrostat.studio.face.panels.export_kit import kit_choices, kit_result
-from hydrostat.studio.face.panels.export_pictures import picture, show_large
+from hydrostat.studio.face.panels.export_kit import download_button, kit_choices, kit_result, picture, send, show_large
 from hydrostat.studio.stage import StageName
 
 OUTDATED = "The robot has changed since; make it again."

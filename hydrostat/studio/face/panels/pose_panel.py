@@ -2,13 +2,13 @@
 
 from nicegui import ui
 
+from hydrostat.plot.palette import ERROR
+from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.face.panels.pose_bars import bars_card
-from hydrostat.studio.face.panels.pose_held import held_card
-from hydrostat.studio.face.panels.pose_poses import poses_card
-from hydrostat.studio.face.panels.pose_reach import reach_card
+from hydrostat.studio.face.panels.pose_poses import poses_card, reach_card
 from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.view.robot_things import Bar
 
 MODES = {Mode.CABLES: "Cables", Mode.MUSCLES: "Muscles"}
 
@@ -49,3 +49,153 @@ def pose_panel(page: Page) -> None:
     bars_card(page)
     poses_card(page)
     reach_card(page)
+
+
+NEAR = 5e-4
+"""A marker so near to its target is there [m]."""
+
+
+def held_card(page: Page) -> None:
+    """Build the list."""
+    poser = page.session.poser
+    with ui.element("div").classes("studio-card"):
+        empty = ui.label("Nothing is held.").classes("studio-hint")
+        rows = ui.column().classes("w-full").style("gap: 2px")
+        notes = ui.label().classes("studio-hint").style("white-space: pre-line; margin-top: 6px").mark("pose-notes")
+    figures: dict[str, ui.label] = {}
+    drawn: list[object] = []
+
+    def draw() -> None:
+        state = (tuple(poser.held), poser.chosen)
+        if drawn == [state]:
+            return
+        drawn[:] = [state]
+        rows.clear()
+        figures.clear()
+        empty.set_visibility(not poser.held)
+        with rows:
+            for name in poser.held:
+                figures[name] = _held_row(page, name, poser.chosen == name)
+        show()
+
+    def show() -> None:
+        shape = poser.shape()
+        for name, label in figures.items():
+            error = shape.errors.get(name)
+            words = "" if error is None else f"{1e3 * error:.1f} mm"
+            if label.text != words:
+                label.set_text(words)
+                near = error is not None and error < NEAR
+                label.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
+        words = "\n".join(f"{note[:1].upper()}{note[1:]}" for note in shape.notes)
+        if notes.text != words:
+            notes.set_text(words)
+        notes.set_visibility(bool(words))
+
+    page.on(Topic.THINGS, draw)
+    page.on(Topic.SHAPE, draw)
+    page.on(Topic.SHAPE, show)
+
+
+def _held_row(page: Page, name: str, chosen: bool) -> ui.label:
+    """One point: a click chooses it, the cross lets it go."""
+    poser = page.session.poser
+    with ui.element("div").classes("studio-row").style("min-height: 30px"):
+        ui.icon("radio_button_unchecked", size="16px").style(
+            "color: var(--accent)" if chosen else "color: var(--muted)"
+        )
+        label = ui.label(name).style(
+            f"font-weight: {600 if chosen else 400}; cursor: pointer; overflow: hidden; text-overflow: ellipsis;"
+            "white-space: nowrap; min-width: 0"
+        )
+        label.on("click", page.doing(poser.choose, name))
+        ui.space()
+        figure = ui.label().classes("studio-figure").mark(f"pose-error-{name}")
+        clear = ui.button(icon="close", on_click=page.doing(poser.clear, name), color=None)
+        clear.props("flat round dense size=sm").style("color: var(--muted)")
+        clear.props["aria-label"] = f"Let go of {name}"
+        clear.tooltip("Let go")
+    return figure
+
+
+FULL = 0.999
+"""A bar this full is at its limit."""
+
+
+def bars_card(page: Page) -> None:
+    """Build the bars; with muscles there are none."""
+    poser, document = page.session.poser, page.session.document
+    with ui.column().classes("w-full").style("gap: 6px") as room:
+        with ui.element("div").classes("studio-row"):
+            ui.label("Winches").classes("studio-section")
+            ui.space()
+            limit = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
+        box = ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px")
+    rows: list[_BarRow] = []
+    drawn: list[Robot] = []
+
+    def draw() -> None:
+        robot = document.robot
+        if not drawn or drawn[0].winches != robot.winches:
+            drawn[:] = [robot]
+            box.clear()
+            with box:
+                rows[:] = [_BarRow(bar) for bar in poser.bars()]
+        show()
+
+    def show() -> None:
+        room.set_visibility(poser.mode is Mode.CABLES)
+        if poser.mode is not Mode.CABLES:
+            return
+        found = poser.bars()
+        for row, bar in zip(rows, found, strict=False):
+            row.show(bar)
+        if found:
+            limit.set_text(f"limit {found[0].limit:g} N")
+
+    page.on(Topic.ROBOT, draw)
+    page.on(Topic.THINGS, show)
+    page.on(Topic.SHAPE, show)
+
+
+class _BarRow:
+    """A winch: its name, how much it has taken in, and the largest tension of its cables."""
+
+    def __init__(self, bar: Bar) -> None:
+        with ui.element("div").style("width: 100%").mark(f"pose-bar-{bar.winch}"):
+            with ui.element("div").classes("studio-row").style("gap: 8px; font-size: 13px"):
+                ui.element("div").style(
+                    f"width: 10px; height: 10px; border-radius: 5px; flex: none; background: {bar.colour}"
+                )
+                name = ui.label(bar.winch).style(
+                    "flex: 1; min-width: 0; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
+                )
+                name.tooltip(f"takes in up to {1e3 * bar.travel:g} mm, lets out up to {1e3 * bar.release:g} mm")
+                figure = "width: 66px; text-align: right"
+                self._length = ui.label().classes("studio-figure").style(figure)
+                self._pull = ui.label().classes("studio-figure").style(figure)
+            with ui.element("div").classes("studio-row").style("gap: 8px; margin-top: 4px"):
+                self._taken, self._tension = _track(), _track()
+        self._shown: tuple[int, int] | None = None
+
+    def show(self, bar: Bar) -> None:
+        """Only what has changed is sent."""
+        state = (round(1e4 * bar.contraction), round(10 * bar.tension))
+        if state == self._shown:
+            return
+        self._shown = state
+        self._length.set_text(f"{1e3 * bar.contraction + 0.0:.1f} mm")
+        self._pull.set_text(f"{bar.tension:.1f} N")
+        taken = max(bar.contraction, 0.0) / bar.travel
+        _fill(self._taken, taken, bar.colour)
+        _fill(self._tension, bar.tension / bar.limit, bar.colour)
+
+
+def _track() -> ui.element:
+    with ui.element("div").style("flex: 1; height: 6px; border-radius: 3px; background: var(--line); overflow: hidden"):
+        return ui.element("div").style("height: 6px; border-radius: 3px; width: 0%")
+
+
+def _fill(bar: ui.element, share: float, colour: str) -> None:
+    full = ERROR if share >= FULL else f"color-mix(in oklab, {colour}, white var(--lift, 0%))"
+    bar.style(f"width: {100 * min(share, 1.0):.1f}%; background: {full}")

@@ -7,11 +7,10 @@ from nicegui import ui
 
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import MATERIALS
+from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.page import Page
-from hydrostat.studio.face.panels.leave_dialog import may_leave
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.starting.draft import Draft
-from hydrostat.studio.starting.material_words import material_words, young_words
+from hydrostat.studio.starting.draft import BodyDraft, material_words, young_words
 from hydrostat.studio.starting.sketch import Sketch
 
 FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}
@@ -113,7 +112,7 @@ def _line(words: str) -> None:
         ui.label(words)
 
 
-def _fields(page: Page) -> Callable[[Draft, Sketch | None], None]:
+def _fields(page: Page) -> Callable[[BodyDraft, Sketch | None], None]:
     """Numbers and material, and the button that makes the robot."""
     starter = page.session.starter
 
@@ -172,7 +171,7 @@ def _fields(page: Page) -> Callable[[Draft, Sketch | None], None]:
     material.on_value_change(lambda event: ask(material=str(event.value)))
     make.on_click(begin)
 
-    def refresh(draft: Draft, sketch: Sketch | None) -> None:
+    def refresh(draft: BodyDraft, sketch: Sketch | None) -> None:
         flat = draft.is_drawing and draft.inflate is None
         _quietly(name, draft.name)
         kind.set_visibility(draft.is_drawing)
@@ -190,14 +189,14 @@ def _fields(page: Page) -> Callable[[Draft, Sketch | None], None]:
     return refresh
 
 
-def _level(draft: Draft, flat: bool) -> str | None:
+def _level(draft: BodyDraft, flat: bool) -> str | None:
     """Which fineness was asked for."""
     if draft.element_size is not None or (draft.nodes is not None and draft.nodes not in FINENESS[flat]):
         return None
     return ("Coarse", "Medium", "Fine")[1 if draft.nodes is None else FINENESS[flat].index(draft.nodes)]
 
 
-def _thick_key(draft: Draft | None) -> str:
+def _thick_key(draft: BodyDraft | None) -> str:
     return "inflate" if draft is not None and draft.inflate is not None else "thickness"
 
 

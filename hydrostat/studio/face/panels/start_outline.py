@@ -6,11 +6,10 @@ from typing import Any
 
 from nicegui import ui
 
-from hydrostat.studio.face.outline_editor import OutlineEditor
+from hydrostat.studio.face.elements import OutlineEditor
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.starting.outlining import beginnings
-from hydrostat.studio.starting.reshape import Reshaped
+from hydrostat.studio.starting.outlining import Reshaped, beginnings
 
 
 def outline_view(page: Page) -> Callable[[], None]:

@@ -1,16 +1,211 @@
-"""The panel of the stage "start"."""
+"""The panel of the stage "start": what a crash left, three ways to begin, robots to choose."""
 
+from base64 import b64encode
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
-from nicegui import ui
+from nicegui import events, run, ui
 
+from hydrostat.errors import HydrostatError
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.face.panels.start_draft import draft_view
 from hydrostat.studio.face.panels.start_outline import outline_view
-from hydrostat.studio.face.panels.start_shelf import shelf_view
+from hydrostat.studio.stage import StageName
+from hydrostat.studio.starting.autosave import Left
+from hydrostat.studio.starting.draft import MOST_BYTES
+from hydrostat.studio.starting.shelf import Card, gallery_cards, suggestions
 
 STYLE = Path(__file__).parents[1] / "static" / "start.css"
+
+KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF")
+
+MOST_LEFT = 4
+"""So many works that a crash left are offered at once, the newest."""
+
+
+def shelf_view(page: Page) -> Callable[[], None]:
+    """Build it."""
+    starter = page.session.starter
+    for left in starter.autosave.left()[:MOST_LEFT]:
+        _left(page, left)
+    ui.label("Begin with a shape").classes("start-title")
+    with ui.element("div").classes("start-ways"):
+        _drop(page)
+        _draw(page)
+        _folder(page)
+    recent = starter.recent()
+    if recent:
+        ui.label("Your robots").classes("start-section")
+        with ui.element("div").classes("start-chips"):
+            for card in recent:
+                _chip(page, card)
+    ui.label("Gallery").classes("start-section")
+    with ui.element("div").classes("start-gallery"):
+        for card in gallery_cards():
+            _robot(page, card)
+    return lambda: None
+
+
+async def open_with(page: Page, button: ui.element, action: Callable[[], None]) -> None:
+    """Open a robot, show that it takes a moment, and go on to posing."""
+    if not await may_leave(page):
+        return
+    serial = page.session.document.serial
+    button.classes(add="start-busy")
+    await page.act_slowly(action)
+    _rest(button)
+    if page.session.document.serial != serial and page.session.stage is StageName.START:
+        page.go(StageName.POSE)
+
+
+def _rest(card: ui.element) -> bool:
+    """Show that it works no more; whether it is still there."""
+    if card.is_deleted:
+        return False
+    card.classes(remove="start-busy")
+    return True
+
+
+def _left(page: Page, left: Left) -> None:
+    autosave = page.session.starter.autosave
+    with ui.element("div").classes("start-left") as row:
+        ui.icon("history").classes("text-xl")
+        ui.label(f"Work of {left.words} was not saved.")
+        ui.space()
+        restore = (
+            ui.button("Restore").props("unelevated no-caps dense padding='4px 14px'").props('data-testid="restore"')
+        )
+        restore.on_click(lambda: open_with(page, row, partial(autosave.restore, left)))
+
+        async def forget() -> None:
+            if await _sure(left):
+                await page.act_slowly(autosave.forget, left)
+                row.delete()
+
+        ui.button("Forget", on_click=forget).props("flat no-caps dense padding='4px 10px'")
+
+
+async def _sure(left: Left) -> bool:
+    with ui.dialog() as dialog, ui.card().classes("q-pa-md"):
+        ui.label(f"Forget the work of {left.words}?").classes("studio-title")
+        ui.label("It cannot be brought back.").classes("studio-hint")
+        with ui.row().classes("w-full justify-end"):
+            ui.button("Keep", on_click=lambda: dialog.submit(False)).props("flat no-caps")
+            ui.button("Forget", on_click=lambda: dialog.submit(True)).props("unelevated no-caps color=negative")
+    answer = bool(await dialog)
+    dialog.delete()
+    return answer
+
+
+def _drop(page: Page) -> None:
+    with (
+        ui.element("div")
+        .classes("start-card start-drop")
+        .props('tabindex=0 role=button aria-label="Bring a file"') as card
+    ):
+        _head("upload_file", "Bring a drawing or a scan")
+        ui.label(
+            "Drop a file here, or click to choose one. It is meshed and mended, and you see what was done."
+        ).classes("start-small")
+        wrong = ui.label().classes("start-problem").props('data-testid="upload-wrong"')
+        wrong.bind_visibility_from(wrong, "text", bool)
+        ui.space()
+        with ui.element("div").classes("start-kinds"):
+            for kind in KINDS:
+                ui.label(kind).classes("start-kind")
+        upload = ui.upload(max_file_size=MOST_BYTES, max_files=1, auto_upload=True).props('data-testid="upload"')
+
+    def complain(words: str) -> None:
+        if _rest(card):
+            upload.reset()
+            wrong.set_text(words)
+
+    async def brought(event: events.UploadEventArguments) -> None:
+        card.classes(add="start-busy")
+        wrong.set_text("")
+        content = await event.file.read()
+        try:
+            await run.io_bound(page.session.starter.bring, event.file.name, content)
+        except HydrostatError as error:
+            complain(str(error))
+        else:
+            complain("")
+
+    upload.on_upload(brought)
+    upload.on_rejected(lambda: complain(f"one file of at most {MOST_BYTES // 10**6} MB at a time is read"))
+    pick = f"() => getElement({upload.id}).$refs.qRef.pickFiles()"
+    card.on("click", js_handler=pick)
+    card.on("keydown.enter", js_handler=pick)
+
+
+def _draw(page: Page) -> None:
+    starter, document = page.session.starter, page.session.document
+    with ui.element("div").classes("start-card"):
+        _head("draw", "Draw an outline")
+        ui.label("Set corners, make them round, cut holes: the outline of a flat, stuffed body.").classes("start-small")
+        ui.space()
+        new = ui.button("New outline", icon="add", on_click=page.doing(starter.outline_new))
+        new.props("unelevated no-caps").props('data-testid="outline-new"')
+        if document.is_open and document.robot.body.outline is not None:
+            edit = ui.button(f"Edit that of {document.robot.name}", on_click=page.doing_slowly(starter.outline_open))
+            edit.props("outline no-caps").props('data-testid="outline-edit"')
+
+
+def _folder(page: Page) -> None:
+    with ui.element("div").classes("start-card") as card:
+        _head("folder_open", "Open a folder")
+        ui.label("With robot.toml in it, such as one made by hydrostat new.").classes("start-small")
+        ui.space()
+        path = (
+            ui.input("Folder", autocomplete=suggestions(""))
+            .props("outlined dense")
+            .classes("w-full")
+            .props('data-testid="folder"')
+        )
+        path.on_value_change(lambda event: path.set_autocomplete(suggestions(str(event.value or ""))))
+
+        async def go() -> None:
+            await open_with(page, card, lambda: page.session.open_folder(str(path.value or "")))
+
+        path.on("keydown.enter", go)
+        ui.button("Open", on_click=go).props("unelevated no-caps").props('data-testid="folder-open"')
+
+
+def _chip(page: Page, card: Card) -> None:
+    with ui.element("button").classes("start-chip") as chip:
+        ui.label(card.name).classes("start-robot-name")
+        ui.label(card.words or str(card.folder)).classes("start-small")
+    chip.tooltip(str(card.folder))
+    chip.on("click", lambda: open_with(page, chip, lambda: page.session.open_folder(str(card.folder))))
+
+
+def _robot(page: Page, card: Card) -> None:
+    shown = card.name.replace("_", " ")
+    with (
+        ui.element("button")
+        .classes("start-robot")
+        .props(f'aria-label="{shown}"')
+        .props(f'data-testid="gallery-{card.name}"') as tile
+    ):
+        if card.picture is not None:
+            ui.element("img").props(f'src="{_inline(card.picture)}" alt=""')
+        ui.label(shown).classes("start-robot-name")
+        ui.label(card.words).classes("start-small")
+    tile.on("click", lambda: open_with(page, tile, lambda: page.session.starter.open_gallery(card.folder)))
+
+
+def _head(icon: str, words: str) -> None:
+    with ui.element("div").classes("start-head"):
+        ui.icon(icon)
+        ui.label(words)
+
+
+def _inline(picture: Path) -> str:
+    return "data:image/webp;base64," + b64encode(picture.read_bytes()).decode()
+
 
 VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}
 """Each builds itself and returns what shows it anew."""

@@ -1,4 +1,4 @@
-"""`save_dialog`: where a robot is saved, and whether it may be."""
+"""`save_dialog`, `may_leave`: questions asked before something is lost."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -77,3 +77,24 @@ class _Sure:
 
     def _button(self, words: str, answer: str, look: str) -> ui.button:
         return ui.button(words, on_click=lambda: self._dialog.submit(answer)).props(f"no-caps {look}")
+
+
+async def may_leave(page: Page) -> bool:
+    """Ask if there is work that is not saved; what the person says."""
+    document = page.session.document
+    if document.saved:
+        return True
+    with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
+        ui.label(f"{document.robot.name} is not saved").classes("studio-title")
+        ui.label("Another robot takes its place, and what was changed is lost.").classes("studio-hint")
+        with ui.row().classes("w-full justify-end"):
+            ui.button("Go back", on_click=lambda: dialog.submit(False)).props("flat no-caps").props(
+                'data-testid="leave-no"'
+            )
+            leave = ui.button("Throw the changes away", on_click=lambda: dialog.submit(True)).props(
+                "unelevated no-caps color=negative"
+            )
+            leave.props('data-testid="leave-yes"')
+    answer = bool(await dialog)
+    dialog.delete()
+    return answer

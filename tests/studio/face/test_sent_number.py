@@ -2,7 +2,7 @@
 
 import pytest
 
-from hydrostat.studio.face.sent_number import sent_number
+from hydrostat.studio.face.messages import sent_number
 
 
 @pytest.mark.parametrize(("value", "number"), [(3, 3.0), (-0.5, -0.5), ("22.5", 22.5), ("1e3", 1000.0)])

@@ -1,0 +1,112 @@
+"""`CableDraft`: a cable that is being laid, point after point, and how it is shown."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.plot.palette import INK, MUTED, WINCHES, winch_colours
+from hydrostat.robot import Point, Robot
+from hydrostat.studio.editing.mirror import Mirror
+from hydrostat.studio.editing.place import add_cable, add_winch
+from hydrostat.studio.view.things import Dot, Look, Polyline, Stroke, Thing
+
+NEAR_WINCH = 0.03
+"""A first point so near to a winch, as a share of the body, means that winch."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CableDraft:
+    """A cable that has no stopper yet.
+
+    Attributes:
+        points: so far [m]; the first is the winch.
+        winch: that it begins at; None: one that is made with the cable.
+    """
+
+    points: tuple[Point, ...]
+    winch: str | None = None
+
+    def through(self, at: Point) -> Self:
+        """The same with one more point."""
+        return replace(self, points=(*self.points, at))
+
+    def shorter(self) -> Self | None:
+        """The same without its last point; None if that was the winch."""
+        return replace(self, points=self.points[:-1]) if len(self.points) > 1 else None
+
+
+def begin_cable(robot: Robot, at: Point, key: str = "") -> CableDraft:
+    """A cable from the winch of this key, or the nearest one if it is near, else from a new one."""
+    for winch in robot.winches:
+        if key == f"winch:{winch.name}":
+            return CableDraft(points=(winch.at,), winch=winch.name)
+    if robot.winches:
+        gaps = [float(np.linalg.norm(np.subtract(winch.at, at))) for winch in robot.winches]
+        winch = robot.winches[int(np.argmin(gaps))]
+        if min(gaps) <= max(2 * winch.spool_radius, NEAR_WINCH * robot.body.mesh.size):
+            return CableDraft(points=(winch.at,), winch=winch.name)
+    return CableDraft(points=(at,))
+
+
+def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> Robot:
+    """The robot with the cable, and with its winch where that is new; with a mirror also with their twins.
+
+    Raises:
+        InputError: it has no stopper, or a point outside the body.
+    """
+    if len(draft.points) < 2:
+        raise InputError("a cable needs a stopper: click on the body where it shall end")
+    winch, robot = draft.winch, robot if draft.winch is not None else add_winch(robot, draft.points[0])
+    if winch is None:
+        winch = robot.winches[-1].name
+    laid = add_cable(robot, winch, draft.points[1:])
+    if mirror is None or all(mirror.point(point) == point for point in draft.points):
+        return laid
+    key = f"winch:{winch}"
+    twin = key if mirror.holds(laid, key) else mirror.twin(laid, key)
+    if twin is None:
+        laid = add_winch(laid, mirror.point(laid.winch(winch).at))
+        twin = f"winch:{laid.winches[-1].name}"
+    return add_cable(laid, twin.removeprefix("winch:"), tuple(mirror.point(point) for point in draft.points[1:]))
+
+
+BEYOND = 0.06
+"""The line of the mirror goes so far beyond the body, as a share of it."""
+
+
+def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[Thing]:
+    """What is shown beside the parts of the robot."""
+    things: list[Thing] = []
+    if mirror is not None and robot.body.mesh.dim == 2:
+        things.append(_axis(robot, mirror))
+    if draft is not None:
+        things += _draft(robot, draft)
+        if mirror is not None and any(mirror.point(point) != point for point in draft.points):
+            twin = CableDraft(points=tuple(mirror.point(point) for point in draft.points))
+            things += [thing for thing in _draft(robot, twin) if isinstance(thing, Polyline)]
+    return things
+
+
+def _axis(robot: Robot, mirror: Mirror) -> Polyline:
+    """The line about which a flat body is mirrored."""
+    nodes, along = robot.body.mesh.nodes, 1 - mirror.axis
+    margin = BEYOND * robot.body.mesh.size
+    ends = (float(nodes[:, along].min()) - margin, float(nodes[:, along].max()) + margin)
+    points = tuple(mirror.on_plane((end, end)) for end in ends)
+    return Polyline(points=points, stroke=Stroke.PATH, colour=MUTED, loose=-1)
+
+
+def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
+    colour: str = WINCHES[len(robot.winches) % len(WINCHES)]
+    if draft.winch is not None:
+        colour = winch_colours(robot).get(draft.winch, INK)
+    start, *rest = draft.points
+    things: list[Thing] = []
+    if rest:
+        things.append(Polyline(points=draft.points, stroke=Stroke.CABLE, colour=colour, loose=-1))
+    if draft.winch is None:
+        things.append(Dot(at=start, look=Look.WINCH, colour=colour, stuck=False))
+    vias = [Dot(at=point, look=Look.HANDLE, colour=colour, stuck=False) for point in rest]
+    return [*things, *vias]

@@ -1,0 +1,172 @@
+"""`Knob`, `TimelineView`, `OutlineEditor`: elements of the page that are drawn by JavaScript of ours."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from nicegui import events, ui
+
+from hydrostat.control import Timeline
+from hydrostat.control.player import Player
+from hydrostat.plot.palette import winch_colours
+from hydrostat.robot import Robot
+from hydrostat.studio.face.messages import sent_number
+from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
+
+SEEN = 0.05
+"""Changes smaller than this are not sent to the screen."""
+
+
+class Knob(ui.element, component="static/knob.js"):
+    """A knob for a number; while a person holds it, it heeds nobody else, so that no answer fights the hand.
+
+    Its hand shows what is wanted, the arc around it what is reached.
+    """
+
+    def __init__(self, *, least: float, most: float, step: float, colour: str, label: str) -> None:
+        """A knob.
+
+        Args:
+            least: at its left end.
+            most: at its right end.
+            step: of the wheel and the arrow keys.
+            colour: of its hand.
+            label: read out to those who do not see it.
+        """
+        super().__init__()
+        self._props.update(value=0.0, reach=0.0, least=least, most=most, step=step, colour=colour, label=label)
+
+    def show(self, wanted: float, reached: float) -> None:
+        """Show what is wanted and what is reached."""
+        if abs(wanted - self._props["value"]) > SEEN or abs(reached - self._props["reach"]) > SEEN:
+            self._props["value"], self._props["reach"] = wanted, reached
+            self.update()
+
+    def on_turn(self, turn: Callable[[float], Any], let_go: Callable[[], Any]) -> None:
+        """Call `turn` with the number that a person turns it to, and `let_go` after that."""
+
+        def heed(event: events.GenericEventArguments) -> None:
+            number = sent_number(event.args)
+            if number is not None:
+                turn(number)
+
+        self.on("turn", heed)
+        self.on("letgo", lambda: let_go())
+
+
+HINT = "Turn the knobs and press Add; move the playhead, turn them again, add again. Then play."
+
+
+class TimelineView(ui.element, component="static/timeline.js"):
+    """A ruler, the contraction of each winch as a curve, keys as diamonds and the playhead.
+
+    What a person does with it comes as "seek" and "add" (time), "choose" (index), "move" (index, time) and "drop".
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._props.update(
+            seconds=4.0, keys=[], colours=[], smooth=False, time=0.0, playing=False, speed=1.0, loop=True, chosen=None,
+            hint=HINT,
+        )  # fmt: skip
+
+    def show_keys(self, robot: Robot, timeline: Timeline, chosen: int | None) -> None:
+        """Show the keys of a timeline, one of them selected."""
+        colours = winch_colours(robot)
+        keys = [{"time": key.time, "values": _shares(robot, key.contractions)} for key in timeline.keys]
+        self._set(
+            seconds=timeline.seconds, smooth=timeline.smooth, keys=keys, chosen=chosen, colours=[*colours.values()]
+        )
+
+    def show_player(self, player: Player) -> None:
+        """Show the playhead."""
+        self._set(time=round(player.time, 4), playing=player.playing, speed=player.speed, loop=player.loop)
+
+    def on_word(self, name: str, action: Callable[..., Any], *wanted: str) -> None:
+        """Call something with these numbers of what a person does; a word without them is not heeded."""
+
+        def heed(event: events.GenericEventArguments) -> None:
+            words = event.args if isinstance(event.args, dict) else {}
+            numbers = [sent_number(words.get(key)) for key in wanted]
+            if None not in numbers:
+                action(*numbers)
+
+        self.on(name, heed)
+
+    def _set(self, **props: Any) -> None:
+        changed = {key: value for key, value in props.items() if self._props[key] != value}
+        if changed:
+            self._props.update(changed)
+            self.update()
+
+
+def _shares(robot: Robot, contractions: Mapping[str, float]) -> list[float]:
+    """How far the winches go, from 0 for all that is let out to 1 for all that can be taken in."""
+    shares = []
+    for winch in robot.winches:
+        share = (contractions.get(winch.name, 0.0) + winch.release) / (winch.travel + winch.release)
+        shares.append(round(min(max(share, 0.0), 1.0), 4))
+    return shares
+
+
+class OutlineEditor(ui.element, component="static/outline_editor.js"):
+    """Corners, curves and holes on a grid in millimetres.
+
+    A click adds corners to the loop that is begun, and closes it at its first corner; corners are dragged, a click on
+    an edge puts one in, Delete removes one, a double click makes one round or sharp. What a screen sends is checked
+    by `starting.loops.read_loops`.
+    """
+
+    def __init__(self, loops: Sequence[Loop], on_change: Callable[[Any], None]) -> None:
+        """An editor.
+
+        Args:
+            loops: to begin with.
+            on_change: called with what the screen has sent, not yet checked.
+        """
+        super().__init__()
+        self._props["handle"] = HANDLE
+        self._props["start"] = send_loops(loops)
+        self._props["fault"] = False
+        self.on("change", lambda event: on_change(_argument(event)))
+
+    def show(self, loops: Sequence[Loop]) -> None:
+        """Put other loops in place of these; it can be undone."""
+        self.run_method("put", send_loops(loops))
+
+    def set_fault(self, faulty: bool) -> None:
+        """Whether these are no body, and so are drawn as a warning."""
+        if self._props["fault"] != faulty:
+            self._props["fault"] = faulty
+            self.update()
+
+    def undo(self) -> None:
+        """Take back the last change."""
+        self.run_method("undo")
+
+    def redo(self) -> None:
+        """Do again what was taken back."""
+        self.run_method("redo")
+
+    def add_loop(self) -> None:
+        """The next clicks draw a loop, a hole if it lies inside."""
+        self.run_method("begin")
+
+    def remove_corner(self) -> None:
+        """Remove the corner that is chosen."""
+        self.run_method("removeCorner")
+
+    def fit(self) -> None:
+        """Show all there is."""
+        self.run_method("fit")
+
+    def set_mirror(self, on: bool) -> None:
+        """Whether both sides of x = 0 change together."""
+        self.run_method("setMirror", on)
+
+    def set_snap(self, on: bool) -> None:
+        """Whether corners stay on the grid."""
+        self.run_method("setSnap", on)
+
+
+def _argument(event: events.GenericEventArguments) -> Any:
+    return event.args
