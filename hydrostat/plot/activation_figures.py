@@ -8,9 +8,9 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from hydrostat.design import Activation
+from hydrostat.drawing.palette import LIGHT, WINCHES
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.palette import LIGHT, WINCHES
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.places import Spread
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from hydrostat.drawing.palette import DARK, ERROR, INK, MUTED, PAPER, channels, winch_colours
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.frame_pictures import FramePictures, Picture
 from hydrostat.plot.gif import Palette, gif_bytes
-from hydrostat.plot.palette import DARK, ERROR, INK, MUTED, PAPER, winch_colours
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot, replace_file
 
@@ -165,9 +165,9 @@ def _palette(robot: Robot, pictures: Sequence[Picture]) -> Palette:
     from PIL import Image
 
     scale = TensionScale(most=1.0)
-    fixed = [PAPER, INK, MUTED, DARK, ERROR, *winch_colours(robot).values()]
+    fixed = [PAPER, INK, MUTED, DARK, ERROR, *winch_colours(robot.winches).values()]
     fixed += [scale.colour(share) for share in np.linspace(0, 1, 9)]
-    told = np.array([[int(colour[start : start + 2], 16) for start in (1, 3, 5)] for colour in fixed], dtype=np.uint8)
+    told = np.array([channels(colour) for colour in fixed], dtype=np.uint8)
     told = np.unique(told, axis=0)
     strip = Image.fromarray(np.concatenate([picture[::2, ::2].reshape(-1, 3) for picture in pictures])[None])
     found = strip.quantize(COLOURS - len(told), method=Image.Quantize.MEDIANCUT).getpalette() or []

@@ -9,13 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.drawing.palette import ERROR, GRID, INK, MUTED, WINCHES, mix
+from hydrostat.drawing.render import render
 from hydrostat.errors import InputError
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.palette import ERROR, GRID, INK, MUTED, WINCHES, mix
 from hydrostat.plot.pane import FlatPane, Pane, fit_pixel
 from hydrostat.plot.places import Places, Spread
-from hydrostat.plot.render import render
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
 from hydrostat.robot import Robot
 from hydrostat.simulation import Branch, PathDependence, SolvedPose
@@ -140,7 +140,7 @@ def _outline(sheet: Sheet, pane: Pane, nodes: Nodes) -> list[Places]:
     """Rings around a body [mm]."""
     if isinstance(pane, FlatPane):
         return [MILLIMETRES * ring for ring in pane.skin.shape(nodes)]
-    spots = pane.camera.see(nodes)
+    spots = pane.camera.see(MILLIMETRES * nodes)
     pixel = fit_pixel(sheet, np.ptp(spots[:, :2], axis=0))
     image = render(spots, pane.robot.body.mesh.boundary, pixel=pixel, shaded=False)
     return [ring + pane.shift for ring in image.rings()]

@@ -5,7 +5,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from hydrostat.plot.palette import GRID, INK, MUTED
+from hydrostat.drawing.palette import GRID, INK, MUTED
 from hydrostat.plot.sheet import WIDTH
 
 EDGES = (0.62, 0.2, 0.5, 0.16)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from hydrostat.plot.camera import Camera
-from hydrostat.plot.palette import GRID, INK, MUTED
+from hydrostat.drawing.camera import Camera
+from hydrostat.drawing.palette import GRID, INK, MUTED
 from hydrostat.plot.places import Place
 from hydrostat.plot.sheet import Sheet, round_step
 

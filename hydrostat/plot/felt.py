@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 
 from hydrostat.arrays import Nodes
-from hydrostat.plot.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, MESH, SEAM, STITCH, mix
+from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, MESH, SEAM, STITCH, mix
 from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
 from hydrostat.plot.skin import Skin

@@ -8,11 +8,11 @@ from jaxtyping import UInt8
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from hydrostat.drawing.palette import PAPER
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.hardware import draw_cables, draw_winches
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.palette import PAPER
 from hydrostat.plot.pane import SpacePane, fit_pixel
 from hydrostat.plot.picture_file import drawing
 from hydrostat.plot.places import Spread

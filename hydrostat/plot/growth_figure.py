@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from hydrostat.design.network import Stage
+from hydrostat.drawing.palette import ERROR, GHOST, INK, SEAM
 from hydrostat.plot.chart import new_chart
-from hydrostat.plot.palette import ERROR, GHOST, INK, SEAM
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 
 _WIDE = 30.0

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.drawing.palette import DARK, FELT, LIGHT, mix, winch_colours
 from hydrostat.plot.labels import Labels, shorten
-from hydrostat.plot.palette import DARK, FELT, LIGHT, mix, winch_colours
 from hydrostat.plot.places import Place, Places, Spread
 from hydrostat.plot.rigging import Rigging
 from hydrostat.plot.sheet import MILLIMETRES, Sheet
@@ -53,7 +53,7 @@ def draw_cables(
         colours: of each cable; those of the winches if left out.
         width: of a cable [pt].
     """
-    by_winch = winch_colours(robot)
+    by_winch = winch_colours(robot.winches)
     for index, (cable, run) in enumerate(zip(robot.cables, runs, strict=True)):
         colour = colours[index] if colours is not None else by_winch[cable.winch]
         for start, end in cable.sheathed:
@@ -71,7 +71,7 @@ def draw_winches(
 
     There are hands only where `contractions` [m] are given.
     """
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     for index, (winch, centre, fade) in enumerate(zip(robot.winches, centres, fades, strict=True)):
         _draw_spool(sheet, winch, centre, colours[winch.name], float(fade))
         if contractions is not None:
@@ -81,7 +81,7 @@ def draw_winches(
 
 def name_winches(labels: Labels, robot: Robot, centres: Places, notes: Sequence[str] = ()) -> None:
     """The name of each winch, and a note behind it, on a flag at its spool with the centre [mm]."""
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     for centre in centres:
         labels.reserve(centre, 18)
     for index, (winch, centre) in enumerate(zip(robot.winches, centres, strict=True)):

@@ -9,13 +9,14 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Points
+from hydrostat.drawing.camera import Camera, Spots, three_quarter
+from hydrostat.drawing.palette import ERROR, INK, LIGHT, MUTED, SEAM, channels
+from hydrostat.drawing.render import Render, render
+from hydrostat.geometry.healing.sides import sides_of
 from hydrostat.geometry.surface import Surface
-from hydrostat.plot.camera import Camera, three_quarter
-from hydrostat.plot.palette import ERROR, INK, LIGHT, MUTED, SEAM
 from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.places import Place
-from hydrostat.plot.render import Render, render
-from hydrostat.plot.sheet import TALLEST, WIDTH, Sheet, new_sheet, round_step
+from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, Sheet, new_sheet, round_step
 
 LINE, HEAD, LETTERS = 11.0, 28.0, 92
 """Height of a line of notes and of what stands above the views [pt], and letters of a line on a page of usual width."""
@@ -54,18 +55,18 @@ def draw_healing(
     edges = _bad_edges(first)
     shown = np.concatenate([marked, first.vertices[edges].mean(axis=1)])
     camera = three_quarter(second.vertices, shown)
-    views = [camera.see(points)[:, :2] for points in (first.vertices, second.vertices, marked)]
+    spots, healed, rings = (camera.see(MILLIMETRES * points) for points in (first.vertices, second.vertices, marked))
     lines = _fitted([line for note in notes for line in _lines(note, width)], width)
-    layout = _lay_out(np.concatenate(views), lines, width)
+    layout = _lay_out(np.concatenate([spots, healed, rings])[:, :2], lines, width)
     sheet = new_sheet(layout.corners, title=title, width=width, ruled=False, room=0.0)
-    image = _both_sides(camera.see(first.vertices), first.triangles, _pixel(sheet, camera, first), camera)
+    image = _both_sides(spots, first.triangles, _pixel(sheet, spots), camera)
     _show(sheet, image, layout.shifts[0])
-    _draw_edges(sheet, image, camera.see(first.vertices)[edges], layout.shifts[0])
-    rings = _apart(camera.see(marked)[:, :2] + layout.shifts[0], 10 * sheet.scale)
+    _draw_edges(sheet, image, spots[edges], layout.shifts[0])
+    rings = _apart(rings[:, :2] + layout.shifts[0], 10 * sheet.scale)
     sheet.dots(rings, 13, color="none", markeredgecolor=LIGHT, markeredgewidth=3.2, zorder=20)
     sheet.dots(rings, 13, color="none", markeredgecolor=ERROR, markeredgewidth=1.6, zorder=20.1)
-    pixel = _pixel(sheet, camera, second)
-    _show(sheet, render(camera.see(second.vertices), second.triangles, pixel=pixel, up=camera.sky), layout.shifts[1])
+    image = render(healed, second.triangles, pixel=_pixel(sheet, healed), up=camera.sky)
+    _show(sheet, image, layout.shifts[1])
     _write(sheet, layout, (before, after), lines)
     return sheet.figure
 
@@ -135,30 +136,25 @@ def _welded(surface: Surface) -> Surface:
 
 def _bad_edges(surface: Surface) -> Int[np.ndarray, "edges 2"]:
     """Edges that are not shared by two triangles which run along them in opposite directions."""
-    ways = np.concatenate([surface.triangles[:, [0, 1]], surface.triangles[:, [1, 2]], surface.triangles[:, [2, 0]]])
-    pairs, names = np.unique(np.sort(ways, axis=1), axis=0, return_inverse=True)
-    forward = ways[:, 0] < ways[:, 1]
-    there = np.bincount(names.reshape(-1), forward, minlength=len(pairs))
-    back = np.bincount(names.reshape(-1), ~forward, minlength=len(pairs))
-    return pairs[(there != 1) | (back != 1)]
+    sides = sides_of(surface.triangles)
+    return sides.ends[(sides.counts != 2) | sides.twisted]
 
 
-def _both_sides(
-    spots: Float[np.ndarray, "_ 3"], triangles: Int[np.ndarray, "triangles 3"], pixel: float, camera: Camera
-) -> Render:
+def _both_sides(spots: Spots, triangles: Int[np.ndarray, "triangles 3"], pixel: float, camera: Camera) -> Render:
     """A surface with its outside as felt and its inside, where that is nearer, in red."""
     outside = render(spots, triangles, pixel=pixel, up=camera.sky)
     inside = render(spots, triangles[:, ::-1], pixel=pixel, up=camera.sky)
-    red = np.array([int(ERROR[start : start + 2], 16) / 255 for start in (1, 3, 5)])
-    nearer = inside.depth > outside.depth
+    red = np.array(channels(ERROR)) / 255
+    nearer = inside.buffer.depth > outside.buffer.depth
     tinted = inside.colours.copy()
     tinted[..., :3] += REDNESS * (red - tinted[..., :3])
     colours = np.where(nearer[..., None], tinted, outside.colours)
-    return replace(outside, colours=colours, depth=np.maximum(outside.depth, inside.depth))
+    depth = np.maximum(outside.buffer.depth, inside.buffer.depth)
+    return Render(colours, replace(outside.buffer, depth=depth))
 
 
-def _pixel(sheet: Sheet, camera: Camera, surface: Surface) -> float:
-    return fit_pixel(sheet, np.ptp(camera.see(surface.vertices)[:, :2], axis=0))
+def _pixel(sheet: Sheet, spots: Spots) -> float:
+    return fit_pixel(sheet, np.ptp(spots[:, :2], axis=0))
 
 
 def _show(sheet: Sheet, image: Render, shift: Place) -> None:
@@ -171,7 +167,7 @@ def _show(sheet: Sheet, image: Render, shift: Place) -> None:
 def _draw_edges(sheet: Sheet, image: Render, ends: Float[np.ndarray, "edges 2 3"], shift: Place) -> None:
     """Edges as red lines; those behind the surface are left out."""
     if len(ends):
-        hidden = image.covers(ends.mean(axis=1)) > 4 * image.pixel
+        hidden = image.covers(ends.mean(axis=1)) > 4 * image.buffer.pixel
         sheet.segments(ends[~hidden][..., :2] + shift, color=ERROR, linewidth=1.3, zorder=10)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from hydrostat.plot.palette import INK, LIGHT
+from hydrostat.drawing.palette import INK, LIGHT
 from hydrostat.plot.places import Place, Places
 from hydrostat.plot.sheet import Sheet
 

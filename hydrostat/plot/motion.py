@@ -5,9 +5,9 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.drawing.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
 from hydrostat.plot.hardware import cable_points, spool_size, stopper_bar, winch_points
 from hydrostat.plot.html import Html, tag
-from hydrostat.plot.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
 from hydrostat.plot.places import Places
 from hydrostat.plot.sheet import MILLIMETRES, framed
 from hydrostat.plot.skin import Skin
@@ -80,7 +80,7 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float
 
 
 def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    colours, runs = winch_colours(robot), [cable_points(robot, nodes) for nodes in frames]
+    colours, runs = winch_colours(robot.winches), [cable_points(robot, nodes) for nodes in frames]
     lines = []
     for index, cable in enumerate(robot.cables):
         bars = [_path([stopper_bar(MILLIMETRES * run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
@@ -95,7 +95,7 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
 def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
     places = [MILLIMETRES * winch_points(robot, nodes) for nodes in frames]
     spools = []
-    for index, (winch, colour) in enumerate(zip(robot.winches, winch_colours(robot).values(), strict=True)):
+    for index, (winch, colour) in enumerate(zip(robot.winches, winch_colours(robot.winches).values(), strict=True)):
         radius = spool_size(winch, SCALE) * SCALE / 2
         discs = [
             tag("circle", r=f"{radius * share:.2f}", fill=fill)

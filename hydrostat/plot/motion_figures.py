@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from hydrostat.drawing.palette import GRID, INK, MUTED, WINCHES, winch_colours
 from hydrostat.plot.labels import shorten
-from hydrostat.plot.palette import GRID, INK, MUTED, WINCHES, winch_colours
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.robot import Robot
 from hydrostat.simulation import MotionTable
@@ -34,7 +34,7 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     head = shorten(robot.name) if title is None else title
     if head:
         upper.set_title(head, loc="left", color=INK, fontsize=11, fontweight="bold")
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     way = MILLIMETRES * np.linalg.norm(table.markers - table.markers[0], axis=2)
     names = [marker.name for marker in robot.markers]
     others = cycle([colour for colour in WINCHES if colour not in colours.values()] or WINCHES)

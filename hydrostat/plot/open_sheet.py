@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.plot.camera import Camera, along_an_axis, three_quarter
+from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter
 from hydrostat.plot.compass import SIDES, draw_compass, draw_rules
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
 from hydrostat.plot.places import Place, Spread
@@ -61,7 +61,7 @@ def open_sheet(
     cameras = _cameras(robot, shapes)[: 2 if ruled else 1]
     skins = [nodes[robot.body.mesh.boundary_nodes] for nodes in shapes]
     seen = np.concatenate([*skins, *points])
-    views = [camera.see(seen)[:, :2] for camera in cameras]
+    views = [camera.see(MILLIMETRES * seen)[:, :2] for camera in cameras]
     layout = _lay_out([np.ptp(view, axis=0) for view in views], 72 * (width - 0.1))
     corners = np.array([np.zeros(2), layout.whole])
     sheet = new_sheet(corners, title=title, subtitle=subtitle, width=width, bar=bar, ruled=False, room=0.0)

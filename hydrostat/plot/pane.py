@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.plot.camera import Camera, Spots
+from hydrostat.drawing.camera import Camera, Spots
+from hydrostat.drawing.palette import GHOST, GHOST_FILL, SEAM, mix
+from hydrostat.drawing.render import Render, render
 from hydrostat.plot.felt import draw_felt, draw_ghost, draw_mesh, draw_pins
-from hydrostat.plot.palette import GHOST, GHOST_FILL, SEAM, mix
 from hydrostat.plot.places import Place, Places
-from hydrostat.plot.render import Render, render
 from hydrostat.plot.sheet import BODY, MILLIMETRES, Sheet
 from hydrostat.plot.skin import Skin
 from hydrostat.plot.surface import Surface
@@ -78,7 +78,7 @@ class SpacePane:
 
     def places(self, points: Points) -> Places:
         """Where points [m] lie on the sheet [mm]."""
-        return self.camera.see(points)[:, :2] + self.shift
+        return self.camera.see(MILLIMETRES * points)[:, :2] + self.shift
 
     def named(self, points: Mapping[str, Vector]) -> dict[str, Place]:
         """Where named points [m] lie on the sheet [mm]."""
@@ -87,7 +87,7 @@ class SpacePane:
     def draw_ghost(self, sheet: Sheet) -> None:
         """The rest shape, as a faint shadow."""
         mesh = self.robot.body.mesh
-        spots = self.camera.see(mesh.nodes)
+        spots = self.camera.see(MILLIMETRES * mesh.nodes)
         image = render(spots, mesh.boundary, pixel=self._pixel(sheet, spots), shaded=False)
         rings = [ring + self.shift for ring in image.rings()]
         sheet.area(rings, facecolor=GHOST_FILL, edgecolor=GHOST, linewidth=0.8, joinstyle="round", zorder=2)
@@ -97,7 +97,7 @@ class SpacePane:
     ) -> Surface:
         """The body with its nodes at `nodes` [m]; `pale` fades it, `mesh` and `pins` add these."""
         body = self.robot.body.mesh
-        spots = self.camera.see(nodes)
+        spots = self.camera.see(MILLIMETRES * nodes)
         image = render(
             spots, body.boundary, pixel=self._pixel(sheet, spots), up=self.camera.sky, pale=0.6 * pale,
             held=_held(self.robot) if pins else None, lines=_density(self.robot, sheet) if mesh else 0.0,

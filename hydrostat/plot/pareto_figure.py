@@ -7,10 +7,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from hydrostat.design.network import Alternative, Network, Size, best_errors, on_front
+from hydrostat.drawing.palette import ERROR, INK, WINCHES
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.numbers import millimetres
-from hydrostat.plot.palette import ERROR, INK, WINCHES
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.units import counted
 

@@ -14,8 +14,8 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 
+from hydrostat.drawing.palette import PAGE_COLOURS, PAPER
 from hydrostat.plot.labels import HALO
-from hydrostat.plot.palette import PAGE_COLOURS, PAPER
 from hydrostat.plot.sheet import BODY
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.drawing.palette import ERROR, LIGHT
 from hydrostat.geometry.outline import Outline, Ring
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.hardware import (
@@ -19,7 +20,6 @@ from hydrostat.plot.hardware import (
 )
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.palette import ERROR, LIGHT
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.places import Places, Spread
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from hydrostat.design.network import Network, TreeTrace
+from hydrostat.drawing.palette import winch_colours
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.html import Html, bar, swatch, table, tag
 from hydrostat.plot.numbers import number, place
-from hydrostat.plot.palette import winch_colours
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.targets import rest_errors
 from hydrostat.plot.tension_scale import TensionScale
@@ -29,7 +29,7 @@ def marker_table(robot: Robot, reached: ReachedPose) -> Html:
 
 def contraction_table(robot: Robot, reached: ReachedPose) -> Html:
     """Contraction of each winch against what it can take in."""
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     rows = [
         ([swatch(colours[winch.name]), winch.name], number(MILLIMETRES * contraction, 2),
          bar(abs(contraction) / (winch.travel if contraction >= 0 else winch.release or np.inf), colours[winch.name]),
@@ -42,7 +42,7 @@ def contraction_table(robot: Robot, reached: ReachedPose) -> Html:
 def tension_table(robot: Robot, reached: ReachedPose) -> Html:
     """Tension of each cable."""
     scale = TensionScale.of(reached.pose.tensions)
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     rows = [
         (str(count), [swatch(colours[cable.winch]), cable.winch], f"{tension:.2f}" if tension > 0 else "slack",
          bar(tension / scale.most, scale.colour(tension)))

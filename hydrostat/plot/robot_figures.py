@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
+from hydrostat.drawing.palette import winch_colours
 from hydrostat.plot.hardware import (
     cable_dots,
     cable_points,
@@ -17,7 +18,6 @@ from hydrostat.plot.hardware import (
 )
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.palette import winch_colours
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.places import Places, Spread
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
@@ -89,7 +89,7 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     count = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
     head = shorten(robot.name) if title is None else title
     sheet, views = _at_rest(robot, head, count, width, cables=True)
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     for view in views:
         draw_cables(sheet, robot, view.runs, width=2.4)
         draw_winches(sheet, robot, view.winches, view.fades)

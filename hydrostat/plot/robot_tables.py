@@ -1,8 +1,8 @@
 """Tables of what a robot is made of: body, markers, winches, cables."""
 
+from hydrostat.drawing.palette import winch_colours
 from hydrostat.plot.html import Html, swatch, table
 from hydrostat.plot.numbers import number, place
-from hydrostat.plot.palette import winch_colours
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Robot
 
@@ -28,7 +28,7 @@ def place_table(robot: Robot) -> Html:
 
 def winch_table(robot: Robot) -> Html:
     """Place and limits of each winch."""
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     rows = [
         ([swatch(colours[winch.name]), winch.name], place(winch.at), number(MILLIMETRES * winch.spool_radius, 1),
          number(MILLIMETRES * winch.travel, 0), number(MILLIMETRES * winch.release, 0))
@@ -40,7 +40,7 @@ def winch_table(robot: Robot) -> Html:
 
 def cable_table(robot: Robot) -> Html:
     """Length, via points and stopper of each cable; its spool's radius if that of one is not its winch's."""
-    colours, steps = winch_colours(robot), any(cable.spool_radius is not None for cable in robot.cables)
+    colours, steps = winch_colours(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
     rows = [
         (str(count), [swatch(colours[cable.winch]), cable.winch], number(MILLIMETRES * cable.length, 1),
          str(len(cable.points) - 2), place(cable.points[-1]), f"{cable.stiffness / 1e3:.3g}",

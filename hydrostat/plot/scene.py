@@ -9,12 +9,12 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.drawing.camera import Spots, upright
+from hydrostat.drawing.palette import DARK, FELT, LIGHT, channels, winch_colours
 from hydrostat.errors import InputError
-from hydrostat.plot.camera import Spots, upright
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.glb import Glb, Shape
 from hydrostat.plot.open_sheet import way_up
-from hydrostat.plot.palette import DARK, FELT, LIGHT, winch_colours
 from hydrostat.plot.places import Spread
 from hydrostat.plot.rigging import Rigging
 from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
@@ -168,7 +168,7 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
     for cable in reversed(robot.cables):
         ends = _in_space(np.array(cable.points[:2], dtype=float))
         ways[cable.winch] = ends[1] - ends[0]
-    colours, winches = winch_colours(robot), _carried(film, rigging.winches)
+    colours, winches = winch_colours(robot.winches), _carried(film, rigging.winches)
     for index, winch in enumerate(robot.winches):
         radius = min(max(robot.largest_spool(winch), SPOOL[0] * size), SPOOL[1] * size)
         shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colours[winch.name])
@@ -211,5 +211,5 @@ def _in_space(points: Spread) -> Spots:
 
 def _linear(colour: str) -> Vector:
     """A colour of a screen (sRGB) as shares of light, which glTF wants."""
-    shares = np.array([int(colour[start : start + 2], 16) for start in (1, 3, 5)]) / 255
+    shares = np.array(channels(colour)) / 255
     return np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)

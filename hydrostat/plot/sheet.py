@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from hydrostat.plot.palette import GRID, INK, MUTED
+from hydrostat.drawing.palette import GRID, INK, MUTED
 from hydrostat.plot.places import Place, Places
 
 MILLIMETRES = 1e3

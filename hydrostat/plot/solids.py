@@ -5,8 +5,9 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float, Int
 
+from hydrostat.drawing.creases import smooth_normals
+from hydrostat.drawing.render import CREASE
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.plot.render import facet_normals
 
 Places = Float[np.ndarray, "_ _ 3"]
 """Where points are in every key [m]."""
@@ -22,7 +23,7 @@ SIDES = 8
 def skin(mesh: Mesh, nodes: Places) -> Solid:
     """The boundary of a body in space; a vertex for each normal at rest, so that edges stay sharp."""
     facets = mesh.boundary
-    rest = facet_normals(mesh.nodes[facets], facets)
+    rest = smooth_normals(mesh.nodes[facets], facets, sharp=CREASE)
     told = np.column_stack([facets.ravel(), np.round(rest.reshape(-1, 3), 3) + 0.0])
     rows, corners = np.unique(told, axis=0, return_inverse=True)
     triangles = corners.reshape(facets.shape)

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.plot.camera import Camera
+from hydrostat.drawing.camera import Camera
+from hydrostat.drawing.render import Render
 from hydrostat.plot.places import Place, Places, Spread
-from hydrostat.plot.render import Render
 from hydrostat.plot.sheet import MILLIMETRES
 
 STEP = 1.0
@@ -50,9 +50,9 @@ class Surface:
         if self.sight is None:
             return np.zeros(len(points))
         camera, _, image, thickness = self.sight
-        depths = image.covers(camera.see(points))
+        depths = image.covers(camera.see(MILLIMETRES * points))
         levels = np.ceil(LEVELS * (1 - np.exp(-3 * depths / thickness))) / LEVELS
-        return np.where(depths > max(0.02 * thickness, image.pixel), 0.26 + 0.42 * levels, 0.0)
+        return np.where(depths > max(0.02 * thickness, image.buffer.pixel), 0.26 + 0.42 * levels, 0.0)
 
     def run(self, points: Points) -> Run:
         """A cable through points [m]."""
@@ -60,12 +60,12 @@ class Surface:
             places = MILLIMETRES * points
             return Run(places, [(places, 0.0)], np.zeros(len(points)))
         camera, shift, image, _ = self.sight
-        fine = _divided(points, STEP * image.pixel / MILLIMETRES)
-        places, fades = camera.see(fine)[:, :2] + shift, self.fades(fine)
+        fine = _divided(points, STEP * image.buffer.pixel / MILLIMETRES)
+        places, fades = camera.see(MILLIMETRES * fine)[:, :2] + shift, self.fades(fine)
         cuts = np.flatnonzero(np.diff(fades)) + 1
         starts, ends = [0, *cuts], [*cuts, len(fades)]
         parts = [(places[start : end + 1], float(fades[start])) for start, end in zip(starts, ends, strict=True)]
-        whole = camera.see(points)[:, :2] + shift
+        whole = camera.see(MILLIMETRES * points)[:, :2] + shift
         return Run(whole, [part for part in parts if len(part[0]) > 1], self.fades(points))
 
 

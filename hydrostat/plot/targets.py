@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.plot.palette import DARK, ERROR, LIGHT
+from hydrostat.drawing.palette import DARK, ERROR, LIGHT
 from hydrostat.plot.places import Place
 from hydrostat.plot.sheet import Sheet
 from hydrostat.robot import Pose, Robot

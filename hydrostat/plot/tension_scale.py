@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, to_hex
 
 from hydrostat.arrays import Vector
-from hydrostat.plot.palette import INK, MUTED, TENSION
+from hydrostat.drawing.palette import INK, MUTED, TENSION
 from hydrostat.plot.sheet import Sheet
 
 LEVELS = 16

@@ -8,10 +8,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
+from hydrostat.drawing.palette import ERROR, GHOST, GRID, INK, MUTED, WINCHES, winch_colours
 from hydrostat.ik import KeyPose, Trajectory
 from hydrostat.plot.hardware import cable_points, winch_points
 from hydrostat.plot.labels import shorten
-from hydrostat.plot.palette import ERROR, GHOST, GRID, INK, MUTED, WINCHES, winch_colours
 from hydrostat.plot.picture_file import drawing
 from hydrostat.plot.places import Spread
 from hydrostat.plot.pose_figures import draw_portrait
@@ -119,7 +119,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         ("speed [mm/s]", trajectory.speeds, trajectory.pace.speed),
         ("acceleration [mm/s\N{SUPERSCRIPT TWO}]", trajectory.accelerations, trajectory.pace.acceleration),
     )
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     right = 0.5 + 0.068 * max((len(shorten(name)) for name in trajectory.winches), default=0)
     first = None
     for row, (label, values, limits) in enumerate(rows):

@@ -10,9 +10,9 @@ from matplotlib.text import Text
 from PIL import Image
 
 from hydrostat import plot
+from hydrostat.drawing.palette import ERROR
 from hydrostat.geometry.surface import Surface
 from hydrostat.plot.healing_figure import _bad_edges, _welded
-from hydrostat.plot.palette import ERROR
 
 
 def whole() -> Surface:

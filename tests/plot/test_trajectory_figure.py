@@ -8,10 +8,10 @@ import pytest
 from builders import strip_robot
 from matplotlib.colors import to_hex
 
+from hydrostat.drawing.palette import ERROR, winch_colours
 from hydrostat.geometry import Outline
 from hydrostat.ik import CentreGoal, ShapeGoal, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
 from hydrostat.plot import draw_reached, draw_trajectory, inline_svg, trajectory_frames
-from hydrostat.plot.palette import ERROR, winch_colours
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
@@ -35,7 +35,7 @@ def test_lines_are_the_trajectory() -> None:
     charts = [axes for axes in figure.axes if not axes.images]
     values = (trajectory.contractions, trajectory.speeds, trajectory.accelerations)
     for axes, wanted in zip(charts, values, strict=True):
-        colours = winch_colours(robot)
+        colours = winch_colours(robot.winches)
         lines = {line.get_label(): line for line in axes.lines if line.get_label() in colours}
         for column, name in enumerate(trajectory.winches):
             assert lines[name].get_ydata() == pytest.approx(1e3 * wanted[:, column])

@@ -1,9 +1,10 @@
 """`pattern_svg`: a pattern as an SVG drawing at true scale."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from xml.sax.saxutils import escape
 
+from hydrostat.drawing.svg import NAMESPACE, Html, number, path, shape, tag
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 
@@ -11,18 +12,21 @@ COLOURS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"
 """Stroke of each layer: LightBurn and its like tell operations apart by these."""
 
 _HAIRLINE = 0.1
+
+_DIGITS = 3
+"""Micrometres are enough."""
+
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def pattern_svg(pattern: Pattern) -> bytes:
     """The bytes of the drawing: millimetres, a group for each layer in the order of work, one for each panel within."""
-    width, height = _number(pattern.width), _number(pattern.height)
-    title = escape(_NOT_XML.sub("", pattern.name))
+    width, height = number(pattern.width, _DIGITS), number(pattern.height, _DIGITS)
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
-        '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
+        f'<svg xmlns="{NAMESPACE}" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
         f' width="{width}mm" height="{height}mm" viewBox="0 0 {width} {height}">',
-        f"<title>{title}</title>",
+        f"<title>{escape(_NOT_XML.sub('', pattern.name))}</title>",
         "<desc>Black: engrave; a cable runs outside along a solid line, inside along a dashed one. Blue: cut the "
         "pinholes. Red: cut the panels, last. The bar is 100 mm long.</desc>",
         *(line for layer in Layer for line in _layer(pattern, layer)),
@@ -44,16 +48,40 @@ def _layer(pattern: Pattern, layer: Layer) -> Iterable[str]:
     yield "</g>"
 
 
-def shape_element(shape: Shape, height: float) -> str:
+def shape_element(drawn: Shape, height: float) -> Html:
     """A shape as an SVG element on a sheet of this height [mm]; the y axis turns over, as SVG counts it downwards."""
-    if isinstance(shape, Circle):
-        x, y = shape.centre
-        centre = f'cx="{_number(x)}" cy="{_number(height - y)}"'
-        return f'<circle class="{shape.part}" {centre} r="{_number(shape.radius)}"/>'
-    path = "L".join(f"{_number(x)} {_number(height - y)}" for x, y in shape.points)
-    return f'<path class="{shape.part}" d="M{path}{"Z" if shape.closed else ""}"/>'
+    if isinstance(drawn, Circle):
+        x, y = drawn.centre
+        cx, cy, r = (number(value, _DIGITS) for value in (x, height - y, drawn.radius))
+        return shape("circle", class_=drawn.part, cx=cx, cy=cy, r=r)
+    way = [(x, height - y) for x, y in drawn.points]
+    return shape("path", class_=drawn.part, d=path([way], digits=_DIGITS, closed=drawn.closed))
 
 
-def _number(value: float) -> str:
-    """Micrometres are enough."""
-    return f"{round(value, 3) + 0.0:.3f}".rstrip("0").rstrip(".")
+def shapes_svg(
+    shapes: Iterable[Shape], height: float, view: str, size: tuple[float, float], widths: Mapping[Layer, float]
+) -> Html:
+    """A window of a sheet as a picture, a group for each layer.
+
+    Args:
+        shapes: what is drawn.
+        height: of the sheet [mm].
+        view: the window: left, top, width and height [mm].
+        size: width and height of the picture [mm].
+        widths: of the lines of each layer [mm].
+    """
+    shapes = tuple(shapes)
+    groups = [
+        tag(
+            "g",
+            [shape_element(drawn, height) for drawn in shapes if drawn.layer is layer],
+            fill="none",
+            stroke=COLOURS[layer],
+            stroke_width=f"{widths[layer]:.4f}",
+            stroke_linecap="round",
+            stroke_linejoin="round",
+        )
+        for layer in Layer
+    ]
+    width, tall = (f"{side:.6f}mm" for side in size)
+    return tag("svg", groups, xmlns=NAMESPACE, width=width, height=tall, viewBox=view)

@@ -1,13 +1,21 @@
-"""`assembly_sheet`: the pages a person has on the bench while building."""
+"""`assembly_sheet`: the pages a person has on the bench while building, with pictures of the very robot."""
 
 import json
+import math
 from importlib.resources import files
 
-from hydrostat.fabrication.kit_options import Method
-from hydrostat.fabrication.sheets.legible import Legible
-from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
+from hydrostat.drawing.camera import Camera
+from hydrostat.drawing.canvas import Canvas
+from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.sheets.cable_map import body_solid, flat_map, space_map, winch_mark
+from hydrostat.fabrication.sheets.legible import Legible, minds
+from hydrostat.fabrication.sheets.list_facts import piece_numbers
+from hydrostat.fabrication.sheets.schemes import skin_scheme, stitch_scheme, stopper_scheme
+from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.sheet_pictures import sheet_pictures
+from hydrostat.fabrication.sheets.sight import best_views
+from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
+from hydrostat.fabrication.sheets.steps import CableDepths
 
 _TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ")
 
@@ -28,3 +36,70 @@ def assembly_sheet(given: SheetInput) -> bytes:
     facts = json.dumps({**words, "pictures": pictures}, ensure_ascii=False)
     # The time is the beginning of all time: a sheet is the same on every day.
     return typst.compile(source, sys_inputs={"sheet": facts}, ignore_system_fonts=True, timestamp=0)
+
+
+WIDE, HALF = 182.0, 88.0
+"""Widths of a page and of half a page without its margins [mm]; both fit both papers."""
+
+
+def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:
+    """Pictures by name, in millimetres of paper."""
+    tight = 18.0 if given.paper is Paper.LETTER else 0.0
+    told = minds(given.problems, given.warnings)
+    boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)
+    robot = given.robot
+    views = best_views(robot, body_solid(robot)) if robot.body.mesh.dim == 3 else ()
+    pictures = {"portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)}
+    if views:
+        pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + boxed) / 2, views=views[:1])
+        pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views[1:])
+    else:
+        if given.method is Method.FOAM:
+            pictures["map_both"] = flat_map(robot, (), width=WIDE, height=112.0 - tight / 2)
+        pictures["map"] = flat_map(robot, given.stitches, width=112.0, height=119.0 - (tight + boxed) / 2)
+    pictures["calibration"] = stopper_scheme(
+        cloth="cloth" if given.method is Method.PLUSH else "skin", width=HALF, height=26.0
+    )
+    left = 195.0 - tight - boxed - pictures["map"].height
+    return pictures | _schemes(given) | _parts(given, min(left, 112.0)) | _mould(given)
+
+
+def _schemes(given: SheetInput) -> dict[str, Canvas]:
+    if given.method is Method.FOAM:
+        depths = CableDepths.of(given)
+        drawn = bool(depths.drawn or depths.laid or depths.tubed)
+        tubes = any(cable.sheathed for cable in given.robot.cables)
+        if not given.robot.cables:
+            return {}
+        return {"skin": skin_scheme(sewn=bool(depths.sewn), drawn=drawn, tubes=tubes, width=HALF)}
+    shown = shown_stitches(given)
+    if shown is None:
+        return {}
+    place = [winch.name for winch in given.robot.winches].index(shown.winch)
+    return {"stitches": stitch_scheme(shown, winch_mark(place), width=HALF, height=38.0)}
+
+
+def _parts(given: SheetInput, height: float) -> dict[str, Canvas]:
+    pictures: dict[str, Canvas] = {}
+    of_winch, of_stopper = piece_numbers(given)
+    if given.winch is not None:
+        pictures["winch"] = exploded_picture(given.winch, of_winch, width=74.0, height=height)
+    if given.stopper is not None:
+        pictures["stopper"] = exploded_picture(given.stopper, of_stopper, width=38.0, height=min(0.6 * height, 52.0))
+    if given.base is not None:
+        pictures["base"] = exploded_picture(given.base, {}, width=HALF, height=56.0)
+    return pictures
+
+
+def _mould(given: SheetInput) -> dict[str, Canvas]:
+    mould = given.mould
+    if given.method is not Method.FOAM or mould is None:
+        return {}
+    numbers = {placed.name: number for number, placed in enumerate(mould.assembly.pieces, start=1)}
+    surface = mould.surface
+    return {
+        "mould": exploded_picture(mould.assembly, numbers, width=HALF, height=92.0, view=Camera.at(-50.0, 24.0)),
+        "undercut": undercut_picture(
+            surface.vertices, surface.triangles, surface.undercut, mould.pull, width=50.0, height=62.0
+        ),
+    }

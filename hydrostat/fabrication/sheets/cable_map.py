@@ -7,24 +7,24 @@ import numpy as np
 import shapely
 from jaxtyping import Float
 
-from hydrostat.fabrication.patterns.stitches import CableStitches, Side
-from hydrostat.fabrication.sheets.canvas import (
+from hydrostat.drawing.camera import Camera
+from hydrostat.drawing.canvas import (
     MIDDLE,
     PIXELS,
     THICK,
     THIN,
     Box,
     Canvas,
-    Frame,
+    CanvasFrame,
     Spot,
     balloon_radius,
     snug,
     text_size,
 )
+from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing, line_drawing
+from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.label_places import LabelPlaces, box_round
-from hydrostat.fabrication.sheets.line_art import LineDrawing, Piece, line_drawing
 from hydrostat.fabrication.sheets.sight import Sight
-from hydrostat.fabrication.sheets.view import View
 from hydrostat.robot import Mount, Robot
 
 _MARGIN = 7.0
@@ -53,7 +53,7 @@ def winch_mark(index: int) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class CableRun:
     """One cable on paper.
 
     Attributes:
@@ -85,7 +85,7 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     box = np.array([places.min(axis=0), places.max(axis=0)])
     height = snug(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN
     canvas = Canvas(width, height)
-    frame = Frame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
+    frame = CanvasFrame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
     canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
     canvas.line([frame.way(ring) for ring in rings], width=THICK, closed=True)
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
@@ -109,7 +109,7 @@ class _Pane:
     box: Float[np.ndarray, "2 2"]
 
 
-def space_map(robot: Robot, *, width: float, height: float, views: Sequence[View]) -> Canvas:
+def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Camera]) -> Canvas:
     """A body in space, side by side as it is seen from one or several places; dashed is what lies in its far half.
 
     Args:
@@ -130,19 +130,19 @@ def space_map(robot: Robot, *, width: float, height: float, views: Sequence[View
     return canvas
 
 
-def _pane(robot: Robot, view: View, pixels: int) -> _Pane:
-    piece = body_piece(robot)
-    drawing = line_drawing([piece], view, soft=_SOFT, pixels=pixels)
-    cables = [view.see(1e3 * np.array(cable.points)) for cable in robot.cables]
-    winches = [view.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
+def _pane(robot: Robot, camera: Camera, pixels: int) -> _Pane:
+    body = body_solid(robot)
+    drawing = line_drawing([body], camera, soft=_SOFT, pixels=pixels)
+    cables = [camera.see(1e3 * np.array(cable.points)) for cable in robot.cables]
+    winches = [camera.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
     places = np.concatenate([drawing.box, *(way[:, :2] for way in cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
-    return _Pane(drawing, Sight.of(piece, view), cables, winches, box)
+    return _Pane(drawing, Sight.of(body, camera), cables, winches, box)
 
 
 def _put_pane(canvas: Canvas, robot: Robot, pane: _Pane, room: Box) -> None:
     left, top, right, bottom = room
-    frame = Frame.fit(pane.box, (left + _MARGIN, top + _MARGIN, right - _MARGIN, bottom - _MARGIN))
+    frame = CanvasFrame.fit(pane.box, (left + _MARGIN, top + _MARGIN, right - _MARGIN, bottom - _MARGIN))
     canvas.drawing(pane.drawing, frame)
     labels = LabelPlaces((left + 0.2, top + 0.2, right - 0.2, bottom - 0.2))
     for way in pane.drawing.outlines:
@@ -151,32 +151,34 @@ def _put_pane(canvas: Canvas, robot: Robot, pane: _Pane, room: Box) -> None:
     _put_runs(canvas, labels, runs, [frame.on(stand) for stand in pane.winches])
 
 
-def _stitched(robot: Robot, sewn: CableStitches, frame: Frame) -> Run:
+def _stitched(robot: Robot, sewn: CableStitches, frame: CanvasFrame) -> CableRun:
     """A cable that is sewn through cloth."""
     sides = [stitch.after is Side.OUTSIDE for stitch in sewn.stitches[:-1]]
     cable = robot.cables[sewn.cable - 1]
     holes = [stitch.passes for stitch in sewn.stitches]
-    return Run(sewn.cable, frame.way(1e3 * np.array(cable.points)), sides, (~cable.bare).tolist(), holes)
+    return CableRun(sewn.cable, frame.way(1e3 * np.array(cable.points)), sides, (~cable.bare).tolist(), holes)
 
 
-def _within(robot: Robot, index: int, frame: Frame) -> Run:
+def _within(robot: Robot, index: int, frame: CanvasFrame) -> CableRun:
     """A cable in the middle of a flat body that is cast."""
     cable = robot.cables[index]
     count = len(cable.points)
     holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (count - 1)]
     way = frame.way(1e3 * np.array(cable.points))
-    return Run(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
+    return CableRun(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
 
 
-def _sighted(robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Sight, frame: Frame) -> Run:
+def _sighted(
+    robot: Robot, index: int, way: Float[np.ndarray, "points 3"], sight: Sight, frame: CanvasFrame
+) -> CableRun:
     """A cable in space."""
     cable = robot.cables[index]
     solid = sight.in_front((way[:-1] + way[1:]) / 2).tolist()
     holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (len(cable.points) - 1)]
-    return Run(index + 1, frame.way(way), solid, (~cable.bare).tolist(), holes)
+    return CableRun(index + 1, frame.way(way), solid, (~cable.bare).tolist(), holes)
 
 
-def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run], stands: Sequence[Spot]) -> None:
+def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], stands: Sequence[Spot]) -> None:
     """Cables, then holes and stoppers on them, then winches, then all words where they fit."""
     for run in runs:
         _put_cable(canvas, run)
@@ -213,7 +215,7 @@ def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Sequence[Spot]) ->
         taken.append(at)
 
 
-def _put_numbers(canvas: Canvas, labels: LabelPlaces, runs: Sequence[Run]) -> None:
+def _put_numbers(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun]) -> None:
     """The first and the last number of each cable, led to its hole if need be; others as far as there is room."""
     # The first point is at the winch.
     numbered = [[place for place, hole in enumerate(run.holes[:-1]) if hole and place] for run in runs]
@@ -237,7 +239,7 @@ def _put_number(canvas: Canvas, labels: LabelPlaces, words: str, spot: Spot, *, 
     canvas.text(middle, words, size=7.5, halo=led)
 
 
-def _put_cable(canvas: Canvas, run: Run) -> None:
+def _put_cable(canvas: Canvas, run: CableRun) -> None:
     for start, end, solid, sheathed in zip(run.spots[:-1], run.spots[1:], run.solid, run.sheathed, strict=True):
         if sheathed:
             canvas.line([[start, end]], width=1.25)
@@ -247,7 +249,7 @@ def _put_cable(canvas: Canvas, run: Run) -> None:
             canvas.line([[start, end]], width=MIDDLE, dash=None if solid else (1.1, 0.8))
 
 
-def _put_stopper(canvas: Canvas, run: Run) -> None:
+def _put_stopper(canvas: Canvas, run: CableRun) -> None:
     """A black bar across the end of a cable."""
     end = np.array(run.spots[-1])
     way = end - np.array(run.spots[-2])
@@ -268,12 +270,10 @@ def flat_rings(robot: Robot) -> list[Float[np.ndarray, "_ 2"]]:
     return [np.array(ring.coords)[:-1] for part in polygons for ring in (part.exterior, *part.interiors)]
 
 
-def body_piece(robot: Robot) -> Piece:
+def body_solid(robot: Robot) -> DrawnSolid:
     """The surface of a body in space [mm]."""
     if robot.body.healing is not None:
         surface = robot.body.healing.surface
-        return Piece(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=_SHARP)
+        return DrawnSolid(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=_SHARP)
     mesh = robot.body.mesh
-    faces = mesh.elements[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
-    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return Piece(vertices=1e3 * mesh.nodes, triangles=faces[np.sort(first[counts == 1])], sharp=_SHARP)
+    return DrawnSolid(vertices=1e3 * mesh.nodes, triangles=mesh.boundary, sharp=_SHARP)

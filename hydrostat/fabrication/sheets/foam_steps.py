@@ -2,19 +2,17 @@
 
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind
-from hydrostat.fabrication.sheets.cable_depths import CableDepths, cables_text
 from hydrostat.fabrication.sheets.mould_steps import body_mass, rises
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.step import Step
-from hydrostat.fabrication.sheets.winch_steps import tie_step, winch_steps
+from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, tie_step, winch_steps
 
 
-def skin_steps(given: SheetInput) -> tuple[Step, ...]:
+def skin_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
     """From a body of foam to a robot."""
     cables = len(given.robot.cables)
     return (
         *(_cable_steps(given) if cables else ()),
-        Step(
+        AssemblyStep(
             "Fix the skin",
             20,
             "Spray the foam thinly with contact adhesive (3M Super 77), outdoors. Pull a knitted glove or sleeve on, "
@@ -31,13 +29,13 @@ def skin_steps(given: SheetInput) -> tuple[Step, ...]:
     )
 
 
-def _cable_steps(given: SheetInput) -> tuple[Step, ...]:
+def _cable_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
     """How cables come in or on the body, by their depth."""
     cables, depths = len(given.robot.cables), CableDepths.of(given)
     tubes = "sheath_cuts" in given.tables and bool(given.tables["sheath_cuts"].rows)
     deep = sorted({*depths.drawn, *depths.laid, *depths.tubed}, key=lambda cable: int(cable[1:]))
     steps = [
-        Step(
+        AssemblyStep(
             "Cut cables and tubes" if tubes else "Cut the cables",
             3 * (2 if tubes else 1) * cables,
             "Cut lines to lists/cable_cuts.csv"
@@ -52,14 +50,14 @@ def _cable_steps(given: SheetInput) -> tuple[Step, ...]:
     return tuple(steps)
 
 
-def _drawn_step(depths: CableDepths, deep: list[str]) -> Step:
+def _drawn_step(depths: CableDepths, deep: list[str]) -> AssemblyStep:
     tubes = (
         f" Push the tube of {cables_text(depths.tubed)} along the needle's channel, ends where the list has them."
         if depths.tubed
         else ""
     )
     laid = " Where a tube was laid, pull the line through it." if depths.laid else ""
-    return Step(
+    return AssemblyStep(
         "Draw cables through the foam",
         15 * len(deep),
         f"{cables_text(deep)}, before the skin is on. Pins at the “skin” places of lists/stitching.csv show the way "
@@ -70,9 +68,9 @@ def _drawn_step(depths: CableDepths, deep: list[str]) -> Step:
     )
 
 
-def _sewn_step(depths: CableDepths, *, tubes: bool) -> Step:
+def _sewn_step(depths: CableDepths, *, tubes: bool) -> AssemblyStep:
     tube = ", tubes at both ends with the line in them" if tubes else ""
-    return Step(
+    return AssemblyStep(
         "Sew cables on the skin",
         17 * len(depths.sewn),
         f"{cables_text(depths.sewn)}. Pull the skin over the body, pin every point of the map through it, mark it with "

@@ -4,9 +4,9 @@ import re
 
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind
-from hydrostat.fabrication.sheets.cable_depths import CableDepths, cables_text
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.step import Step, count_text, minutes_text
+from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, minutes_text
+from hydrostat.units import counted
 
 _SILICONE_CURE = ("Mold Max 30 silicone", "24 h, or 6 h at 60 °C")
 
@@ -66,28 +66,28 @@ def body_mass(mould: Mould) -> float:
     return mix.density * mould.volumes.get("cavity", mix.volume)
 
 
-def mould_steps(given: SheetInput, mould: Mould) -> tuple[Step, ...]:
+def mould_steps(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]:
     """From the files of the mould to a body of foam."""
     printed = mould.kind is MouldKind.PRINTED
     mix, foams = mould.casting.body, rises(mould)
     return (
         *(_printed_first(given) if printed else _silicone_first(given, mould)),
-        Step(
+        AssemblyStep(
             "Spray release agent",
             10,
             "On both halves and on keys, sprue and vents: two thin coats. Let the solvent dry.",
             wait="10 min",
         ),
         *_tubes_first(given),
-        Step("Close it", 10, f"{_closing(mould)} {mould.stands}"),
-        Step(
+        AssemblyStep("Close it", 10, f"{_closing(mould)} {mould.stands}"),
+        AssemblyStep(
             "Weigh and stir",
             5,
             f"{mix.part_a:.0f} g of part A and {mix.part_b:.0f} g of part B of {mix.material}, each in its own cup, if "
             "your tins ask for this ratio. " + (_STIR_FOAM if foams else _STIR_SILICONE),
         ),
-        Step("Pour", 5, _POUR_FOAM if foams else _POUR_SILICONE, wait="its cure"),
-        Step("Open", 20, _OPEN + (_OPEN_FOAM if foams else "")),
+        AssemblyStep("Pour", 5, _POUR_FOAM if foams else _POUR_SILICONE, wait="its cure"),
+        AssemblyStep("Open", 20, _OPEN + (_OPEN_FOAM if foams else "")),
     )
 
 
@@ -96,21 +96,21 @@ def _in_pieces(given: SheetInput) -> bool:
     return any(re.fullmatch(r"(mould|positive|frame)_(lower|upper)_\d+", part.name) for part in given.printed)
 
 
-def _printed_first(given: SheetInput) -> tuple[Step, ...]:
+def _printed_first(given: SheetInput) -> tuple[AssemblyStep, ...]:
     glue = (
         " A half that is in pieces is joined with glue and dowels of 3 mm in its holes; never glue half to half."
         if _in_pieces(given)
         else ""
     )
     return (
-        Step(
+        AssemblyStep(
             "Print the mould",
             20,
             "All plates from mould/plate_1.3mf on: PLA, 0.2 mm layers, three walls, as the pieces lie, no supports "
             "in the cavity." + glue,
             wait=f"about {minutes_text(60 * given.print_hours)} of printing, all parts",
         ),
-        Step(
+        AssemblyStep(
             "Seal the cavity",
             30,
             "Sand the ridges of the layers. Brush on two coats of sealer or shellac, or the foam creeps between the "
@@ -120,11 +120,11 @@ def _printed_first(given: SheetInput) -> tuple[Step, ...]:
     )
 
 
-def _silicone_first(given: SheetInput, mould: Mould) -> tuple[Step, ...]:
+def _silicone_first(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]:
     glue = " What is in pieces is joined with glue and dowels of 3 mm in its holes." if _in_pieces(given) else ""
     masses = [f"{mix.mass:.0f} g" for mix in mould.casting.silicone] or ["the amount"]
     return (
-        Step(
+        AssemblyStep(
             "Print positive and frames",
             30,
             "All plates from mould/plate_1.3mf on: positive, two frames, four key domes."
@@ -133,7 +133,7 @@ def _silicone_first(given: SheetInput, mould: Mould) -> tuple[Step, ...]:
             "should not copy. Leave the two halves of the positive apart.",
             wait=f"about {minutes_text(60 * given.print_hours)} of printing, all parts",
         ),
-        Step(
+        AssemblyStep(
             "Pour the first half",
             30,
             "Lay the lower half of the positive on a flat board, flat side down, the lower frame round it, a dome in "
@@ -141,7 +141,7 @@ def _silicone_first(given: SheetInput, mould: Mould) -> tuple[Step, ...]:
             f"{masses[0]} of mixed silicone in a thin stream, from one corner.",
             wait="its cure",
         ),
-        Step(
+        AssemblyStep(
             "Pour the second half",
             30,
             "Turn frame, silicone and positive over. Take the domes out. Put the upper half of the positive on the "
@@ -149,22 +149,22 @@ def _silicone_first(given: SheetInput, mould: Mould) -> tuple[Step, ...]:
             f"positive twice: silicone sticks to silicone. Pour {masses[-1]}.",
             wait="its cure",
         ),
-        Step(
+        AssemblyStep(
             "Take the positive out",
             15,
             "Open the halves, draw the positive out, clear the sprue"
-            + (f" and punch {count_text(mould.vents, 'vent')} of 3 mm at the high points." if mould.vents else "."),
+            + (f" and punch {counted(mould.vents, 'vent')} of 3 mm at the high points." if mould.vents else "."),
         ),
     )
 
 
-def _tubes_first(given: SheetInput) -> tuple[Step, ...]:
+def _tubes_first(given: SheetInput) -> tuple[AssemblyStep, ...]:
     """Tubes that no needle reaches later."""
     depths = CableDepths.of(given)
     if not depths.laid:
         return ()
     return (
-        Step(
+        AssemblyStep(
             "Lay tubes in the cavity",
             10 * len(depths.laid),
             f"{cables_text(depths.laid)} {'runs' if len(depths.laid) == 1 else 'run'} too deep for a needle: where "
@@ -177,5 +177,5 @@ def _tubes_first(given: SheetInput) -> tuple[Step, ...]:
 
 def _closing(mould: Mould) -> str:
     if mould.bolts:
-        return f"Push the keys home and close it with {count_text(mould.bolts, 'bolt')} M4; no light may shine through."
+        return f"Push the keys home and close it with {counted(mould.bolts, 'bolt')} M4; no light may shine through."
     return "Push the keys home and strap it between two boards, not so hard that it bulges."

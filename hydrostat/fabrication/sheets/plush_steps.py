@@ -1,18 +1,25 @@
 """What to do for a plush robot, in order. Times are estimates; none was measured."""
 
-from hydrostat.fabrication.sheets.held import held_text
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.step import Step, count_text, minutes_text
-from hydrostat.fabrication.sheets.winch_steps import marks_on, marks_text, tie_step, winch_steps
+from hydrostat.fabrication.sheets.steps import (
+    AssemblyStep,
+    held_text,
+    marks_on,
+    marks_text,
+    minutes_text,
+    tie_step,
+    winch_steps,
+)
 from hydrostat.robot import Mount
+from hydrostat.units import counted
 
 
-def plush_steps(given: SheetInput) -> tuple[Step, ...]:
+def plush_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
     """From the folder of files to a robot that is sewn up."""
     cables = len(given.robot.cables)
     return (
         *_prints(given),
-        Step(
+        AssemblyStep(
             "Cut the cloth",
             20,
             "Laser pattern/pattern.svg or pattern/pattern.dxf: marks first, then pinholes, edges last. Or print "
@@ -20,7 +27,7 @@ def plush_steps(given: SheetInput) -> tuple[Step, ...]:
             "the pinholes. Keep the grain arrows along the cloth.",
         ),
         *(_cables(given) if cables else ()),
-        Step(
+        AssemblyStep(
             "Put the zipper in",
             25,
             "Slit the back panel along its opening mark. Sew the zipper in, its slide on the outside, and open it.",
@@ -29,7 +36,7 @@ def plush_steps(given: SheetInput) -> tuple[Step, ...]:
         *winch_steps(given),
         *((tie_step(cables),) if cables else ()),
         _stuff(given),
-        Step(
+        AssemblyStep(
             "Close and calibrate" if cables else "Close it",
             10 + 5 * cables,
             ("Close the zipper, lead the wires out at its end, then calibrate. " if cables else "Close the zipper. ")
@@ -38,12 +45,12 @@ def plush_steps(given: SheetInput) -> tuple[Step, ...]:
     )
 
 
-def _prints(given: SheetInput) -> tuple[Step, ...]:
+def _prints(given: SheetInput) -> tuple[AssemblyStep, ...]:
     if not given.printed:
         return ()
-    count = count_text(sum(part.count for part in given.printed), "part")
+    count = counted(sum(part.count for part in given.printed), "part")
     return (
-        Step(
+        AssemblyStep(
             "Print the parts",
             20,
             f"All plates from parts/plate_1.3mf on: {count} of "
@@ -54,21 +61,21 @@ def _prints(given: SheetInput) -> tuple[Step, ...]:
     )
 
 
-def _cables(given: SheetInput) -> tuple[Step, ...]:
+def _cables(given: SheetInput) -> tuple[AssemblyStep, ...]:
     cables = len(given.robot.cables)
     tubes = sum(len(cable.sheathed) for cable in given.robot.cables)
     sheaths = "Tie sheaths to the inside of the cloth at both ends, the line in them. " if tubes else ""
     all_of_them = "C1" if cables == 1 else f"C1 to C{cables}"
     grommets = " Grommets are optional: sew one behind a hole that frays." if _grommets(given) else ""
     return (
-        Step(
+        AssemblyStep(
             "Cut cables and sheaths" if tubes else "Cut the cables",
             3 * (cables + tubes),
             "Cut each line to lists/cable_cuts.csv, pulled straight. Mark its spool mark with a pen, from the end that "
             "gets the stopper, and tape the cable's number to it."
             + (" Cut tubes to lists/sheath_cuts.csv, square, with a sharp blade." if tubes else ""),
         ),
-        Step(
+        AssemblyStep(
             "Stitch the cables",
             10 * cables,
             f"Lay {'the front panel' if _flat(given) else 'each patch'} flat, right side up. Take {all_of_them} in "
@@ -87,11 +94,11 @@ def _grommets(given: SheetInput) -> bool:
     return any(part.name.startswith("grommet") for part in given.printed)
 
 
-def _sew(given: SheetInput) -> Step:
+def _sew(given: SheetInput) -> AssemblyStep:
     sides = "front and back" if _flat(given) else "neighbouring patches"
     between = "Sew the gusset strips between them, notch to notch" if given.gusset else "Match the notches"
     tucked = ", all lines tucked inside, clear of the seam" if given.robot.cables else ""
-    return Step(
+    return AssemblyStep(
         "Sew the body",
         45,
         f"Lay {sides} right sides together{tucked}. {between}; sew twice along the seam line, leave no gap. "
@@ -99,7 +106,7 @@ def _sew(given: SheetInput) -> Step:
     )
 
 
-def _stuff(given: SheetInput) -> Step:
+def _stuff(given: SheetInput) -> AssemblyStep:
     inside, thickness = marks_on(given, Mount.BODY), given.robot.body.thickness
     full = f"about {1e3 * thickness:.0f} mm thick" if thickness else "as large as on page 1"
     them = "it" if len(inside) == 1 else "them"
@@ -108,7 +115,7 @@ def _stuff(given: SheetInput) -> Step:
     )
     winches = ", then round the winches," if inside else ""
     lumps = " No lumps by the cables." if given.robot.cables else ""
-    return Step(
+    return AssemblyStep(
         "Stuff the body",
         30,
         f"{places}Fill limbs first{winches} softly and evenly, until the body is {full}." + lumps,

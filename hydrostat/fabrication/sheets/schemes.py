@@ -1,7 +1,7 @@
 """Schemes: how a cable is stitched through cloth, and how its stopper is set."""
 
+from hydrostat.drawing.canvas import MIDDLE, THICK, THIN, Canvas, Spot
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
-from hydrostat.fabrication.sheets.canvas import MIDDLE, THICK, THIN, Canvas, Spot
 
 _CLOTH = 1.5
 """Thickness of drawn cloth [mm]."""

@@ -8,13 +8,12 @@ from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
-from hydrostat.fabrication.sheets.bill_facts import Facts, bill_facts, cost_text
 from hydrostat.fabrication.sheets.cable_map import winch_mark
-from hydrostat.fabrication.sheets.calibration import calibration
-from hydrostat.fabrication.sheets.minds import minds, sentence, shortened
-from hydrostat.fabrication.sheets.piece_facts import piece_facts, winch_files
+from hydrostat.fabrication.sheets.legible import minds, sentence, shortened
+from hydrostat.fabrication.sheets.list_facts import Facts, bill_facts, cost_text, piece_facts, winch_files
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.step import Step, count_text, minutes_text
+from hydrostat.fabrication.sheets.steps import AssemblyStep, calibration, minutes_text
+from hydrostat.units import counted
 
 _NAME, _SHORT = 60, 26
 """Longest name of the robot, of a winch, in letters."""
@@ -77,7 +76,7 @@ def shown_stitches(given: SheetInput) -> CableStitches | None:
     return max(sewn, key=lambda stitches: (len(stitches.passes), -stitches.cable)) if sewn else None
 
 
-def _all_steps(given: SheetInput) -> list[tuple[Step, ...]]:
+def _all_steps(given: SheetInput) -> list[tuple[AssemblyStep, ...]]:
     """The steps, page by page."""
     if given.method is Method.PLUSH:
         return [plush_steps.plush_steps(given)]
@@ -85,7 +84,7 @@ def _all_steps(given: SheetInput) -> list[tuple[Step, ...]]:
     return [*before, foam_steps.skin_steps(given)]
 
 
-def _about(given: SheetInput, steps: Iterable[Iterable[Step]]) -> list[str]:
+def _about(given: SheetInput, steps: Iterable[Iterable[AssemblyStep]]) -> list[str]:
     """What kind of robot it is, a line each."""
     robot = given.robot
     nodes = 1e3 * robot.body.mesh.nodes
@@ -95,7 +94,7 @@ def _about(given: SheetInput, steps: Iterable[Iterable[Step]]) -> list[str]:
     busy = sum(step.minutes for page in steps for step in page)
     return [
         " × ".join(f"{side:.0f}" for side in sides) + " mm",
-        f"{count_text(len(robot.winches), 'winch', 'winches')}, {count_text(len(robot.cables), 'cable')}",
+        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}",
         f"about {minutes_text(busy)} of work",
         *cost_text(given),
     ]
@@ -138,7 +137,7 @@ def _winches(given: SheetInput) -> list[Facts]:
     ]
 
 
-def _step(step: Step) -> Facts:
+def _step(step: AssemblyStep) -> Facts:
     return {"title": step.title, "time": step.time, "text": step.text}
 
 

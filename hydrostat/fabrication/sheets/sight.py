@@ -6,9 +6,9 @@ from typing import Self
 import numpy as np
 from jaxtyping import Bool, Float
 
-from hydrostat.fabrication.sheets.depth import DepthBuffer
-from hydrostat.fabrication.sheets.line_art import Piece
-from hydrostat.fabrication.sheets.view import View
+from hydrostat.drawing.camera import Camera
+from hydrostat.drawing.depth import DepthBuffer
+from hydrostat.drawing.line_drawing import DrawnSolid
 from hydrostat.robot import Robot
 
 _COARSE = 160
@@ -26,42 +26,36 @@ class Sight:
     """The near and the far side of a body.
 
     Attributes:
-        view: from where.
         front: depths of the near side.
         back: of the far side, as seen from there: x and depth change their sign.
     """
 
-    view: View
     front: DepthBuffer
     back: DepthBuffer
 
     @classmethod
-    def of(cls, piece: Piece, view: View) -> Self:
+    def of(cls, body: DrawnSolid, camera: Camera) -> Self:
         """Look at a body."""
-        seen = view.see(piece.vertices)[piece.triangles]
-        lights = np.ones(seen.shape[:2])
+        seen = camera.see(body.vertices)[body.triangles]
+        nothing = np.empty((len(seen), 3, 0))
         turned = seen * np.array([1.0, 1.0, -1.0])
-        return cls(view, DepthBuffer.of(seen, lights, pixels=_COARSE), DepthBuffer.of(turned, lights, pixels=_COARSE))
+        return cls(*(DepthBuffer.of(corners, nothing, pixels=_COARSE) for corners in (seen, turned)))
 
     def in_front(self, seen: Float[np.ndarray, "points 3"]) -> Bool[np.ndarray, " points"]:
         """Whether points, as seen, lie in the near half of the body or before it; so do those beside it."""
-        before = -self.front.behind(seen, 0)
-        after = -self.back.behind(seen * np.array([1.0, 1.0, -1.0]), 0)
+        before = -self.front.behind(seen)
+        after = -self.back.behind(seen * np.array([1.0, 1.0, -1.0]))
         return ~((before > 0) & (before > after))
 
 
-def best_views(robot: Robot, piece: Piece) -> tuple[View, ...]:
+def best_views(robot: Robot, body: DrawnSolid) -> tuple[Camera, ...]:
     """Three views: from where most of the cables lie in front, and then from where most of the others do."""
     cables = [1e3 * np.array(cable.points)[1:] for cable in robot.cables]
     points = np.concatenate([(way[:-1] + way[1:]) / 2 for way in cables if len(way) > 1] or [np.zeros((1, 3))])
-    views = [View.at(float(turn), rise) for rise in _RISES for turn in _TURNS]
-    fronts = []
-    for view in views:
-        sight = Sight.of(piece, view)
-        fronts.append(sight.in_front(view.see(points)))
-    seen = np.array(fronts, dtype=float)
+    views = [Camera.at(float(turn), rise) for rise in _RISES for turn in _TURNS]
+    seen = np.array([Sight.of(body, view).in_front(view.see(points)) for view in views], dtype=float)
     # Of views that are as good, the one that shows most of the body, then the first.
-    areas = np.array([np.prod(np.ptp(view.see(piece.vertices)[:, :2], axis=0)) for view in views])
+    areas = np.array([np.prod(np.ptp(view.see(body.vertices)[:, :2], axis=0)) for view in views])
     chosen = [int(np.argmax(seen.mean(axis=1) + 0.4 * areas / areas.max()))]
     rest = seen
     for apart_counts in (0.1, 0.4):
@@ -72,6 +66,6 @@ def best_views(robot: Robot, piece: Piece) -> tuple[View, ...]:
     return tuple(views[index] for index in chosen)
 
 
-def _apart(views: list[View], one: View) -> Float[np.ndarray, " views"]:
+def _apart(views: list[Camera], one: Camera) -> Float[np.ndarray, " views"]:
     """How far views are from one of them: 0 for itself, 1 for a right angle, 2 for the opposite."""
     return np.array([1 - float(view.axes[2] @ one.axes[2]) for view in views])

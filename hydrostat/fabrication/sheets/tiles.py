@@ -1,14 +1,15 @@
 """`tiled_pdf`: a pattern at true scale on the paper of an office printer."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from importlib.resources import files
 
 import typst
 
 from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, Shape
-from hydrostat.fabrication.patterns.svg_writer import COLOURS, shape_element
+from hydrostat.fabrication.patterns.svg_writer import COLOURS, shapes_svg
 from hydrostat.fabrication.sheets.legible import legible
 from hydrostat.fabrication.sheets.tile_grid import FOOTER, MARGIN, OVERLAP, PAPERS, Tile, TileGrid, tile_grid
 
@@ -21,24 +22,8 @@ _NAMED = 12
 _BAR = 100.0
 """Length of the bar that shows whether a page was printed at its true scale [mm]."""
 
-_STYLE = """
-#set text(font: "Libertinus Serif", size: 9pt, lang: "en")
-#let at(x, y, body) = place(top + left, dx: x * 1mm, dy: y * 1mm, body)
-#let stroke_at(x, y, dx, dy, width: 0.2mm, paint: black, dash: none) = at(x, y, line(
-  end: (dx * 1mm, dy * 1mm), stroke: (thickness: width, paint: paint, dash: dash),
-))
-#let cross(x, y) = { stroke_at(x - 4, y, 8, 0); stroke_at(x, y - 4, 0, 8); at(x - 1.5, y - 1.5, circle(
-  radius: 1.5mm, stroke: 0.2mm)) }
-#let bar(x, y) = {
-  stroke_at(x, y, 100, 0, width: 0.3mm)
-  for i in range(11) {
-    let tall = if calc.rem(i, 5) == 0 { 3 } else { 1.5 }
-    // the bar is 100 mm from outer edge to outer edge
-    stroke_at(x + 0.15 + 9.97 * i, y - tall, 0, tall, width: 0.3mm)
-  }
-  at(x, y + 1, text(size: 7pt)[This bar must measure 100 mm.])
-}
-"""
+_Box = tuple[float, float, float, float]
+_Widths = Mapping[Layer, float]
 
 
 def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
@@ -49,7 +34,7 @@ def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
     grid = tile_grid(pattern, paper)
     width, height = PAPERS[paper]
     pages = [
-        _STYLE,
+        (files("hydrostat.fabrication.sheets") / "tiles.typ").read_text(encoding="utf-8"),
         f"#set document(title: {_text(f'{legible(pattern.name)} - pattern')}, date: none)",
         f"#set page(width: {width}mm, height: {height}mm, margin: 0mm)",
         _overview(pattern, grid, paper),
@@ -65,8 +50,8 @@ def _compile(source: str) -> bytes:
 
 def _page(pattern: Pattern, grid: TileGrid, tile: Tile) -> str:
     """A tile with its frame, its crosses, the names of its neighbours, and its foot."""
-    view = f"{tile.left:.6f} {tile.top:.6f} {grid.width:.6f} {grid.height:.6f}"
-    drawing = _svg(tile.shapes, pattern.height, view, grid.width, grid.height, _WIDTHS)
+    size = grid.width, grid.height
+    drawing = _image(pattern, tile.shapes, (tile.left, tile.top, *size), size, _WIDTHS)
     right, bottom = MARGIN + grid.width, MARGIN + grid.height
     inset = OVERLAP / 2
     lines = [
@@ -159,11 +144,10 @@ def _map(pattern: Pattern, grid: TileGrid, y: float) -> list[str]:
     whole_x = grid.columns * (grid.width - OVERLAP) + OVERLAP
     whole_y = grid.rows * (grid.height - OVERLAP) + OVERLAP
     scale = min(grid.width / whole_x, room_y / whole_y)
-    left, top = grid.tiles[0].left, grid.tiles[0].top
-    view = f"{left:.6f} {top:.6f} {whole_x:.6f} {whole_y:.6f}"
     shapes = [*(shape for panel in pattern.panels for shape in panel.shapes), *pattern.shapes]
     widths = dict.fromkeys(Layer, 0.15 / scale)
-    drawing = _svg(shapes, pattern.height, view, scale * whole_x, scale * whole_y, widths)
+    window = grid.tiles[0].left, grid.tiles[0].top, whole_x, whole_y
+    drawing = _image(pattern, shapes, window, (scale * whole_x, scale * whole_y), widths)
     lines = [f"#at({MARGIN}, {y}, {drawing})"]
     step_x, step_y = scale * (grid.width - OVERLAP), scale * (grid.height - OVERLAP)
     half = scale * OVERLAP / 2
@@ -179,23 +163,11 @@ def _map(pattern: Pattern, grid: TileGrid, y: float) -> list[str]:
     return lines
 
 
-def _svg(
-    shapes: Iterable[Shape], height: float, view: str, width: float, tall: float, widths: dict[Layer, float]
-) -> str:
-    """A picture of shapes, for typst: a window [mm] of the sheet at a size [mm]."""
-    shapes = tuple(shapes)
-    groups = []
-    for layer in Layer:
-        drawn = "".join(shape_element(shape, height) for shape in shapes if shape.layer is layer)
-        groups.append(
-            f'<g fill="none" stroke="{COLOURS[layer]}" stroke-width="{widths[layer]:.4f}" stroke-linecap="round"'
-            f' stroke-linejoin="round">{drawn}</g>'
-        )
-    picture = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6f}mm" height="{tall:.6f}mm" viewBox="{view}">'
-        f"{''.join(groups)}</svg>"
-    )
-    return f'image(bytes({_text(picture)}), format: "svg", width: {width:.6f}mm, height: {tall:.6f}mm)'
+def _image(pattern: Pattern, shapes: Iterable[Shape], window: _Box, size: tuple[float, float], widths: _Widths) -> str:
+    """A picture of shapes, for typst: a window of the sheet (left, top, width, height) at a size [mm]."""
+    view = " ".join(f"{value:.6f}" for value in window)
+    picture = shapes_svg(shapes, pattern.height, view, size, widths)
+    return f'image(bytes({_text(picture)}), format: "svg", width: {size[0]:.6f}mm, height: {size[1]:.6f}mm)'
 
 
 def _text(text: str) -> str:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from hydrostat.plot.palette import WINCHES
+from hydrostat.drawing.palette import WINCHES
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.run import Mark, Run
 from hydrostat.units import counted

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.plot.palette import winch_colours
+from hydrostat.drawing.palette import winch_colours
 from hydrostat.robot import Body, Robot
 
 EDGE = 200.0
@@ -29,7 +29,7 @@ class BodySketch:
 
     def network(self, robot: Robot) -> str:
         """The picture of a network in this body."""
-        colours = winch_colours(robot)
+        colours = winch_colours(robot.winches)
         parts = [f'<path d="{self._outline}" class="sketch-body"/>']
         for cable in robot.cables:
             places = self._places(np.array(cable.points))

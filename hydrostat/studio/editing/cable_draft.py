@@ -5,8 +5,8 @@ from typing import Self
 
 import numpy as np
 
+from hydrostat.drawing.palette import INK, MUTED, WINCHES, winch_colours
 from hydrostat.errors import InputError
-from hydrostat.plot.palette import INK, MUTED, WINCHES, winch_colours
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.editing.mirror import Mirror
 from hydrostat.studio.editing.place import add_cable, add_winch
@@ -101,7 +101,7 @@ def _axis(robot: Robot, mirror: Mirror) -> Polyline:
 def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
     colour: str = WINCHES[len(robot.winches) % len(WINCHES)]
     if draft.winch is not None:
-        colour = winch_colours(robot).get(draft.winch, INK)
+        colour = winch_colours(robot.winches).get(draft.winch, INK)
     start, *rest = draft.points
     things: list[Thing] = []
     if rest:

@@ -7,10 +7,10 @@ from tempfile import TemporaryDirectory
 
 from matplotlib.figure import Figure
 
+from hydrostat.drawing.palette import PAPER
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import ReachedPose, solve_ik
 from hydrostat.plot import draw_network, draw_portrait, draw_reached, draw_rest, save_png
-from hydrostat.plot.palette import PAPER
 from hydrostat.plot.picture_file import drawing
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation

@@ -7,7 +7,7 @@ from nicegui import events, ui
 
 from hydrostat.control import Timeline
 from hydrostat.control.player import Player
-from hydrostat.plot.palette import winch_colours
+from hydrostat.drawing.palette import winch_colours
 from hydrostat.robot import Robot
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
@@ -71,7 +71,7 @@ class TimelineView(ui.element, component="static/timeline.js"):
 
     def show_keys(self, robot: Robot, timeline: Timeline, chosen: int | None) -> None:
         """Show the keys of a timeline, one of them selected."""
-        colours = winch_colours(robot)
+        colours = winch_colours(robot.winches)
         keys = [{"time": key.time, "values": _shares(robot, key.contractions)} for key in timeline.keys]
         self._set(
             seconds=timeline.seconds, smooth=timeline.smooth, keys=keys, chosen=chosen, colours=[*colours.values()]

@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from hydrostat.plot import palette
+from hydrostat.drawing import palette
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import Page
 from hydrostat.studio.view.colouring import Colouring

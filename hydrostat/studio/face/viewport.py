@@ -7,7 +7,7 @@ from typing import Literal
 from nicegui import ui
 from nicegui.dependencies import register_esm
 
-from hydrostat.plot import palette
+from hydrostat.drawing import palette
 
 STATIC = Path(__file__).parent / "static"
 MODULES = STATIC / "view"

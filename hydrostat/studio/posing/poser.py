@@ -6,9 +6,9 @@ from threading import RLock
 
 import numpy as np
 
+from hydrostat.drawing.palette import GHOST
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import locate
-from hydrostat.plot.palette import GHOST
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document

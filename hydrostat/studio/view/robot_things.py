@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.plot.palette import INK, winch_colours
+from hydrostat.drawing.palette import INK, winch_colours
 from hydrostat.robot import Cable, Mount, Point, Robot
 from hydrostat.studio.view.things import Dot, Look, Polyline, RobotShape, Stroke, Thing
 
@@ -33,7 +33,7 @@ def robot_things(
         chosen: keys that are selected.
         vias: whether each point of a cable is a dot that can be taken hold of; else only its stopper is shown.
     """
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     things: list[Thing] = []
     for index, pin in enumerate(robot.pins):
         middle = pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())
@@ -145,7 +145,7 @@ def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
         shape: what they do.
         limit: the most that a cable bears [N].
     """
-    colours = winch_colours(robot)
+    colours = winch_colours(robot.winches)
     largest = dict.fromkeys(colours, 0.0)
     for cable, tension in zip(robot.cables, np.asarray(shape.tensions).tolist(), strict=True):
         largest[cable.winch] = max(largest[cable.winch], tension)

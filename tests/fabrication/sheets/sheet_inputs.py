@@ -14,7 +14,7 @@ from hydrostat.fabrication.moulds.mould import Mould, MouldSurface
 from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.self_check import Check
-from hydrostat.fabrication.sheets.cable_map import body_piece
+from hydrostat.fabrication.sheets.cable_map import body_solid
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
@@ -124,7 +124,7 @@ def foam(*, name: str = "Sam", winches: int = 2, cables: int = 2, silicone: bool
 
 def mould(robot: Robot, *, silicone: bool = False) -> Mould:
     """Two halves of a box, parted along z; what looks down along y is said to hold."""
-    piece = body_piece(robot)
+    piece = body_solid(robot)
     one, two, three = (piece.vertices[corner] for corner in piece.triangles.T)
     held = np.cross(two - one, three - one)[:, 1] < 0
     half = Box((120, 100, 40)) - Box((100, 80, 30)).moved(10, 10, 10)

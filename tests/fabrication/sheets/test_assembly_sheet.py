@@ -12,8 +12,7 @@ from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
-from hydrostat.fabrication.sheets.legible import legible, typeset
-from hydrostat.fabrication.sheets.minds import minds, shortened
+from hydrostat.fabrication.sheets.legible import legible, minds, shortened, typeset
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import MATERIALS, Mount
 

@@ -2,7 +2,7 @@
 
 from nicegui import events, ui
 
-from hydrostat.plot.palette import ERROR, winch_colours
+from hydrostat.drawing.palette import ERROR, winch_colours
 from hydrostat.robot import Robot, Winch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import Knob
@@ -45,7 +45,7 @@ def drive_panel(page: Page) -> None:
             return
         shown[:] = [robot]
         box.clear()
-        colours = winch_colours(robot)
+        colours = winch_colours(robot.winches)
         with box:
             size = 68 if len(robot.winches) <= MANY else 50
             cards[:] = [_Card(page, winch, colours[winch.name], size) for winch in robot.winches]

@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from hydrostat.plot.palette import SEAM
+from hydrostat.drawing.palette import SEAM
 from hydrostat.robot import MATERIALS, Source
 from hydrostat.robot.gravity import DIRECTIONS, direction_of
 from hydrostat.studio.bell import Topic

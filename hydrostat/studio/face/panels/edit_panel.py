@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from hydrostat.plot.palette import winch_colours
+from hydrostat.drawing.palette import winch_colours
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.editor import KEYS, Tool
@@ -175,7 +175,7 @@ def _part_words(robot: Robot, key: str) -> tuple[str, str]:
 
 def _colour(robot: Robot, key: str) -> str:
     """That of its winch; the quiet one for all else."""
-    part, colours = find_part(robot, key), winch_colours(robot)
+    part, colours = find_part(robot, key), winch_colours(robot.winches)
     if part is not None and part.kind is Kind.WINCH:
         return _seen(colours[robot.winches[part.index].name])
     if part is not None and part.kind is Kind.CABLE:

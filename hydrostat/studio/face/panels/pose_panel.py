@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from hydrostat.plot.palette import ERROR
+from hydrostat.drawing.palette import ERROR
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import Page

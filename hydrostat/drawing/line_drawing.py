@@ -1,24 +1,16 @@
-"""`line_drawing`: solids as lines without what is hidden, with light grey on sides that are turned from the lamp."""
+"""`line_drawing`: solids as lines, what is hidden removed, with light grey on sides turned from the lamp."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Self
 
-import contourpy
 import numpy as np
 import shapely
 from jaxtyping import Bool, Float, Int
-from manifold3d import Manifold
-from scipy.ndimage import distance_transform_edt, gaussian_filter
 
-from hydrostat.fabrication.sheets.contours import Facets, Segments
-from hydrostat.fabrication.sheets.depth import DepthBuffer
-from hydrostat.fabrication.sheets.view import View
-from hydrostat.fabrication.solids.printed import triangles_of
-
-Way = Float[np.ndarray, "_ 2"]
-"""A line on the drawing: to the right, up [mm]."""
+from hydrostat.drawing.camera import Camera
+from hydrostat.drawing.creases import Facets, Segments
+from hydrostat.drawing.depth import DepthBuffer, Polyline
 
 _LAMP = np.array([-0.40, 0.75, 0.55]) / np.linalg.norm([-0.40, 0.75, 0.55])
 """Where the light comes from as seen: from above, from the left, from behind the shoulder."""
@@ -29,9 +21,12 @@ _SHADES = ((0.6, 0.93), (0.05, 0.84))
 _JUMP = 0.02
 """A line is thick where what lies behind it is so much deeper, as a share of the picture."""
 
+_SMOOTH = 0.6
+"""How far rings may pass beside what they enclose [pixels]."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Piece:
+class DrawnSolid:
     """One solid of a drawing.
 
     Attributes:
@@ -44,33 +39,27 @@ class Piece:
     triangles: Int[np.ndarray, "triangles 3"]
     sharp: float = 30.0
 
-    @classmethod
-    def of(cls, solid: Manifold, *, shift: Sequence[float] = (0.0, 0.0, 0.0)) -> Self:
-        """A piece of a solid, moved by a shift [mm]."""
-        vertices, triangles = triangles_of(solid)
-        return cls(vertices=vertices + np.array(shift, dtype=float), triangles=triangles)
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LineDrawing:
     """Lines and tones as they are seen, in true size [mm].
 
     Attributes:
-        view: from where.
+        camera: from where.
         outlines: lines before something deeper, or before nothing: to be drawn thick.
         lines: what else is seen, to be drawn thin.
         tones: how bright, from 0 for black to 1, and the rings round it by the even-odd rule; later ones lie on top.
         buffer: of depths, from which it was drawn.
-        piece_of: index of the piece of each triangle of the buffer.
-        source: its index in that piece.
+        solid_of: index of the solid of each triangle of the buffer.
+        source: its index in that solid.
     """
 
-    view: View
-    outlines: tuple[Way, ...]
-    lines: tuple[Way, ...]
-    tones: tuple[tuple[float, tuple[Way, ...]], ...]
+    camera: Camera
+    outlines: tuple[Polyline, ...]
+    lines: tuple[Polyline, ...]
+    tones: tuple[tuple[float, tuple[Polyline, ...]], ...]
     buffer: DepthBuffer = field(repr=False)
-    piece_of: Int[np.ndarray, " triangles"] = field(repr=False)
+    solid_of: Int[np.ndarray, " triangles"] = field(repr=False)
     source: Int[np.ndarray, " triangles"] = field(repr=False)
 
     @cached_property
@@ -79,15 +68,17 @@ class LineDrawing:
         ways = np.concatenate([*self.outlines, *self.lines])
         return np.array([ways.min(axis=0), ways.max(axis=0)])
 
-    def seen_of(self, way: Float[np.ndarray, "points 3"]) -> tuple[Way, ...]:
+    def seen_of(self, way: Float[np.ndarray, "points 3"]) -> tuple[Polyline, ...]:
         """The parts of a line in space [mm] that nothing hides."""
-        seen = self.view.see(way)
+        seen = self.camera.see(way)
         ahead, behind = _visible(np.stack([seen[:-1], seen[1:]], axis=1), self.buffer)
         return (*ahead, *behind)
 
-    def spot_on(self, piece: int) -> Float[np.ndarray, " 2"] | None:
-        """A place well inside what is seen of a piece [mm]; None if all of it is hidden."""
-        mask = (self.buffer.owner >= 0) & (self.piece_of[self.buffer.owner] == piece)
+    def spot_on(self, solid: int) -> Float[np.ndarray, " 2"] | None:
+        """A place well inside what is seen of a solid [mm]; None if all of it is hidden."""
+        from scipy.ndimage import distance_transform_edt
+
+        mask = (self.buffer.owner >= 0) & (self.solid_of[self.buffer.owner] == solid)
         if not mask.any():
             return None
         rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
@@ -97,41 +88,43 @@ class LineDrawing:
             [float(columns[0] + column - 1), float(rows[0] + row - 1)]
         )
 
-    def rings_of(self, piece: int, chosen: Bool[np.ndarray, " triangles"]) -> tuple[Way, ...]:
-        """Rings round what is seen of some triangles of a piece [mm]."""
-        wanted = (self.piece_of == piece) & chosen[np.minimum(self.source, len(chosen) - 1)]
+    def rings_of(self, solid: int, chosen: Bool[np.ndarray, " triangles"]) -> list[Polyline]:
+        """Rings round what is seen of some triangles of a solid [mm]."""
+        from scipy.ndimage import gaussian_filter
+
+        wanted = (self.solid_of == solid) & chosen[np.minimum(self.source, len(chosen) - 1)]
         mask = (self.buffer.owner >= 0) & wanted[self.buffer.owner]
-        return _rings(gaussian_filter(mask.astype(float), 1.0), 0.5, self.buffer)
+        return self.buffer.rings(gaussian_filter(mask.astype(float), 1.0), 0.5, tolerance=_SMOOTH)
 
 
-def line_drawing(pieces: Sequence[Piece], view: View, *, soft: float = 0.0, pixels: int = 1400) -> LineDrawing:
+def line_drawing(solids: Sequence[DrawnSolid], camera: Camera, *, soft: float = 0.0, pixels: int = 1400) -> LineDrawing:
     """Draw solids as they are seen, each edge and rim only as far as nothing hides it.
 
     Args:
-        pieces: what is drawn.
-        view: from where.
+        solids: what is drawn.
+        camera: from where.
         soft: over what share of the picture the light is blurred, for a body with dents.
         pixels: along the longer side, to which it is known what is hidden; ten for a millimetre of paper are enough.
     """
-    facets = [Facets.of(piece.vertices, piece.triangles, sharp=piece.sharp) for piece in pieces]
-    spots = np.concatenate([view.see(item.vertices)[item.triangles] for item in facets])
-    lights = np.concatenate([item.corners @ (view.axes.T @ _LAMP) for item in facets])
-    buffer = DepthBuffer.of(spots, lights, pixels=pixels)
-    segments = np.concatenate([part for item in facets for part in (item.sharp_edges(), item.rims(view.axes[2]))])
-    seen = view.see(segments.reshape(-1, 3)).reshape(-1, 2, 3)
+    facets = [Facets.of(solid.vertices, solid.triangles, sharp=solid.sharp) for solid in solids]
+    spots = np.concatenate([camera.see(item.vertices)[item.triangles] for item in facets])
+    lights = np.concatenate([item.corners @ (camera.axes.T @ _LAMP) for item in facets])
+    buffer = DepthBuffer.of(spots, lights[..., None], pixels=pixels)
+    segments = np.concatenate([part for item in facets for part in (item.sharp_edges(), item.rims(camera.axes[2]))])
+    seen = camera.see(segments.reshape(-1, 3)).reshape(-1, 2, 3)
     outlines, lines = _visible(seen, buffer)
     return LineDrawing(
-        view=view,
+        camera=camera,
         outlines=outlines,
         lines=lines,
         tones=_tones(buffer, soft),
         buffer=buffer,
-        piece_of=np.repeat(np.arange(len(facets)), [len(item.triangles) for item in facets]),
+        solid_of=np.repeat(np.arange(len(facets)), [len(item.triangles) for item in facets]),
         source=np.concatenate([item.source for item in facets]),
     )
 
 
-def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Way, ...], tuple[Way, ...]]:
+def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Polyline, ...], tuple[Polyline, ...]]:
     """The parts of lines that are seen, those with a jump of depth behind them first."""
     lengths = np.linalg.norm(segments[:, 1, :2] - segments[:, 0, :2], axis=1)
     steps = np.maximum(np.ceil(2 * lengths / buffer.pixel).astype(int), 1)
@@ -151,7 +144,7 @@ def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Way, ...], 
 
 def _joined(
     parts: Float[np.ndarray, "parts 2 2"], owner: Int[np.ndarray, " parts"], chosen: np.ndarray, least: float
-) -> tuple[Way, ...]:
+) -> tuple[Polyline, ...]:
     """Chosen small steps as long lines, without those shorter than `least` [mm]."""
     places = np.flatnonzero(chosen)
     if not len(places):
@@ -167,21 +160,13 @@ def _joined(
     return tuple(shapely.get_coordinates(line) for line in whole if line.length >= least)
 
 
-def _tones(buffer: DepthBuffer, soft: float) -> tuple[tuple[float, tuple[Way, ...]], ...]:
+def _tones(buffer: DepthBuffer, soft: float) -> tuple[tuple[float, tuple[Polyline, ...]], ...]:
     """Rings round what is darker than each shade."""
-    dark = 1.0 - buffer.light
+    from scipy.ndimage import gaussian_filter
+
+    dark = np.where(buffer.owner >= 0, 1.0 - buffer.shown[..., 0], 0.0)
     if soft:
         solid, reach = np.isfinite(buffer.depth), soft * max(buffer.depth.shape)
         weight = np.maximum(gaussian_filter(solid.astype(float), reach, truncate=2.5), 1e-9)
         dark = np.where(solid, gaussian_filter(np.where(solid, dark, 0.0), reach, truncate=2.5) / weight, 0.0)
-    return tuple((grey, _rings(dark, 1.0 - light, buffer)) for light, grey in _SHADES)
-
-
-def _rings(field: Float[np.ndarray, "rows columns"], level: float, buffer: DepthBuffer) -> tuple[Way, ...]:
-    """Closed lines at a level of something known at each pixel [mm]."""
-    rings = []
-    for ring in contourpy.contour_generator(z=field, line_type=contourpy.LineType.Separate).lines(level):
-        smooth = shapely.get_coordinates(shapely.simplify(shapely.linestrings(np.asarray(ring)), 0.6))
-        if len(smooth) > 3:
-            rings.append(buffer.low + buffer.pixel * smooth)
-    return tuple(rings)
+    return tuple((grey, tuple(buffer.rings(dark, 1.0 - light, tolerance=_SMOOTH))) for light, grey in _SHADES)

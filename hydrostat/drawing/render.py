@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Vector
-from hydrostat.plot.camera import Spots
-from hydrostat.plot.palette import DARK, FELT, FELT_LIGHT, MESH, SEAM, STITCH, mix
-from hydrostat.plot.places import Place, Places
-from hydrostat.plot.raster import corner_normals, paint, rasterise, sky_shares
+from hydrostat.drawing.camera import Spots
+from hydrostat.drawing.creases import smooth_normals
+from hydrostat.drawing.depth import DepthBuffer, Polyline
+from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, MESH, SEAM, STITCH, channels, mix
+from hydrostat.drawing.shades import paint, sky_shares
 
 FINER = 2
 """Samples along each side of a pixel."""
@@ -28,42 +28,27 @@ class Render:
 
     Attributes:
         colours: red, green, blue and cover of each pixel, the lowest row first, (height, width, 4), 0 to 1.
-        depth: of the surface towards the eye [mm]; minus infinity where there is none, (height, width).
-        low: lower left corner of the image [mm].
-        pixel: side of a pixel [mm].
+        buffer: how near to the eye the surface is at each pixel.
     """
 
     colours: Float[np.ndarray, "height width 4"]
-    depth: Float[np.ndarray, "height width"]
-    low: Place
-    pixel: float
+    buffer: DepthBuffer
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
         """Left, right, lower and upper end of the image [mm]."""
-        height, width = self.depth.shape
-        low = self.low
-        return float(low[0]), float(low[0] + width * self.pixel), float(low[1]), float(low[1] + height * self.pixel)
+        rows, columns = self.buffer.depth.shape
+        left, low = self.buffer.low - self.buffer.pixel / 2
+        right, high = left + columns * self.buffer.pixel, low + rows * self.buffer.pixel
+        return float(left), float(right), float(low), float(high)
 
     def covers(self, spots: Spots) -> Vector:
         """How far points, as the camera sees them [mm], lie behind the surface [mm]; 0 in front of it or beside it."""
-        height, width = self.depth.shape
-        columns, rows = np.floor((spots[:, :2] - self.low) / self.pixel).astype(int).T
-        inside = (columns >= 0) & (rows >= 0) & (columns < width) & (rows < height)
-        surface = np.full(len(spots), -np.inf)
-        surface[inside] = self.depth[rows[inside], columns[inside]]
-        return np.maximum(surface - spots[:, 2], 0.0)
+        return np.maximum(-self.buffer.behind(spots), 0.0)
 
-    def rings(self) -> list[Places]:
+    def rings(self) -> list[Polyline]:
         """The silhouette as rings [mm], the widest first."""
-        from contourpy import contour_generator
-
-        cover = np.pad(self.colours[..., 3], 1)
-        lines = contour_generator(z=cover).lines(0.5)
-        smooth = [
-            shapely.simplify(shapely.LineString(np.asarray(line, dtype=float)), 0.15) for line in lines if len(line) > 4
-        ]
-        rings = [self.low + (shapely.get_coordinates(line)[:-1] - 0.5) * self.pixel for line in smooth]
+        rings = [ring[:-1] for ring in self.buffer.rings(self.colours[..., 3], 0.5, tolerance=0.15)]
         return sorted(rings, key=lambda ring: float(np.prod(np.ptp(ring, axis=0))), reverse=True)
 
 
@@ -95,34 +80,42 @@ def render(
     fine = pixel / FINER
     # On a lattice of its own, so that pixels and hatching of what rests stay while other parts move.
     steps = np.floor(spots[facets].min(axis=(0, 1))[:2] / pixel) - 2
-    low = steps * pixel
     width, height = (int(np.ceil(side / pixel)) + 5 for side in np.ptp(spots[facets], axis=(0, 1))[:2])
-    origin = np.array([low[0], low[1], 0.0])
-    corners = ((spots - origin) / fine)[facets]
-    held = np.zeros(len(spots)) if held is None else held
-    normals = facet_normals(corners, facets) if shaded else np.empty((*facets.shape, 0))
-    values = np.concatenate([normals, held[facets][..., None]], axis=2)
-    depth, shown, rim = rasterise(corners, values, FINER * width, FINER * height)
-    middle = depth[FINER // 2 :: FINER, FINER // 2 :: FINER] * fine
+    corners = spots[facets]
+    values = _corner_values(corners, facets, held, fine if lines else 0.0) if shaded else np.empty((*facets.shape, 0))
+    samples = DepthBuffer.within(
+        corners, values, steps * pixel + fine / 2, fine, (FINER * height, FINER * width), inside=False
+    )
+    buffer = samples.coarser(FINER)
     if not shaded:
-        cover = np.isfinite(depth).reshape(height, FINER, width, FINER).mean(axis=(1, 3))
-        return Render(np.stack([cover] * 4, axis=2), middle, low, pixel)
-    size = float(np.ptp(spots[facets], axis=(0, 1)).max())
-    sky = _smooth(sky_shares(middle / pixel, _unit(shown[::FINER, ::FINER, :3]), 0.11 * size / pixel))
+        cover = np.isfinite(samples.depth).reshape(height, FINER, width, FINER).mean(axis=(1, 3))
+        return Render(np.stack([cover] * 4, axis=2), buffer)
+    size = float(np.ptp(corners, axis=(0, 1)).max())
+    sky = _smooth(sky_shares(buffer.depth / pixel, _unit(buffer.shown[..., :3]), 0.11 * size / pixel))
     sky_way = (0.0, 1.0, 0.0) if up is None else up
     look = np.array([FINER, point / fine, 0.012 * size / fine, sky_way[1], sky_way[2], FINER * (steps[0] - steps[1])])
-    inks = np.array([_hex(mix(DARK, SEAM, 0.25)), _hex(MESH), _hex(mix(SEAM, "#ffffff", pale))])
+    inks = np.array([_shares(mix(DARK, SEAM, 0.25)), _shares(MESH), _shares(mix(SEAM, "#ffffff", pale))])
     shares = np.array([1.0, 0.5 * lines, 0.9])
-    return Render(paint(depth, shown, rim, sky, look, _table(pale), inks, shares), middle, low, pixel)
+    return Render(paint(samples.depth / fine, samples.shown, sky, look, _table(pale), inks, shares), buffer)
 
 
-def facet_normals(
-    corners: Float[np.ndarray, "facets 3 3"], facets: Int[np.ndarray, "facets 3"]
-) -> Float[np.ndarray, "facets 3 3"]:
-    """Unit normal at each corner of each facet: smooth, but for creases."""
-    order = np.argsort(facets.ravel(), kind="stable")
-    starts = np.concatenate([[0], np.cumsum(np.bincount(facets.ravel()))])
-    return corner_normals(np.ascontiguousarray(corners), facets, starts, order // 3, float(np.cos(np.radians(CREASE))))
+def _corner_values(
+    corners: Float[np.ndarray, "facets 3 3"], facets: Int[np.ndarray, "facets 3"], held: Vector | None, fine: float
+) -> np.ndarray:
+    """What `paint` must know at each corner, (facets, 3, 4 or 7): normal, held or not, distances to the sides.
+
+    The latter only with the side of a sample, `fine` [mm]; in samples.
+    """
+    normals = smooth_normals(corners, facets, sharp=CREASE)
+    grip = np.zeros(facets.shape) if held is None else held[facets]
+    parts = [normals, grip[..., None]]
+    if fine:
+        flat = corners[:, :, :2]
+        (ax, ay), (bx, by) = (flat[:, 1] - flat[:, 0]).T, (flat[:, 2] - flat[:, 0]).T
+        sides = np.linalg.norm(flat[:, [2, 0, 1]] - flat[:, [1, 2, 0]], axis=2)
+        heights = (ax * by - ay * bx)[:, None] / np.maximum(sides, 1e-12) / fine
+        parts.append(heights[:, :, None] * np.eye(3))
+    return np.concatenate(parts, axis=2).astype(np.float32)
 
 
 def _unit(vectors: Float[np.ndarray, "height width 3"]) -> np.ndarray:
@@ -132,7 +125,7 @@ def _unit(vectors: Float[np.ndarray, "height width 3"]) -> np.ndarray:
 def _table(pale: float) -> Float[np.ndarray, "256 3"]:
     """Colours of felt from deep shade to full light."""
     stops = [stop for stop, _ in RAMP]
-    colours = np.array([_hex(mix(colour, "#ffffff", pale)) for _, colour in RAMP])
+    colours = np.array([_shares(mix(colour, "#ffffff", pale)) for _, colour in RAMP])
     return np.column_stack([np.interp(np.linspace(0, 1, 256), stops, colours[:, channel]) for channel in range(3)])
 
 
@@ -146,5 +139,6 @@ def _smooth(image: np.ndarray) -> np.ndarray:
     return image
 
 
-def _hex(colour: str) -> np.ndarray:
-    return np.array([int(colour[start : start + 2], 16) / 255 for start in (1, 3, 5)])
+def _shares(colour: str) -> np.ndarray:
+    """Red, green and blue of a colour, 0 to 1."""
+    return np.array(channels(colour)) / 255

@@ -1,4 +1,4 @@
-"""The lines of a solid that a draughtsman draws: sharp edges, and the rims of round sides."""
+"""The lines of a solid that a draughtsman draws: sharp edges (creases), and the rims of round sides (silhouettes)."""
 
 from dataclasses import dataclass
 from typing import Self, no_type_check
@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from numba import njit
 
+from hydrostat.geometry.healing.sides import sides_of
 from hydrostat.kernel import KERNEL
 
 Segments = Float[np.ndarray, "segments 2 3"]
@@ -41,34 +42,29 @@ class Facets:
         scale = max(float(np.ptp(vertices, axis=0).max()), 1e-12)
         _, kept, names = np.unique(np.round(vertices / scale, 9), axis=0, return_index=True, return_inverse=True)
         vertices, triangles = vertices[kept], names.reshape(-1)[triangles]
-        one, two, three = (vertices[corner] for corner in triangles.T)
-        crosses = np.cross(two - one, three - one)
-        areas = np.linalg.norm(crosses, axis=1)
+        crosses, areas = _crosses(vertices[triangles])
         thick = areas > 1e-12 * scale**2
         triangles, normals = triangles[thick], crosses[thick] / areas[thick, None]
-        sharpest = float(np.cos(np.radians(sharp)))
-        corners = smooth_normals(vertices, triangles, normals, *_stars(len(vertices), triangles), sharpest)
+        angles = corner_angles(vertices, triangles)
         return cls(
             vertices=vertices,
             triangles=triangles,
             normals=normals,
-            corners=corners,
-            sharpest=sharpest,
+            corners=_mean_normals(triangles, normals, angles, sharp),
+            sharpest=float(np.cos(np.radians(sharp))),
             source=np.flatnonzero(thick),
         )
 
     def sharp_edges(self) -> Segments:
         """Edges where sides meet at an angle, and those with one side only."""
-        sides = np.sort(self.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        owners = np.repeat(np.arange(len(self.triangles)), 3)
-        order = np.lexsort((owners, sides[:, 1], sides[:, 0]))
-        sides, owners = sides[order], owners[order]
-        starts = np.flatnonzero(np.r_[True, (np.diff(sides, axis=0) != 0).any(axis=1)])
-        counts = np.diff(np.r_[starts, len(sides)])
-        paired = starts[counts == 2]
-        cosines = np.einsum("ij,ij->i", self.normals[owners[paired]], self.normals[owners[paired + 1]])
-        chosen = np.sort(np.r_[starts[counts != 2], paired[cosines < self.sharpest]])
-        return self.vertices[sides[chosen]]
+        sides = sides_of(self.triangles)
+        owners = np.argsort(sides.of.ravel(), kind="stable") // 3
+        paired = sides.counts == 2
+        first = (np.cumsum(sides.counts) - sides.counts)[paired]
+        cosines = np.einsum("ij,ij->i", self.normals[owners[first]], self.normals[owners[first + 1]])
+        chosen = ~paired
+        chosen[paired] = cosines < self.sharpest
+        return self.vertices[sides.ends[chosen]]
 
     def rims(self, near: Float[np.ndarray, " 3"]) -> Segments:
         """Where round sides turn away from an eye in the direction `near` (Hertzmann and Zorin, 2000)."""
@@ -86,17 +82,49 @@ class Facets:
         return np.stack(ends, axis=1)
 
 
-def _stars(count: int, triangles: Int[np.ndarray, "triangles 3"]) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles round each vertex: where its list begins, and the lists."""
+def smooth_normals(
+    corners: Float[np.ndarray, "triangles 3 3"], triangles: Int[np.ndarray, "triangles 3"], *, sharp: float
+) -> Float[np.ndarray, "triangles 3 3"]:
+    """Unit normals at the corners of triangles, smooth but for edges that turn by more than `sharp` [degrees].
+
+    Each is the mean over the triangles about its vertex, weighted by area; 0 at a triangle without area.
+
+    Args:
+        corners: places of the corners of each triangle.
+        triangles: the vertices at these.
+        sharp: [degrees].
+    """
+    crosses, areas = _crosses(corners)
+    weights = np.repeat(areas[:, None], 3, axis=1)
+    return _mean_normals(triangles, crosses / np.maximum(areas, 1e-300)[:, None], weights, sharp)
+
+
+def _crosses(
+    corners: Float[np.ndarray, "triangles 3 3"],
+) -> tuple[Float[np.ndarray, "triangles 3"], Float[np.ndarray, " triangles"]]:
+    """Vectors across triangles, and how long these are: twice the areas."""
+    one, two, three = (corners[:, corner] for corner in range(3))
+    crosses = np.cross(two - one, three - one)
+    return crosses, np.linalg.norm(crosses, axis=1)
+
+
+def _mean_normals(
+    triangles: Int[np.ndarray, "triangles 3"],
+    normals: Float[np.ndarray, "triangles 3"],
+    weights: Float[np.ndarray, "triangles 3"],
+    sharp: float,
+) -> Float[np.ndarray, "triangles 3 3"]:
+    """Mean of the normals about each corner, weighted, of those that are not beyond a sharp edge [degrees]."""
     order = np.argsort(triangles.reshape(-1), kind="stable")
-    return np.searchsorted(triangles.reshape(-1)[order], np.arange(count + 1)), order // 3
+    counts = np.bincount(triangles.reshape(-1))
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    return corner_normals(triangles, normals, weights, starts, order, float(np.cos(np.radians(sharp))))
 
 
 @njit(**KERNEL)
 @no_type_check
-def smooth_normals(vertices, triangles, normals, starts, stars, sharpest):
-    """Mean normal, weighted by angle, of the triangles round each corner that are not beyond a sharp edge."""
-    corners = np.empty((len(triangles), 3, 3))
+def corner_angles(vertices, triangles):
+    """Angle of each triangle at each of its corners [rad], (triangles, 3)."""
     angles = np.empty((len(triangles), 3))
     for index in range(len(triangles)):
         for corner in range(3):
@@ -105,16 +133,31 @@ def smooth_normals(vertices, triangles, normals, starts, stars, sharpest):
             two = vertices[triangles[index, (corner + 2) % 3]] - here
             cosine = (one @ two) / np.sqrt((one @ one) * (two @ two))
             angles[index, corner] = np.arccos(min(max(cosine, -1.0), 1.0))
+    return angles
+
+
+@njit(**KERNEL)
+@no_type_check
+def corner_normals(triangles, normals, weights, starts, stars, sharpest):
+    """Unit normal at each corner of each triangle, (triangles, 3, 3): the mean over those that are not beyond a crease.
+
+    Args:
+        triangles: their vertices, (triangles, 3).
+        normals: of each, (triangles, 3).
+        weights: of each at each of its corners, (triangles, 3).
+        starts: where the corners at each vertex begin in `stars`, (vertices + 1,).
+        stars: corners at vertex after vertex: three times the triangle, and which of its corners.
+        sharpest: cosine of the sharpest bend that is smooth.
+    """
+    corners = np.empty((len(triangles), 3, 3))
     for index in range(len(triangles)):
         for corner in range(3):
             vertex = triangles[index, corner]
             mean = np.zeros(3)
             for place in range(starts[vertex], starts[vertex + 1]):
-                other = stars[place]
+                other = stars[place] // 3
                 if normals[index] @ normals[other] > sharpest:
-                    for side in range(3):
-                        if triangles[other, side] == vertex:
-                            mean += angles[other, side] * normals[other]
+                    mean += weights[other, stars[place] % 3] * normals[other]
             length = np.sqrt(mean @ mean)
-            corners[index, corner] = mean / length if length > 1e-12 else normals[index]
+            corners[index, corner] = mean / length if length > 0 else normals[index]
     return corners

@@ -5,11 +5,13 @@ import pytest
 import shapely
 from builders import box_mesh
 
+from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter
+from hydrostat.drawing.creases import smooth_normals
+from hydrostat.drawing.depth import DepthBuffer
+from hydrostat.drawing.palette import FELT
+from hydrostat.drawing.render import render
+from hydrostat.drawing.shades import sky_shares
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.plot.camera import Camera, along_an_axis, three_quarter
-from hydrostat.plot.palette import FELT
-from hydrostat.plot.raster import corner_normals, rasterise, sky_shares
-from hydrostat.plot.render import render
 from hydrostat.plot.surface import Surface
 
 SIDES = (0.1, 0.05, 0.03)
@@ -24,22 +26,22 @@ def box() -> Mesh:
 def test_a_box_covers_its_projected_area(eye: list[float]) -> None:
     """Oracle: the area of a box seen along n is |n_x| b c + |n_y| c a + |n_z| a b."""
     mesh, camera = box(), Camera.towards(np.array(eye))
-    image = render(camera.see(mesh.nodes), mesh.boundary, pixel=0.25)
+    image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
     a, b, c = 1e3 * np.array(SIDES)
     exact = float(np.abs(camera.axes[2]) @ np.array([b * c, c * a, a * b]))
-    assert image.colours[..., 3].sum() * image.pixel**2 == pytest.approx(exact, rel=3e-3)
+    assert image.colours[..., 3].sum() * image.buffer.pixel**2 == pytest.approx(exact, rel=3e-3)
 
 
 @pytest.mark.parametrize("eye", EYES)
 def test_the_silhouette_of_a_box(eye: list[float]) -> None:
     """Oracle: a convex body's silhouette is the hull of its seen nodes; corners are cut by less than a pixel."""
     mesh, camera = box(), Camera.towards(np.array(eye))
-    spots = camera.see(mesh.nodes)
+    spots = camera.see(1e3 * mesh.nodes)
     image = render(spots, mesh.boundary, pixel=0.25, shaded=False)
     rings = image.rings()
     hull = shapely.MultiPoint(spots[:, :2]).convex_hull
     assert len(rings) == 1
-    assert shapely.hausdorff_distance(shapely.Polygon(rings[0]).exterior, hull.exterior) < image.pixel
+    assert shapely.hausdorff_distance(shapely.Polygon(rings[0]).exterior, hull.exterior) < image.buffer.pixel
 
 
 def test_a_hole_is_a_ring_of_its_own() -> None:
@@ -48,7 +50,7 @@ def test_a_hole_is_a_ring_of_its_own() -> None:
     middles = plate.nodes[plate.elements].mean(axis=1)
     away = (np.abs(middles[:, :2] - 0.015) < 0.005).all(axis=1)
     mesh = Mesh(plate.nodes, plate.elements[~away])
-    spots = Camera.towards(np.array([0.0, 0.0, 1.0])).see(mesh.nodes)
+    spots = Camera.towards(np.array([0.0, 0.0, 1.0])).see(1e3 * mesh.nodes)
     outer, inner = render(spots, mesh.boundary, pixel=0.1, shaded=False).rings()
     assert shapely.Polygon(outer).area == pytest.approx(900, rel=5e-3)
     assert shapely.Polygon(inner).area == pytest.approx(100, rel=1e-2)
@@ -66,21 +68,24 @@ def test_the_nearer_surface_wins(up: float, hidden: bool) -> None:
     """Oracle: the heights of the faces that look at the eye; seen from below, the large box hides the small one."""
     nodes, facets = two_boxes()
     camera = Camera.towards(np.array([0.0, 0.0, up]))
-    image = render(camera.see(nodes), facets, pixel=0.5)
-    levels, counts = np.unique(np.round(image.depth[np.isfinite(image.depth)], 3), return_counts=True)
+    image = render(camera.see(1e3 * nodes), facets, pixel=0.5)
+    levels, counts = np.unique(np.round(image.buffer.depth[np.isfinite(image.buffer.depth)], 3), return_counts=True)
     if hidden:
         assert levels.tolist() == [20.0, 80.0]
-        assert counts * image.pixel**2 == pytest.approx([100**2 - 40**2, 40**2], rel=0.02)
+        assert counts * image.buffer.pixel**2 == pytest.approx([100**2 - 40**2, 40**2], rel=0.02)
     else:
         assert levels.tolist() == [0.0]
 
 
 def test_the_order_of_facets_does_not_matter(rng: np.random.Generator) -> None:
     nodes, facets = two_boxes()
-    spots = Camera.towards(np.array([0.4, -0.7, 0.5])).see(nodes)
+    spots = Camera.towards(np.array([0.4, -0.7, 0.5])).see(1e3 * nodes)
     one, two = (render(spots, order, pixel=0.5) for order in (facets, rng.permutation(facets)))
     assert np.abs(one.colours - two.colours).max(axis=2).mean() < 1e-3
-    assert np.array_equal(one.depth, two.depth) or np.nanmax(np.abs(one.depth - two.depth)) < 1e-3
+    assert (
+        np.array_equal(one.buffer.depth, two.buffer.depth)
+        or np.nanmax(np.abs(one.buffer.depth - two.buffer.depth)) < 1e-3
+    )
 
 
 @pytest.fixture
@@ -94,7 +99,8 @@ def test_depth_is_that_of_the_plane(rng: np.random.Generator) -> None:
     a, b, c = corners[0]
     if (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0:
         corners = corners[:, [0, 2, 1]]
-    depth, shown, _ = rasterise(corners, corners.copy(), 40, 40)
+    buffer = DepthBuffer.within(corners, corners.copy(), np.full(2, 0.5), 1.0, (40, 40), inside=False)
+    depth, shown = buffer.depth, buffer.shown
     x, y = np.meshgrid(np.arange(40) + 0.5, np.arange(40) + 0.5)
     plane = np.linalg.solve(np.column_stack([corners[0, :, :2], np.ones(3)]), corners[0, :, 2])
     inside = shapely.contains_xy(shapely.Polygon(corners[0, :, :2]), x, y)
@@ -103,54 +109,63 @@ def test_depth_is_that_of_the_plane(rng: np.random.Generator) -> None:
     assert shown[inside][:, 0] == pytest.approx(x[inside], rel=1e-5)
 
 
-def test_facets_that_look_away_are_not_drawn() -> None:
+@pytest.mark.parametrize("inside", [False, True])
+def test_facets_that_look_away_are_seen_from_inside_only(inside: bool) -> None:
     corners = np.array([[[1.0, 1.0, 0.0], [1.0, 9.0, 0.0], [9.0, 1.0, 0.0]]])
-    depth, *_ = rasterise(corners, corners, 10, 10)
-    assert not np.isfinite(depth).any()
+    buffer = DepthBuffer.within(corners, corners, np.zeros(2), 1.0, (10, 10), inside=inside)
+    assert np.isfinite(buffer.depth).any() == inside
+    assert (buffer.owner >= 0).any() == inside
+
+
+def test_a_coarser_buffer_sees_the_same_places() -> None:
+    """Oracle: the buffer of larger pixels made at once, on a plane whose depth is that of its place."""
+    corners = np.array([[[0.0, 0.0, 0.0], [40.0, 0.0, 40.0], [0.0, 40.0, 0.0]]])
+    fine = DepthBuffer.within(corners, corners, np.full(2, 0.5), 1.0, (40, 40), inside=False)
+    coarse = fine.coarser(3)
+    direct = DepthBuffer.within(corners, corners, np.full(2, 1.5), 3.0, (13, 13), inside=False)
+    assert coarse.low == pytest.approx(direct.low)
+    assert coarse.depth[:13, :13] == pytest.approx(direct.depth)
 
 
 def test_a_point_is_covered_as_deep_as_it_lies() -> None:
     """Oracle: the front face of the box is at y = 0, its back face at 50 mm."""
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
-    image = render(camera.see(mesh.nodes), mesh.boundary, pixel=0.25)
+    image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
     points = np.array([[0.05, 0.01, 0.01], [0.05, 0.06, 0.01], [0.05, -0.01, 0.01], [0.05, 0.01, 0.2], [0.3, 0.01, 0]])
-    assert image.covers(camera.see(points)) == pytest.approx([10, 60, 0, 0, 0], abs=1e-3)
+    assert image.covers(camera.see(1e3 * points)) == pytest.approx([10, 60, 0, 0, 0], abs=1e-3)
 
 
 def test_a_run_is_cut_where_it_enters_the_body() -> None:
     """Oracle: a straight cable from 40 mm before the box to 40 mm inside it is covered beyond the corner x = 0."""
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
-    image = render(camera.see(mesh.nodes), mesh.boundary, pixel=0.25)
+    image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
     surface = Surface(image.rings(), (camera, np.array([7.0, 3.0]), image, 100.0))
     run = surface.run(np.array([[-0.04, 0.01, 0.015], [0.04, 0.01, 0.015]]))
     (free, none), (covered, fade) = run.parts
     assert none == 0
     assert 0 < fade < 1
     assert free[0] == pytest.approx([-33, 18])
-    assert free[-1] == pytest.approx([7, 18], abs=2 * image.pixel)
+    assert free[-1] == pytest.approx([7, 18], abs=2 * image.buffer.pixel)
     assert covered[-1] == pytest.approx([47, 18])
     assert run.fades.tolist() == [0.0, fade]
 
 
 def test_deeper_things_fade_more() -> None:
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
-    image = render(camera.see(mesh.nodes), mesh.boundary, pixel=0.25)
+    image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
     surface = Surface(image.rings(), (camera, np.zeros(2), image, 100.0))
     fades = surface.fades(np.array([[0.05, y, 0.015] for y in (-0.01, 0.005, 0.02, 0.045)]))
     assert (np.diff(fades) > 0).all()
 
 
-def normals_of(mesh: Mesh, least: float) -> np.ndarray:
-    facets = mesh.boundary
-    order = np.argsort(facets.ravel(), kind="stable")
-    starts = np.concatenate([[0], np.cumsum(np.bincount(facets.ravel()))])
-    return corner_normals(np.ascontiguousarray(mesh.nodes[facets]), facets, starts, order // 3, least)
+def normals_of(mesh: Mesh, sharp: float) -> np.ndarray:
+    return smooth_normals(mesh.nodes[mesh.boundary], mesh.boundary, sharp=sharp)
 
 
 def test_edges_of_a_box_stay_sharp_and_a_cylinder_is_round() -> None:
     """Oracle: the axis normals of the faces; the radius of a bent box (a ring) at its nodes."""
     mesh = box()
-    normals = normals_of(mesh, 0.7)
+    normals = normals_of(mesh, 45.0)
     corners = mesh.nodes[mesh.boundary]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     flat /= np.linalg.norm(flat, axis=1, keepdims=True)
@@ -165,9 +180,9 @@ def test_edges_of_a_box_stay_sharp_and_a_cylinder_is_round() -> None:
     keep = np.array([tuple(facet) in rows for facet in ring.boundary])
     at = ring.nodes[ring.boundary[keep]] * np.array([1.0, 1.0, 0.0])
     radial = at / np.linalg.norm(at, axis=2, keepdims=True)
-    shading = normals_of(ring, float(np.cos(np.radians(42))))[keep]
+    shading = normals_of(ring, 42.0)[keep]
     assert np.einsum("fcd,fcd->fc", shading, radial).min() > np.cos(np.radians(3.5))
-    assert np.einsum("fcd,fcd->fc", normals_of(ring, 0.99999)[keep], radial).min() < np.cos(np.radians(3.5))
+    assert np.einsum("fcd,fcd->fc", normals_of(ring, 0.25)[keep], radial).min() < np.cos(np.radians(3.5))
 
 
 def test_a_plane_sees_all_the_sky_and_a_corner_does_not() -> None:
@@ -193,11 +208,11 @@ def test_light_comes_from_above_and_felt_looks_like_felt() -> None:
     faces = {"top": [0.05, 0.025, 0.03], "front": [0.05, 0.0, 0.015], "under": [0.05, 0.025, 0.0]}
     for name, eye in {"above": [0.5, -0.5, 0.7], "below": [0.5, -0.5, -0.7]}.items():
         camera = Camera.towards(np.array(eye))
-        image = render(camera.see(mesh.nodes), mesh.boundary, pixel=0.25, up=camera.axes[:, 2])
+        image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25, up=camera.axes[:, 2])
         for face, middle in faces.items():
-            spot = camera.see(np.array([middle]))
-            column, row = np.floor((spot[0, :2] - image.low) / image.pixel).astype(int)
-            if abs(image.depth[row, column] - spot[0, 2]) < 0.5:
+            spot = camera.see(1e3 * np.array([middle]))
+            column, row = np.rint((spot[0, :2] - image.buffer.low) / image.buffer.pixel).astype(int)
+            if abs(image.buffer.depth[row, column] - spot[0, 2]) < 0.5:
                 tones[name, face] = image.colours[row, column, :3]
     assert tones["above", "top"].sum() > tones["above", "front"].sum() > tones["below", "under"].sum()
     for tone in tones.values():
@@ -209,7 +224,7 @@ def test_light_comes_from_above_and_felt_looks_like_felt() -> None:
 def test_what_is_held_is_hatched_and_nothing_else() -> None:
     """Oracle: the images with and without hatching differ only left of the middle between held and free nodes."""
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
-    spots, held = camera.see(mesh.nodes), (mesh.nodes[:, 0] < 1e-6).astype(float)
+    spots, held = camera.see(1e3 * mesh.nodes), (mesh.nodes[:, 0] < 1e-6).astype(float)
     plain, hatched = (
         render(spots, mesh.boundary, pixel=0.25, held=mask, point=0.5).colours for mask in (np.zeros_like(held), held)
     )
@@ -220,7 +235,7 @@ def test_what_is_held_is_hatched_and_nothing_else() -> None:
 
 def test_pale_felt_is_lighter() -> None:
     mesh = box()
-    spots = Camera.towards(np.array([0.5, -0.5, 0.7])).see(mesh.nodes)
+    spots = Camera.towards(np.array([0.5, -0.5, 0.7])).see(1e3 * mesh.nodes)
     full, pale = (render(spots, mesh.boundary, pixel=0.5, pale=share).colours for share in (0.0, 0.4))
     inside = full[..., 3] == 1
     assert (pale[inside][:, :3] >= full[inside][:, :3] - 1e-9).all()
@@ -243,7 +258,7 @@ def test_the_long_side_of_a_body_is_seen(turn: float) -> None:
     rod = box_mesh((4, 1, 1), size=(0.2, 0.02, 0.02)).nodes
     spin = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
     camera = three_quarter(rod @ spin.T, np.empty((0, 3)))
-    way = camera.see((spin @ np.array([0.2, 0.0, 0.0]))[None])[0]
+    way = camera.see((spin @ np.array([200.0, 0.0, 0.0]))[None])[0]
     assert np.hypot(way[0], way[1]) >= 200 * np.sin(np.radians(58)) - 1e-6
     assert 0.2 < camera.axes[2, 2] < 0.7
 

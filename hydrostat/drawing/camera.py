@@ -6,10 +6,8 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.plot.sheet import MILLIMETRES
-
 Spots = Float[np.ndarray, "_ 3"]
-"""Points in space [m], or as a camera sees them: to the right, up and towards the eye [mm]."""
+"""Points in space, or as a camera sees them: to the right, up and towards the eye."""
 
 ELEVATION = 22.0
 """How far above the horizon the eye of a three-quarter view is [degree]; more for a body that lies flat."""
@@ -17,7 +15,6 @@ ELEVATION = 22.0
 TURN = 58.0
 """Angle from the long axis of a body to the eye of a three-quarter view, from above [degree]: its sine is what is left
 of the length, its cosine shows that there is depth."""
-
 
 FROM_ABOVE = 0.97
 """What a view from above is worth beside one from the side that shows as much: there, up is not to be seen."""
@@ -47,14 +44,36 @@ class Camera:
         right = np.array([1.0, 0.0, 0.0]) if np.linalg.norm(right) < 1e-9 else right / np.linalg.norm(right)
         return cls(np.array([right, np.cross(near, right), near]) @ turn, turn[2])
 
+    @classmethod
+    def at(cls, azimuth: float, elevation: float, *, up: Float[np.ndarray, " 3"] | None = None) -> Self:
+        """A camera in a compass direction, from x towards y, at a height over the horizon [degrees]; z is upright.
+
+        With `up` this is upright, and compass directions count from an axis across it.
+        """
+        turn, rise = np.radians([azimuth, elevation])
+        near = np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
+        right = np.array([-np.sin(turn), np.cos(turn), 0.0])
+        axes = np.array([right, np.cross(near, right), near])
+        if up is None:
+            return cls(axes)
+        up = up / np.linalg.norm(up)
+        side = np.eye(3)[int(np.argmin(np.abs(up)))]
+        one = np.cross(side, up) / np.linalg.norm(np.cross(side, up))
+        return cls(axes @ np.array([one, np.cross(up, one), up]), up)
+
+    @classmethod
+    def isometric(cls) -> Self:
+        """The camera that sees all three axes equally short: a cube is a regular hexagon."""
+        return cls.at(-45.0, float(np.degrees(np.arctan(np.sqrt(0.5)))))
+
     @property
     def sky(self) -> Float[np.ndarray, " 3"]:
         """The way up as the camera sees it."""
         return self.axes @ self.up
 
     def see(self, points: Spots) -> Spots:
-        """Points [m] as they are seen: to the right, up and towards the eye [mm]."""
-        return MILLIMETRES * points @ self.axes.T
+        """Points as they are seen: to the right, up and towards the eye, in the unit of the points."""
+        return points @ self.axes.T
 
 
 def upright(up: Float[np.ndarray, " 3"]) -> Float[np.ndarray, "3 3"]:

@@ -1,6 +1,7 @@
 """The colours of every picture: one language, safe for colour-blind eyes, at home on light and on dark pages."""
 
-from hydrostat.robot import Robot
+from collections.abc import Iterable
+from typing import Protocol, runtime_checkable
 
 INK = "#2b2833"
 MUTED = "#85808f"
@@ -35,16 +36,27 @@ TENSION = ("#efa35c", "#e56a4f", "#c33c6a", "#842681", "#40156b", "#150b37")
 """From little tension to much: as even in lightness as magma, without its ends that felt or paper would swallow."""
 
 
-def winch_colours(robot: Robot) -> dict[str, str]:
-    """The colour of each winch, by name."""
-    return {winch.name: WINCHES[index % len(WINCHES)] for index, winch in enumerate(robot.winches)}
+@runtime_checkable
+class Named(Protocol):
+    """What has a name: a winch."""
+
+    @property
+    def name(self) -> str:
+        """How it is called."""
+        ...
+
+
+def winch_colours(winches: Iterable[Named]) -> dict[str, str]:
+    """The colour of each of a robot's winches, by name."""
+    return {winch.name: WINCHES[index % len(WINCHES)] for index, winch in enumerate(winches)}
 
 
 def mix(colour: str, other: str, share: float) -> str:
     """A colour with a share, 0 to 1, of another."""
-    pairs = zip(_channels(colour), _channels(other), strict=True)
+    pairs = zip(channels(colour), channels(other), strict=True)
     return "#" + "".join(f"{round((1 - share) * first + share * second):02x}" for first, second in pairs)
 
 
-def _channels(colour: str) -> list[int]:
+def channels(colour: str) -> list[int]:
+    """Red, green and blue of a colour, 0 to 255."""
     return [int(colour[start : start + 2], 16) for start in (1, 3, 5)]

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from html import escape
 from typing import Self
 
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.fabrication.sheets.line_art import LineDrawing
+from hydrostat.drawing.line_drawing import LineDrawing
+from hydrostat.drawing.svg import NAMESPACE, Html, number, path, shape, tag
 
 Spot = tuple[float, float]
 """A place on the canvas [mm]: to the right, down."""
@@ -30,7 +30,7 @@ FONT = "Libertinus Serif"
 
 
 @dataclass(frozen=True)
-class Frame:
+class CanvasFrame:
     """Where true places come to lie on a canvas.
 
     Attributes:
@@ -72,14 +72,23 @@ class Canvas:
 
     width: float
     height: float
-    _parts: list[str] = field(default_factory=list)
+    _parts: list[Html] = field(default_factory=list)
 
     @property
     def svg(self) -> str:
         """The picture so far."""
-        size = f'width="{self.width:g}mm" height="{self.height:g}mm" viewBox="0 0 {self.width:g} {self.height:g}"'
-        style = f'stroke-linecap="round" stroke-linejoin="round" font-family="{FONT}" fill="none"'
-        return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {style}>{"".join(self._parts)}</svg>'
+        return tag(
+            "svg",
+            self._parts,
+            xmlns=NAMESPACE,
+            width=f"{self.width:g}mm",
+            height=f"{self.height:g}mm",
+            viewBox=f"0 0 {self.width:g} {self.height:g}",
+            stroke_linecap="round",
+            stroke_linejoin="round",
+            font_family=FONT,
+            fill="none",
+        )
 
     def line(
         self,
@@ -91,23 +100,22 @@ class Canvas:
         closed: bool = False,
     ) -> None:
         """Lines through spots; `grey` from 0 for black to 1, `dash`: length of strokes and gaps [mm]."""
-        path = "".join(_path(way, closed=closed) for way in ways if len(way) > 1)
-        if path:
-            dashes = f' stroke-dasharray="{dash[0]:g} {dash[1]:g}" stroke-linecap="butt"' if dash else ""
-            self._parts.append(f'<path d="{path}" stroke="{_ink(grey)}" stroke-width="{width:g}"{dashes}/>')
+        drawn = path((way for way in ways if len(way) > 1), digits=2, closed=closed)
+        if drawn:
+            dashes = {"stroke_dasharray": f"{dash[0]:g} {dash[1]:g}", "stroke_linecap": "butt"} if dash else {}
+            self._parts.append(shape("path", d=drawn, stroke=_ink(grey), stroke_width=f"{width:g}", **dashes))
 
     def fill(self, rings: Iterable[Sequence[Spot]], *, grey: float) -> None:
         """What rings enclose, by the even-odd rule."""
-        path = "".join(_path(ring, closed=True) for ring in rings if len(ring) > 2)
-        if path:
-            self._parts.append(f'<path d="{path}" fill="{_ink(grey)}" fill-rule="evenodd"/>')
+        drawn = path((ring for ring in rings if len(ring) > 2), digits=2, closed=True)
+        if drawn:
+            self._parts.append(shape("path", d=drawn, fill=_ink(grey), fill_rule="evenodd"))
 
     def disc(self, at: Spot, radius: float, *, grey: float = 1.0, edge: float = THIN) -> None:
         """A round spot with a black edge of some width [mm]; 0 for none."""
-        stroke = f' stroke="black" stroke-width="{edge:g}"' if edge else ""
-        self._parts.append(
-            f'<circle cx="{_number(at[0])}" cy="{_number(at[1])}" r="{_number(radius)}" fill="{_ink(grey)}"{stroke}/>'
-        )
+        x, y, r = (number(value, 2) for value in (*at, radius))
+        stroke = {"stroke": "black", "stroke_width": f"{edge:g}"} if edge else {}
+        self._parts.append(shape("circle", cx=x, cy=y, r=r, fill=_ink(grey), **stroke))
 
     def text(
         self,
@@ -121,13 +129,13 @@ class Canvas:
         halo: bool = False,
     ) -> None:
         """Words of a size [pt], their middle at the height of `at`; with `halo` lines behind them stop short."""
-        place = f'x="{_number(at[0])}" y="{_number(at[1] + 0.32 * size * POINT)}" text-anchor="{anchor}"'
-        face = f'font-size="{_number(size * POINT)}"' + (' font-weight="bold"' if bold else "")
         if halo:
             wide, high = text_size(words, size)
             left = at[0] - wide * {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
             self.fill([_rectangle((left - 0.3, at[1] - high / 2, left + wide + 0.3, at[1] + high / 2))], grey=1.0)
-        self._parts.append(f'<text {place} {face} fill="{_ink(grey)}">{escape(words)}</text>')
+        x, y, height = (number(value, 2) for value in (at[0], at[1] + 0.32 * size * POINT, size * POINT))
+        face = {"font_size": height, "font_weight": "bold" if bold else None}
+        self._parts.append(tag("text", words, x=x, y=y, text_anchor=anchor, **face, fill=_ink(grey)))
 
     def balloon(self, at: Spot, words: str, *, dark: bool = False, size: float = 9.0) -> None:
         """Words in a circle, white on black if `dark`."""
@@ -144,7 +152,7 @@ class Canvas:
         self.line([[start, _spot(foot)]], width=width)
         self.fill([[_spot(corner) for corner in corners]], grey=0.0)
 
-    def drawing(self, drawing: LineDrawing, frame: Frame) -> None:
+    def drawing(self, drawing: LineDrawing, frame: CanvasFrame) -> None:
         """The lines and tones of solids."""
         for grey, rings in drawing.tones:
             self.fill([frame.way(ring) for ring in rings], grey=grey)
@@ -171,15 +179,6 @@ def balloon_radius(words: str, size: float = 9.0) -> float:
 def _rectangle(box: Box) -> list[Spot]:
     left, top, right, bottom = box
     return [(left, top), (right, top), (right, bottom), (left, bottom)]
-
-
-def _path(way: Sequence[Spot], *, closed: bool) -> str:
-    return "M" + "L".join(f"{_number(x)} {_number(y)}" for x, y in way) + ("Z" if closed else "")
-
-
-def _number(value: float) -> str:
-    """To a hundredth of a millimetre, without a minus before nought."""
-    return f"{round(value, 2) + 0.0:g}"
 
 
 def _ink(grey: float) -> str:

@@ -1,0 +1,161 @@
+"""`DepthBuffer`: what is nearest to the eye at each pixel, by which a picture knows what is hidden."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self, no_type_check
+
+import numpy as np
+import shapely
+from jaxtyping import Float, Int
+from numba import njit
+
+from hydrostat.kernel import KERNEL
+
+Polyline = Float[np.ndarray, "_ 2"]
+"""A line on a picture: to the right, up [mm]."""
+
+_RIM = 4
+"""Pixels of nothing round the picture."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class DepthBuffer:
+    """A picture of depths (z-buffer).
+
+    Attributes:
+        low: place of the middle of pixel [0, 0] as seen: to the right, up [mm].
+        pixel: side of a pixel [mm].
+        depth: towards the eye [mm], one row for each height, upwards; -inf where nothing is.
+        shown: what is known at the corners of the triangles, where it is seen; 0 where nothing is.
+        owner: index of the triangle that is seen; -1 where nothing is.
+    """
+
+    low: Float[np.ndarray, " 2"]
+    pixel: float
+    depth: Float[np.ndarray, "rows columns"]
+    shown: Float[np.ndarray, "rows columns values"]
+    owner: Int[np.ndarray, "rows columns"]
+
+    @classmethod
+    def of(
+        cls,
+        corners: Float[np.ndarray, "triangles 3 3"],
+        values: Float[np.ndarray, "triangles 3 values"],
+        *,
+        pixels: int,
+    ) -> Self:
+        """The buffer of triangles as they are seen [mm], from outside and from inside, with room round them.
+
+        Args:
+            corners: of the triangles.
+            values: known at them.
+            pixels: along the longer side.
+        """
+        low, high = corners[:, :, :2].min(axis=(0, 1)), corners[:, :, :2].max(axis=(0, 1))
+        pixel = max(float((high - low).max()) / pixels, 1e-9)
+        low = low - _RIM * pixel
+        columns, rows = (np.ceil((high - low) / pixel).astype(int) + 1 + _RIM).tolist()
+        return cls.within(corners, values, low, pixel, (rows, columns), inside=True)
+
+    @classmethod
+    def within(
+        cls,
+        corners: Float[np.ndarray, "triangles 3 3"],
+        values: Float[np.ndarray, "triangles 3 values"],
+        low: Float[np.ndarray, " 2"],
+        pixel: float,
+        shape: tuple[int, int],
+        *,
+        inside: bool,
+    ) -> Self:
+        """The buffer of a given place, size of a pixel [mm] and rows and columns.
+
+        Args:
+            corners: of the triangles, as they are seen [mm].
+            values: known at them.
+            low: the middle of pixel [0, 0] [mm].
+            pixel: side of a pixel [mm].
+            shape: rows and columns.
+            inside: triangles are seen from inside too, where they turn clockwise.
+        """
+        depth, owner = np.full(shape, -np.inf), np.full(shape, -1, dtype=np.int32)
+        shown = np.zeros((*shape, values.shape[2]), dtype=values.dtype)
+        spots = corners.copy()
+        spots[:, :, :2] = (corners[:, :, :2] - low) / pixel
+        rasterise(np.ascontiguousarray(spots), np.ascontiguousarray(values), inside, depth, shown, owner)
+        return cls(low=low, pixel=pixel, depth=depth, shown=shown, owner=owner)
+
+    def coarser(self, step: int) -> "DepthBuffer":
+        """The buffer of larger pixels, `step` times as large, each with what is seen near its middle."""
+        near = slice(step // 2, None, step), slice(step // 2, None, step)
+        parts = {name: getattr(self, name)[near].copy() for name in ("depth", "shown", "owner")}
+        return DepthBuffer(low=self.low + (step - 1) / 2 * self.pixel, pixel=step * self.pixel, **parts)
+
+    @cached_property
+    def _deepest(self) -> tuple[Float[np.ndarray, "rows columns"], ...]:
+        from scipy.ndimage import minimum_filter
+
+        return (self.depth, *(minimum_filter(self.depth, size=size, mode="nearest") for size in (3, 5)))
+
+    def behind(self, spots: Float[np.ndarray, "points 3"], reach: int = 0) -> Float[np.ndarray, " points"]:
+        """How far points as they are seen lie before the deepest that is seen within `reach` pixels, 0 to 2 [mm]."""
+        deepest = self._deepest[reach] if reach else self.depth
+        rows, columns = self.depth.shape
+        column, row = np.rint((spots[:, :2] - self.low) / self.pixel).astype(int).T
+        return spots[:, 2] - deepest[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+
+    def rings(self, field: Float[np.ndarray, "rows columns"], level: float, *, tolerance: float) -> list[Polyline]:
+        """Closed lines at a level of something known at each pixel [mm], smooth to a tolerance [pixels]."""
+        return [self.low + self.pixel * ring for ring in level_rings(field, level, tolerance=tolerance)]
+
+
+def level_rings(field: Float[np.ndarray, "rows columns"], level: float, *, tolerance: float) -> list[Polyline]:
+    """Closed lines where a field passes a level (contour lines): column and row of their points, the first repeated."""
+    from contourpy import LineType, contour_generator
+
+    lines = contour_generator(z=field, line_type=LineType.Separate).lines(level)
+    smooth = [shapely.simplify(shapely.linestrings(np.asarray(line)), tolerance) for line in lines]
+    return [ring for ring in map(shapely.get_coordinates, smooth) if len(ring) > 3]
+
+
+@njit(**KERNEL)
+@no_type_check
+def rasterise(spots, values, inside, depth, shown, owner):
+    """Lay triangles into a depth buffer, the nearest on top.
+
+    Args:
+        spots: corners of the triangles: column, row and depth towards the eye, (triangles, 3, 3); a pixel is seen
+            where its middle is, at whole columns and rows.
+        values: to interpolate over each triangle, (triangles, 3, values).
+        inside: whether triangles that turn clockwise are seen.
+        depth: (rows, columns), changed in place, as are the others.
+        shown: interpolated values, (rows, columns, values).
+        owner: index of the triangle, (rows, columns).
+    """
+    rows, columns = depth.shape
+    for index in range(len(spots)):
+        x0, y0, z0 = spots[index, 0]
+        x1, y1, z1 = spots[index, 1]
+        x2, y2, z2 = spots[index, 2]
+        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+        if abs(area) < 1e-9 or (area < 0 and not inside):
+            continue
+        first = max(int(np.ceil(min(y0, y1, y2))), 0)
+        last = min(int(np.floor(max(y0, y1, y2))), rows - 1)
+        left = max(int(np.ceil(min(x0, x1, x2))), 0)
+        right = min(int(np.floor(max(x0, x1, x2))), columns - 1)
+        for row in range(first, last + 1):
+            for column in range(left, right + 1):
+                b = ((column - x0) * (y2 - y0) - (x2 - x0) * (row - y0)) / area
+                c = ((x1 - x0) * (row - y0) - (column - x0) * (y1 - y0)) / area
+                a = 1.0 - b - c
+                if a < -1e-9 or b < -1e-9 or c < -1e-9:
+                    continue
+                z = a * z0 + b * z1 + c * z2
+                if z > depth[row, column]:
+                    depth[row, column] = z
+                    owner[row, column] = index
+                    for k in range(values.shape[2]):
+                        shown[row, column, k] = (
+                            a * values[index, 0, k] + b * values[index, 1, k] + c * values[index, 2, k]
+                        )

@@ -1,0 +1,201 @@
+"""What robots of plush and of foam share: what a step is, cables and how deep they lie, winches, calibration."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.lists.stitching import SKIN
+from hydrostat.fabrication.sheets.cable_map import winch_mark
+from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.robot import Mount, Pin, Robot
+from hydrostat.units import counted
+
+
+@dataclass(frozen=True)
+class AssemblyStep:
+    """One thing to do.
+
+    Attributes:
+        title: what.
+        minutes: about how long it keeps a person busy.
+        wait: how long to wait after it, in words; empty for not at all.
+        text: how, in short sentences.
+    """
+
+    title: str
+    minutes: float
+    text: str
+    wait: str = ""
+
+    @property
+    def time(self) -> str:
+        """About how long it takes, in words."""
+        busy = minutes_text(self.minutes)
+        return f"{busy}, then {self.wait}" if self.wait else busy
+
+
+def minutes_text(minutes: float) -> str:
+    """A time in minutes up to an hour and a half, to full five; then in half hours; in full ones from ten on."""
+    if minutes <= 90:
+        return f"{max(5 * round(minutes / 5), 5)} min"
+    hours = round(minutes / 30) / 2 if minutes < 600 else round(minutes / 60)
+    return f"{hours:g} h"
+
+
+def held_text(robot: Robot) -> str:
+    """Where to clamp or strap it, a sentence; empty if it is held nowhere."""
+    if not robot.pins:
+        return ""
+    places = "; ".join(_place(pin) for pin in robot.pins)
+    return f"It was simulated as held {places}, in the coordinates of the robot file: clamp or strap it there."
+
+
+def _place(pin: Pin) -> str:
+    if pin.box is not None:
+        axes = zip("xyz", *pin.box, strict=False)
+        spans = ", ".join(f"{axis} {_mm(min(one, two))} to {_mm(max(one, two))}" for axis, one, two in axes)
+        return f"within {spans} mm"
+    at = ", ".join(f"{axis} {_mm(value)}" for axis, value in zip("xyz", pin.at or (), strict=False))
+    return f"round {at} mm" + (f", up to {_mm(pin.radius)} mm from there" if pin.radius else "")
+
+
+def _mm(value: float) -> str:
+    return f"{1e3 * value + 0.0:.0f}".replace("-", "−")
+
+
+_NEEDLE, _LAID = "long needle", "tube laid before casting"
+_IN_TUBE = ("in its tube", "end of its tube")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CableDepths:
+    """Names of cables, C1, C2, ...
+
+    Attributes:
+        sewn: those that are sewn to the skin all along.
+        drawn: those that are drawn through the body at some points.
+        laid: those of which a point is too deep for a needle: a tube is laid before casting.
+        tubed: those whose own tube runs in the body, deeper than the skin.
+    """
+
+    sewn: tuple[str, ...] = ()
+    drawn: tuple[str, ...] = ()
+    laid: tuple[str, ...] = ()
+    tubed: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, given: SheetInput) -> "CableDepths":
+        """From the list; without one all cables are sewn on."""
+        table = given.tables.get("stitching")
+        titles = [column.title for column in table.columns] if table else []
+        if table is None or "how" not in titles or "depth" not in titles:
+            return cls(sewn=tuple(f"C{number}" for number in range(1, len(given.robot.cables) + 1)))
+        found: dict[str, set[str]] = {}
+        for cable, how, depth in zip(*(table.column(title) for title in ("cable", "how", "depth")), strict=True):
+            deep = how in _IN_TUBE and isinstance(depth, float | int) and depth > SKIN
+            found.setdefault(str(cable), set()).add("tube" if deep else str(how))
+        inside = {_NEEDLE, _LAID}
+        return cls(
+            sewn=tuple(cable for cable, hows in found.items() if not hows & {*inside, "tube"}),
+            drawn=tuple(cable for cable, hows in found.items() if _NEEDLE in hows),
+            laid=tuple(cable for cable, hows in found.items() if _LAID in hows),
+            tubed=tuple(cable for cable, hows in found.items() if "tube" in hows),
+        )
+
+
+def cables_text(cables: Iterable[str]) -> str:
+    """Cables in a row: C1; C1 and C2; C1 to C4; C1, C3 and C7."""
+    numbers = [int(cable.removeprefix("C")) for cable in cables]
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    words = [
+        word
+        for run in runs
+        for word in ([f"C{run[0]} to C{run[-1]}"] if len(run) > 2 else [f"C{number}" for number in run])
+    ]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+
+
+def marks_on(given: SheetInput, mount: Mount) -> tuple[str, ...]:
+    """Marks of the winches that are mounted so."""
+    return tuple(winch_mark(index) for index, winch in enumerate(given.robot.winches) if winch.mount is mount)
+
+
+def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
+    """Put them together, set those on the base, then those in a body of foam; into plush they go with the filling."""
+    inside, outside = marks_on(given, Mount.BODY), marks_on(given, Mount.WORLD)
+    count = len(inside) + len(outside)
+    steps = []
+    if count:
+        steps.append(
+            AssemblyStep(
+                "Put the winches together",
+                15 * count,
+                f"Build {counted(count, 'winch')} as drawn on page 1, each with its own files (see "
+                "Parts), and write the mark on it. Turn every motor to its zero before the spool goes on.",
+            )
+        )
+    if outside:
+        steps.append(_base_step(outside))
+    if inside and given.method is Method.FOAM:
+        steps.append(
+            AssemblyStep(
+                "Put winches in",
+                10 * len(inside),
+                f"Push {marks_text(inside)} into {'its pocket' if len(inside) == 1 else 'their pockets'} in the foam. "
+                "Lead the wires out together; sew the skin round them.",
+            )
+        )
+    if (held := held_text(given.robot)) and given.method is Method.FOAM:
+        steps.append(AssemblyStep("Hold it", 5, held))
+    return tuple(steps)
+
+
+def _base_step(outside: tuple[str, ...]) -> AssemblyStep:
+    return AssemblyStep(
+        "Build the base",
+        5 + 10 * len(outside),
+        f"Screw {marks_text(outside)} to the base plate (print it, or cut parts/base.svg from acrylic), legs below. "
+        "Push each tube into its holder and lead it to where its cable begins, in wide bends, none tighter than a cup. "
+        "Hold both ends: only so does the tube keep the cable's length. The base stands anywhere the tubes reach.",
+    )
+
+
+def tie_step(cables: int) -> AssemblyStep:
+    """Lines come on their spools."""
+    return AssemblyStep(
+        "Tie the cables on",
+        5 * cables,
+        "Lead each line through its own channel of the housing; push its tube, if it has one, into the seat. Knot it "
+        "at the spool's tie hole so that the spool mark meets the spool. Wind the spare turns on, all the same way. "
+        "Then calibrate.",
+    )
+
+
+def marks_text(marks: tuple[str, ...]) -> str:
+    """W1; W1 and W2; W1 to W4 if they follow each other."""
+    numbers = [int(mark[1:]) for mark in marks]
+    if len(numbers) > 2 and numbers == list(range(numbers[0], numbers[-1] + 1)):
+        return f"{marks[0]} to {marks[-1]}"
+    return marks[0] if len(marks) == 1 else f"{', '.join(marks[:-1])} and {marks[-1]}"
+
+
+def calibration(given: SheetInput) -> tuple[str, ...]:
+    """From winches at zero to stoppers that are tight; nothing without cables."""
+    if not given.robot.cables:
+        return ()
+    cloth = "cloth" if given.method is Method.PLUSH else "skin"
+    return (
+        "Turn all winches to zero: the spool mark of each cable stands where the line meets the spool.",
+        "Pull the first cable straight by its tail, not tight: the body must not move.",
+        f"Slide its stopper along the line until it touches the {cloth} at the cable's last point; then back by the "
+        "slack of the list, and clamp it there. Nothing else is measured.",
+        "Do the next cable; then take in 10 mm with every winch, one after the other. Each limb must begin to move, "
+        "and come back when you let out.",
+        "Moves late: pull the line straighter and set the stopper again. Is bent at zero: shift the stopper outwards. "
+        "Then trim the tail to 30 mm.",
+    )
