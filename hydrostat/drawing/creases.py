@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from numba import njit
 
-from hydrostat.geometry.healing.sides import sides_of
+from hydrostat.geometry.healing.mend import sides_of
 from hydrostat.kernel import KERNEL
 
 Segments = Float[np.ndarray, "segments 2 3"]

@@ -12,7 +12,7 @@ from hydrostat.arrays import Points
 from hydrostat.drawing.camera import Camera, Spots, three_quarter
 from hydrostat.drawing.palette import ERROR, INK, LIGHT, MUTED, SEAM, channels
 from hydrostat.drawing.render import Render, render
-from hydrostat.geometry.healing.sides import sides_of
+from hydrostat.geometry.healing.mend import sides_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.places import Place
