@@ -85,7 +85,7 @@ def design(
     """
     from hydrostat.cli.progress import progress_bar
     from hydrostat.design import design_cables
-    from hydrostat.fabrication.kit_folder import forget_files
+    from hydrostat.fabrication.kit import forget_files
 
     require_folder(out)
     count = winch_count(winches)

@@ -3,16 +3,21 @@
 from hydrostat.fabrication.build_kit import build_kit, export_kit
 from hydrostat.fabrication.demand import Demand, find_demand
 from hydrostat.fabrication.kit import Kit, UnbuildableError
-from hydrostat.fabrication.kit_options import KitOptions, Method, Paper
+from hydrostat.fabrication.kit_options import (
+    Corner,
+    KitOptions,
+    Method,
+    MouldKind,
+    MouldOptions,
+    Paper,
+    PartOptions,
+    PatternOptions,
+)
 from hydrostat.fabrication.moulds.mould import Mould, make_mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
-from hydrostat.fabrication.patterns.panel import Panel
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
-from hydrostat.fabrication.patterns.pattern_options import Corner, PatternOptions
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Part, Shape
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Panel, Part, Shape
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.printed import Printed

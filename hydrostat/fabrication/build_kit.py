@@ -5,28 +5,25 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hydrostat.fabrication.body_work import BodyWork
-from hydrostat.fabrication.checks.solid_checks import solid_checks, too_large
-from hydrostat.fabrication.checks.spool_checks import spool_checks
+from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.demand import Demand, find_demand
 from hydrostat.fabrication.foam import foam_work
-from hydrostat.fabrication.kit import Kit, UnbuildableError
+from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.list_input import ListInput
 from hydrostat.fabrication.lists.lists import Lists, make_lists
-from hydrostat.fabrication.manifest import NAME, manifest
 from hydrostat.fabrication.parts.motor import choose_motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
-from hydrostat.fabrication.patterns.cut_sheet import cut_sheet
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
+from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.plush import plush_work
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
+from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
-from hydrostat.fabrication.solids.stl import stl_bytes
-from hydrostat.fabrication.solids.three_mf import three_mf_plates
 from hydrostat.robot import Robot
 from hydrostat.units import counted
 
@@ -76,7 +73,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         "problems": plan.problems,
         "warnings": plan.warnings,
     }
-    files[NAME] = manifest(robot, options, files, checks=plan.checks, told=facts)
+    files[MANIFEST] = manifest(robot, options, files, checks=plan.checks, told=facts)
     tell.end()
     return Kit(
         robot=robot,

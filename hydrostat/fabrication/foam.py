@@ -1,15 +1,17 @@
 """`foam_work`: what a body of foam takes: its mould, and what is poured into it (R50 to R54)."""
 
 from collections.abc import Iterable
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float
 
 from hydrostat.fabrication.body_work import BodyWork
-from hydrostat.fabrication.checks.channels import channel_problems
 from hydrostat.fabrication.checks.mould_checks import mould_checks
-from hydrostat.fabrication.kit_options import KitOptions
+from hydrostat.fabrication.kit_options import KitOptions, MouldKind, PartOptions
 from hydrostat.fabrication.lists.list_input import FoamNeeds
 from hydrostat.fabrication.moulds.mould import make_mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind
-from hydrostat.fabrication.moulds.winch_room import WinchRoom
+from hydrostat.fabrication.moulds.pocket import WinchRoom
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
@@ -68,3 +70,53 @@ def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
         f"the mould takes {counted(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic: make the body smaller, use "
         "a printer with a larger bed, or cut the body out of a block of foam",
     )
+
+
+SKIN = 1.0
+"""Least foam between a tube and the skin [mm]: thinner, it tears when the tube is pulled. Measured on none."""
+
+_STEP = 1e-3
+"""Distance of the places that are looked at [m]."""
+
+
+def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
+    """Sheathed stretches that come too near the skin between two deeper places, a line each.
+
+    Where a tube enters the body, or ends at the skin, it is near by intent.
+    """
+    solid = robot.body.solid
+    if solid is None:
+        return ()
+    needed = options.tube / 2 + SKIN
+    problems = []
+    for number, cable in enumerate(robot.cables, start=1):
+        for start, end in cable.sheathed:
+            places = _along(np.array(cable.points[start : end + 1]))
+            depths = -1e3 * solid.distances(places)
+            thin = _between(depths, needed)
+            if thin is not None:
+                at = ", ".join(f"{1e3 * value:.0f}" for value in places[thin])
+                problems.append(
+                    f"cable {number}: its tube comes within {max(depths[thin], 0.0):.1f} mm of the skin at [{at}] mm, "
+                    f"but needs {needed:.1f} mm of depth; move the points of the sheath inwards"
+                )
+    return tuple(problems)
+
+
+def _between(depths: Float[np.ndarray, " places"], needed: float) -> int | None:
+    """The shallowest place between the first and the last deep one, if it is too shallow."""
+    deep = np.flatnonzero(depths >= needed)
+    if not len(deep):
+        return None
+    inner = depths[deep[0] : deep[-1] + 1]
+    lowest = int(inner.argmin())
+    return int(deep[0]) + lowest if inner[lowest] < needed else None
+
+
+def _along(points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "places 3"]:
+    """Places along a line through points [m]."""
+    pieces = []
+    for one, other in pairwise(points):
+        count = max(int(np.ceil(np.linalg.norm(other - one) / _STEP)), 1)
+        pieces.append(one + np.linspace(0.0, 1.0, count, endpoint=False)[:, None] * (other - one))
+    return np.concatenate([*pieces, points[-1:]])

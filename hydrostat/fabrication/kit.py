@@ -1,16 +1,26 @@
-"""`Kit`: everything that a robot is built from, as files (R9 to R14, R50 to R57)."""
+"""`Kit`: everything that a robot is built from, as files (R9 to R14, R50 to R57); its manifest and its folder."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import Path
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path, PurePosixPath
+from typing import Any
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.kit_folder import write_files
-from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Robot
+from hydrostat.robot import Robot, replace_file, robot_hash
 from hydrostat.units import counted
+
+MANIFEST = "manifest.json"
+"""Its file in a kit; written last, so that a kit without it is not whole."""
+
+_MAKERS = ("hydrostat", "ezdxf", "libigl", "manifold3d", "numba", "numpy", "scipy", "shapely", "typst")
+"""Packages on which the bytes of a kit depend."""
 
 
 class UnbuildableError(InputError):
@@ -58,3 +68,89 @@ class Kit:
             InputError: the folder or a file cannot be written.
         """
         return write_files(self.files, folder)
+
+
+def manifest(
+    robot: Robot, options: KitOptions, files: Mapping[str, bytes], *, checks: Sequence[Check], told: Mapping[str, Any]
+) -> bytes:
+    """The text of manifest.json.
+
+    Args:
+        robot: that is built.
+        options: of the kit.
+        files: content by path in the kit.
+        checks: the self-check table.
+        told: what else to keep, such as warnings and sizes.
+    """
+    told = {
+        "robot": {"name": robot.name, "sha256": robot_hash(robot)},
+        **told,
+        "options": asdict(options),
+        "checks": [asdict(check) for check in checks],
+        "versions": {name: version(name) for name in _MAKERS},
+        "files": {
+            path: {"bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+            for path, content in sorted(files.items())
+        },
+    }
+    return (json.dumps(told, indent=2, ensure_ascii=False) + "\n").encode()
+
+
+def write_files(files: Mapping[str, bytes], folder: str | Path) -> list[Path]:
+    """Write all files of a kit, the manifest last.
+
+    What an earlier kit left in the folder and this one has not is removed, unless it was changed since.
+
+    Args:
+        files: content by path in the kit, the manifest among them.
+        folder: made if need be.
+
+    Returns:
+        The files, sorted.
+
+    Raises:
+        InputError: the folder or a file cannot be written.
+    """
+    folder = Path(folder)
+    stale = [path for path in _written_before(folder) if path not in files]
+    try:
+        (folder / MANIFEST).unlink(missing_ok=True)
+        for path in sorted(files):
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{error.filename or folder}: cannot be written ({error.strerror})") from None
+    for path in stale:
+        _remove(folder / path, folder)
+    last = sorted(files, key=lambda path: (path == MANIFEST, path))
+    return sorted(replace_file(folder / path, files[path]) for path in last)
+
+
+def forget_files(folder: str | Path) -> None:
+    """Remove a kit from a folder, but for what was changed or added since."""
+    folder = Path(folder)
+    for path in (*_written_before(folder), MANIFEST):
+        _remove(folder / path, folder)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def _written_before(folder: Path) -> Iterator[str]:
+    """Files of the kit whose manifest is in a folder, as far as they are unchanged."""
+    try:
+        told = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["files"]
+        known = {str(path): str(facts["sha256"]) for path, facts in told.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return
+    for path, digest in known.items():
+        inside = not PurePosixPath(path).is_absolute() and ".." not in PurePosixPath(path).parts
+        with suppress(OSError):
+            if inside and hashlib.sha256((folder / path).read_bytes()).hexdigest() == digest:
+                yield path
+
+
+def _remove(path: Path, folder: Path) -> None:
+    """Remove a file, and its folder if that leaves it empty."""
+    with suppress(OSError):
+        path.unlink()
+        if path.parent != folder:
+            path.parent.rmdir()

@@ -1,34 +1,192 @@
-"""`KitOptions`: what kind of robot is built, and how."""
+"""`KitOptions`: what kind of robot is built, and how: its pattern, its printed parts, its mould."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
+from typing import Any, TypeVar
 
-from hydrostat.fabrication.moulds.mould_options import MouldOptions
-from hydrostat.fabrication.parts.part_options import PartOptions
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.errors import InputError
 from hydrostat.robot import Body
 
 STUFFINGS = ("polyester fibre",)
 """Materials that are stuffed into cloth: a body of them is plush, in space too."""
 
+_SHORTEST = 50.0
+"""A piece of the gusset that is still worth sewing [mm]."""
+
+_Word = TypeVar("_Word", bound=StrEnum)
+
+
+class Corner(StrEnum):
+    """Way in which the cut goes round an outward corner of the seam."""
+
+    ROUND = "round"
+    MITRE = "mitre"
+
+
+class MouldKind(StrEnum):
+    """Material that the mould is made of."""
+
+    PRINTED = "printed"
+    SILICONE = "silicone"
+
 
 class Method(StrEnum):
-    """How the body is made."""
+    """Method by which the body is made."""
 
     PLUSH = "plush"
     FOAM = "foam"
 
 
 class Paper(StrEnum):
-    """What the pages are printed on."""
+    """Paper that the pages are printed on."""
 
     A4 = "a4"
     LETTER = "letter"
 
 
+def _check_word(options: object, name: str, kind: type[_Word]) -> None:
+    """Make a word of a closed set of a text that stands for it.
+
+    Raises:
+        InputError: it stands for none.
+    """
+    given = getattr(options, name)
+    try:
+        object.__setattr__(options, name, kind(given))
+    except ValueError:
+        raise InputError(f'{name} must be one of {", ".join(kind)}, not "{given}"') from None
+
+
+def _check_sizes(options: Any, *, above_zero: tuple[str, ...]) -> None:
+    """Refuse numbers that are negative or not finite, and 0 for those of some names.
+
+    Raises:
+        InputError: one is.
+    """
+    for item in fields(options):
+        value, least = getattr(options, item.name), item.name in above_zero
+        if isinstance(value, float | int) and not (math.isfinite(value) and (value > 0 if least else value >= 0)):
+            unit = "" if item.name == "spare_wraps" else " mm"
+            raise InputError(
+                f"{item.name} must {f'be above 0{unit}' if least else 'not be negative'}, not {value:g}{unit}"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class PatternOptions:
+    """Choices for a pattern; lengths in millimetres, as everywhere in fabrication.
+
+    Attributes:
+        seam_allowance: cloth between the seam and the cut [mm].
+        corner: how the cut goes round an outward corner.
+        pinhole: diameter of the hole for a cable [mm].
+        cloth: least cloth between a pinhole and the seam [mm].
+        gap: between the panels, and round the sheet [mm].
+        back_pinholes: whether the back panel gets the pinholes too, mirrored.
+        marker_names: whether markers are drawn, with their names.
+        opening_reach: how far the opening goes beyond the outermost winches [mm]; 0 for no opening.
+        gusset: whether a strip of cloth between front and back makes the body as thick as it was simulated. None: where
+            two panels alone, stuffed, would stay thinner. A limb that is thinner than simulated is softer, holds less
+            cable, and is harder to turn right side out; the price is a second seam round the body.
+        gusset_piece: longest piece of that strip, its seam allowances not counted [mm].
+        force: draw what cannot be cut honestly all the same; `Pattern.problems` then says what.
+
+    Raises:
+        InputError: a length out of its range, or a text that is no corner.
+    """
+
+    seam_allowance: float = 8.0
+    corner: Corner = Corner.ROUND
+    pinhole: float = 2.0
+    cloth: float = 1.5
+    gap: float = 10.0
+    back_pinholes: bool = False
+    marker_names: bool = False
+    opening_reach: float = 30.0
+    gusset: bool | None = None
+    gusset_piece: float = 400.0
+    force: bool = False
+
+    def __post_init__(self) -> None:
+        _check_word(self, "corner", Corner)
+        _check_sizes(self, above_zero=("pinhole",))
+        if self.gusset_piece < _SHORTEST:
+            raise InputError(f"gusset_piece must be at least {_SHORTEST:g} mm, not {self.gusset_piece:g} mm")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartOptions:
+    """Sizes that depend on the printer and on what is bought; lengths in millimetres.
+
+    Attributes:
+        clearance: between parts that move in each other, on each side [mm].
+        fit: between parts that are put into each other and stay, on each side [mm].
+        wall: least thickness of a wall [mm].
+        cable: diameter of the cable, a braided line [mm].
+        tube: outer diameter of the PTFE sheath [mm].
+        bore: inner diameter of the sheath [mm].
+        run: how far in front of the base for winches outside a body can stand [mm].
+        spare_wraps: turns of cable that stay on a spool when it is let out as far as it may be.
+
+    Raises:
+        InputError: a number out of its range.
+    """
+
+    clearance: float = 0.3
+    fit: float = 0.15
+    wall: float = 1.6
+    cable: float = 0.4
+    tube: float = 2.0
+    bore: float = 1.0
+    run: float = 100.0
+    spare_wraps: float = 2.0
+
+    def __post_init__(self) -> None:
+        _check_sizes(self, above_zero=("wall", "cable", "tube", "bore"))
+        if not self.cable < self.bore < self.tube:
+            raise InputError(
+                f"cable {self.cable:g} mm, bore {self.bore:g} mm and tube {self.tube:g} mm must rise: "
+                "the cable runs in the bore of the tube"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class MouldOptions:
+    """Choices for a mould; lengths in millimetres.
+
+    Attributes:
+        kind: printed halves, or silicone cast round a printed positive (R52).
+        wall: least thickness round the body [mm].
+        bed: largest piece that the printer takes, along x, y and z [mm].
+        key_clearance: between a key and its socket, on each side [mm].
+        pocket_clearance: between a winch in the body and the foam, on each side [mm].
+        mark_cables: dents in the foam show where cables run.
+        mark_depth: cable points that lie no deeper below the surface are marked [mm].
+
+    Raises:
+        InputError: a length that is not above 0 (a clearance of pockets may be 0), or a text that is no kind of mould.
+    """
+
+    kind: MouldKind = MouldKind.PRINTED
+    wall: float = 8.0
+    bed: tuple[float, float, float] = (220.0, 220.0, 250.0)
+    key_clearance: float = 0.2
+    pocket_clearance: float = 1.0
+    mark_cables: bool = True
+    mark_depth: float = 10.0
+
+    def __post_init__(self) -> None:
+        _check_word(self, "kind", MouldKind)
+        _check_sizes(self, above_zero=("wall", "key_clearance", "mark_depth"))
+        for axis, side in enumerate(self.bed):
+            if not (math.isfinite(side) and side > 0):
+                raise InputError(f"bed[{axis}] must be above 0 mm, not {side:g} mm")
+
+
 @dataclass(frozen=True, kw_only=True)
 class KitOptions:
-    """What kind of robot is built, and how.
+    """Choices for the kit of a robot: what kind of robot is built, and how.
 
     Attributes:
         method: None: plush for a flat body and for one that is stuffed, foam for others.
@@ -39,6 +197,9 @@ class KitOptions:
         pattern: of a plush robot; its `force` is that of the kit.
         parts: of the printed parts.
         mould: of a robot of foam.
+
+    Raises:
+        InputError: a text that is no method or no paper.
     """
 
     method: Method | None = None
@@ -50,7 +211,12 @@ class KitOptions:
     parts: PartOptions = field(default_factory=PartOptions)
     mould: MouldOptions = field(default_factory=MouldOptions)
 
+    def __post_init__(self) -> None:
+        if self.method is not None:
+            _check_word(self, "method", Method)
+        _check_word(self, "paper", Paper)
+
     def method_for(self, body: Body) -> Method:
-        """How a body is made."""
+        """Method by which a body is made."""
         stuffed = body.mesh.dim == 2 or body.material.name in STUFFINGS
         return self.method or (Method.PLUSH if stuffed else Method.FOAM)

@@ -3,8 +3,7 @@
 from dataclasses import replace
 
 from hydrostat.fabrication.body_work import BodyWork
-from hydrostat.fabrication.checks.patch_checks import patch_checks
-from hydrostat.fabrication.checks.pattern_checks import pattern_checks
+from hydrostat.fabrication.checks.pattern_checks import patch_checks, pattern_checks
 from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions
 from hydrostat.fabrication.lists.list_input import Cloth
 from hydrostat.fabrication.patches.space_pattern import space_pattern

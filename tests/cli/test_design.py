@@ -16,7 +16,7 @@ from plot.designs import plain_network
 
 import hydrostat as hs
 from hydrostat.design import Alternative, Constraints, FibreKind, Network, RouteOptions, TreeOptions, Zone
-from hydrostat.fabrication.kit_folder import write_files
+from hydrostat.fabrication.kit import write_files
 from hydrostat.robot import Pose, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]

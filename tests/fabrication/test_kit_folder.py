@@ -6,7 +6,7 @@ import json
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.kit_folder import write_files
+from hydrostat.fabrication.kit import write_files
 
 
 def _files(**content: str) -> dict[str, bytes]:

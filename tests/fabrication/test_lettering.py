@@ -1,7 +1,6 @@
 import pytest
 
-from hydrostat.fabrication.patterns.lettering import Lettering
-from hydrostat.fabrication.patterns.stroke_font import CAP_HEIGHT, GLYPHS, UNKNOWN
+from hydrostat.fabrication.patterns.lettering import CAP_HEIGHT, GLYPHS, UNKNOWN, Lettering
 
 
 def test_every_glyph_fits_its_box_and_is_its_own():

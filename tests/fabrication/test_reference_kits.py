@@ -11,8 +11,8 @@ from fingerprint import differences, fingerprint
 from plush_robots import crossed
 
 from hydrostat.fabrication import Kit, pattern_dxf, pattern_svg, plush_pattern
+from hydrostat.fabrication.solids.print_files import stl_bytes
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.fabrication.solids.stl import stl_bytes
 
 REFERENCES = Path(__file__).parent / "references"
 

@@ -2,8 +2,8 @@
 
 import math
 
+from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.moulds.mould import Mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Robot
 

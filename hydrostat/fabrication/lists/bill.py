@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.lists.prices import Price
 from hydrostat.fabrication.lists.table import Align, Cell, Column, Table
-from hydrostat.fabrication.price import Price
 
 
 @dataclass(frozen=True, kw_only=True)

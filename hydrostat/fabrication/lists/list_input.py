@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.kit_options import Method, PartOptions
 from hydrostat.fabrication.lists.line import Line
 from hydrostat.fabrication.parts.motor import Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot

@@ -5,12 +5,18 @@ from dataclasses import dataclass
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
-from hydrostat.fabrication.lists.cable_cuts import cable_cuts, cable_table, check_lengths
+from hydrostat.fabrication.lists.cuts import (
+    cable_cuts,
+    cable_table,
+    check_lengths,
+    check_sheaths,
+    sheath_cuts,
+    sheath_table,
+)
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.lists.list_input import ListInput
 from hydrostat.fabrication.lists.motor_sizing import motor_table, motor_warnings, size_winches
 from hydrostat.fabrication.lists.needs import all_needs
-from hydrostat.fabrication.lists.sheath_cuts import check_sheaths, sheath_cuts, sheath_table
 from hydrostat.fabrication.lists.stitching import close_warnings, deep_warnings, depth_table, plane_table, stitch_table
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.self_check import Check

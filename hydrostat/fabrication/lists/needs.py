@@ -3,13 +3,11 @@
 import math
 
 from hydrostat.fabrication.lists.bill import Item
-from hydrostat.fabrication.lists.cable_cuts import CableCut
+from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import Line
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
-from hydrostat.fabrication.lists.prices import PRICES
-from hydrostat.fabrication.lists.sheath_cuts import SheathCut
+from hydrostat.fabrication.lists.prices import NO_SOURCE, PRICES, Price
 from hydrostat.fabrication.parts.motor import Motor
-from hydrostat.fabrication.price import NO_SOURCE, Price
 
 POLYETHYLENE = 0.97e-3
 """Density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.fabrication.lists.sheath_cuts import point_name
+from hydrostat.fabrication.lists.cuts import point_name
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.geometry.surface import Solid, Surface

@@ -10,7 +10,7 @@ import numpy as np
 from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.openings import Sprue
-from hydrostat.fabrication.moulds.simple_solids import joined, rod
+from hydrostat.fabrication.moulds.solids import joined, rod
 
 RIM = 13.0
 """Least width of the rim round the cavity [mm]: a key or a bolt with walls on both sides."""

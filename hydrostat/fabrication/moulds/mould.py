@@ -7,21 +7,19 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from manifold3d import Manifold
 
-from hydrostat.fabrication.moulds.body_solid import MILLIMETRES, body_solid
+from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.casting import Casting, make_casting
 from hydrostat.fabrication.moulds.closing import RIM, Block, make_closing
-from hydrostat.fabrication.moulds.frame import Frame, stand
-from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves
+from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves, mould_prints
 from hydrostat.fabrication.moulds.linked import linked
-from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
-from hydrostat.fabrication.moulds.mould_prints import mould_prints
 from hydrostat.fabrication.moulds.mould_words import mould_problems, mould_warnings, standing
 from hydrostat.fabrication.moulds.openings import Sprue, Vent, make_sprue, make_vents
-from hydrostat.fabrication.moulds.pocket import Pocket, cable_dents, make_pockets
+from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, make_pockets
 from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames, make_positive
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
+from hydrostat.fabrication.moulds.solids import MILLIMETRES, body_solid
 from hydrostat.fabrication.moulds.split import grid
-from hydrostat.fabrication.moulds.winch_room import Sides, WinchRoom
+from hydrostat.fabrication.moulds.stance import Frame, stand
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot

@@ -1,11 +1,11 @@
 """What is said of a mould: how it stands, what is wrong with it, what to mind."""
 
-from hydrostat.fabrication.moulds.frame import Frame
+from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.halves import Halves
-from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.openings import Sprue, Vent
 from hydrostat.fabrication.moulds.pocket import Pocket, clashes
 from hydrostat.fabrication.moulds.pull import Pull
+from hydrostat.fabrication.moulds.stance import Frame
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material
 from hydrostat.units import counted

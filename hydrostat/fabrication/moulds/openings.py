@@ -10,9 +10,8 @@ from jaxtyping import Float
 from manifold3d import Manifold
 
 from hydrostat.arrays import Vector
-from hydrostat.fabrication.moulds.frame import SMALLEST_TRAP
-from hydrostat.fabrication.moulds.high_points import high_points
-from hydrostat.fabrication.moulds.simple_solids import rod
+from hydrostat.fabrication.moulds.solids import rod
+from hydrostat.fabrication.moulds.stance import SMALLEST_TRAP, high_points
 from hydrostat.fabrication.solids.printed import triangles_of
 
 VENT = 1.5

@@ -1,4 +1,4 @@
-"""Cores in the mould that leave pockets for winches in the foam, and small cones that leave dents where cables run."""
+"""`Pocket`: room in the foam for a winch, left by a core of the mould; and dents in the foam where cables run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,13 +9,48 @@ from jaxtyping import Float
 from manifold3d import Manifold
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.moulds.body_solid import MILLIMETRES
-from hydrostat.fabrication.moulds.frame import Frame
 from hydrostat.fabrication.moulds.release import Skin, axes_along
-from hydrostat.fabrication.moulds.simple_solids import joined, rod
-from hydrostat.fabrication.moulds.winch_room import Sides, WinchRoom
+from hydrostat.fabrication.moulds.solids import MILLIMETRES, joined, rod
+from hydrostat.fabrication.moulds.stance import Frame
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Mount, Robot
+
+Sides = tuple[float, float, float]
+"""Lengths along three axes [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WinchRoom:
+    """What a winch takes up; lengths in millimetres.
+
+    Attributes:
+        low: least corner of the box round it, its shaft along z through the origin.
+        high: largest corner of that box.
+    """
+
+    low: Sides
+    high: Sides
+
+    @classmethod
+    def about_the_middle(cls, sides: Sides) -> "WinchRoom":
+        """A box whose shaft is in its middle."""
+        a, b, c = (side / 2 for side in sides)
+        return cls(low=(-a, -b, -c), high=(a, b, c))
+
+    @property
+    def sides(self) -> Sides:
+        """Of the box [mm]."""
+        (a, b, c), (x, y, z) = self.low, self.high
+        return x - a, y - b, z - c
+
+    @property
+    def off(self) -> Sides:
+        """From the winch's place to the middle of the box [mm]: across the shaft only.
+
+        Along the shaft the middle of the box is at the winch's place: the foam gives a cable that little way.
+        """
+        return (self.low[0] + self.high[0]) / 2, (self.low[1] + self.high[1]) / 2, 0.0
+
 
 _LEAST_SKIN = 2.0
 """Foam between a pocket and the next surface [mm]."""

@@ -12,7 +12,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.closing import Block
 from hydrostat.fabrication.moulds.openings import Sprue
-from hydrostat.fabrication.moulds.simple_solids import joined
+from hydrostat.fabrication.moulds.solids import joined
 from hydrostat.fabrication.moulds.split import dowels_across
 from hydrostat.fabrication.solids.construct import segments
 

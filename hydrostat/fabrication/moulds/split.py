@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from manifold3d import CrossSection, JoinType, Manifold
 
-from hydrostat.fabrication.moulds.simple_solids import joined, rod
+from hydrostat.fabrication.moulds.solids import joined, rod
 
 DOWEL = 1.6
 """Radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]."""

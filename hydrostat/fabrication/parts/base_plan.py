@@ -8,11 +8,46 @@ from manifold3d import Manifold
 from shapely.geometry import Polygon
 from shapely.geometry.polygon import orient
 
-from hydrostat.fabrication.parts import tube_holder
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.housing import SHEET
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
-from hydrostat.fabrication.solids.construct import Construction, Corner, Cylinder, Prism, segments
+from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder, Prism, segments
+
+HOLDER_WIDTH = 10.0
+HOLDER_DEPTH = 8.0
+"""Of a block, across and along the tubes [mm]."""
+
+HOLDER_PASSAGE = 3.4
+_PILOT = 2.6
+_INTO = 8.0
+"""Hole in the base for the M3 screw that holds the block, its pilot in the block, and how deep that is [mm]."""
+
+_SLOT = 1.0
+"""Width of the slot that closes when the block is screwed together [mm]."""
+
+_ABOVE = 3.0
+"""From the highest tube to the screw that pinches [mm]."""
+
+
+def tube_holder(heights: Sequence[float], options: PartOptions) -> Construction:
+    """A block on the plane z = 0 with a bore along y for a tube at each height [mm], x = y = 0 in its middle.
+
+    The bores have the size of the tube; a slot goes down through all of them from the top, and a screw M2 across it
+    closes the block on the tubes.
+    """
+    lowest, highest = min(heights), max(heights)
+    screw = highest + options.tube / 2 + _ABOVE
+    top = screw + 3.0
+    body: Construction = Box((HOLDER_WIDTH, HOLDER_DEPTH, top)).moved(-HOLDER_WIDTH / 2, -HOLDER_DEPTH / 2, 0)
+    for height in heights:
+        body = body - Cylinder(HOLDER_DEPTH + 2, options.tube / 2).turned(x=90).moved(0, HOLDER_DEPTH / 2 + 1, height)
+    deep = lowest - options.tube / 2 - 0.5
+    body = body - Box((_SLOT, HOLDER_DEPTH + 2, top)).moved(-_SLOT / 2, -HOLDER_DEPTH / 2 - 1, deep)
+    body = body - Cylinder(HOLDER_WIDTH, 1.2).turned(y=90).moved(0, 0, screw)
+    body = body - Cylinder(HOLDER_WIDTH, 0.85).turned(y=-90).moved(0, 0, screw)
+    depth = min(_INTO, deep - 1.2)
+    return body - Cylinder(depth + 1, _PILOT / 2).moved(0, 0, -1)
+
 
 Ring = tuple[Corner, ...]
 """A closed line, its first corner not repeated [mm]."""
@@ -82,7 +117,7 @@ class Plan:
         """One row, so that all tubes leave to one side, in tiles of as many units as the bed takes."""
         pitch = max(unit.size[0] for unit in units) + _GAP
         low = min(unit.low[1] for unit in units) - _GAP / 2
-        high = max(unit.high[1] for unit in units) + FREE + tube_holder.DEEP + 2.0
+        high = max(unit.high[1] for unit in units) + FREE + HOLDER_DEPTH + 2.0
         most = max(1, math.floor((bed[0] - 2 * _STRIP) / pitch))
         count = math.ceil(len(units) / most)
         seats: list[Seat] = []
@@ -124,7 +159,7 @@ class Tile:
             cut = Polygon(unit.motor.outline).buffer(options.clearance, join_style="mitre")
             cuts.append(tuple(seat.put((float(x), float(y))) for x, y in orient(cut).exterior.coords[:-1]))
             holes += [Hole(seat.put((x, y)), passage / 2) for x in (-post, post) for y in (-post, post)]
-            holes.append(Hole(seat.put(holder_at(unit)), tube_holder.PASSAGE / 2))
+            holes.append(Hole(seat.put(holder_at(unit)), HOLDER_PASSAGE / 2))
         return Tile(low=low, high=high, bolts=bolts, cuts=tuple(cuts), holes=tuple(holes))
 
     @property
@@ -150,4 +185,4 @@ def _rectangle(low: Corner, high: Corner) -> Ring:
 def holder_at(unit: WinchUnit) -> Corner:
     """The middle of its tube holder, in the unit's coordinates [mm]."""
     x, y, _ = unit.exits[0].point
-    return x, y + FREE + tube_holder.DEEP / 2
+    return x, y + FREE + HOLDER_DEPTH / 2

@@ -8,12 +8,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hydrostat.fabrication.parts import tube_holder
-from hydrostat.fabrication.parts.base_plan import FREE, Plan, Ring, Seat, holder_at
+from hydrostat.fabrication.kit_options import PartOptions
+from hydrostat.fabrication.parts.base_plan import (
+    FREE,
+    HOLDER_DEPTH,
+    Plan,
+    Ring,
+    Seat,
+    holder_at,
+    tube_holder,
+)
 from hydrostat.fabrication.parts.housing import SHEET
-from hydrostat.fabrication.parts.part_options import PartOptions
-from hydrostat.fabrication.parts.winch_parts import letters
-from hydrostat.fabrication.parts.winch_unit import WinchUnit
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, letters
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, solid_of
 from hydrostat.fabrication.solids.printed import Printed
@@ -119,7 +125,7 @@ def _tubes(robot: Robot, units: Sequence[WinchUnit], plan: Plan, options: PartOp
     places = {seat.unit: seat.put(holder_at(units[seat.unit]))[0] for seat in plan.seats}
     low, high = min(places.values()), max(places.values())
     return tuple(
-        (cable, FREE + tube_holder.DEEP + options.run + max(places[number] - low, high - places[number]) + spread)
+        (cable, FREE + HOLDER_DEPTH + options.run + max(places[number] - low, high - places[number]) + spread)
         for number, unit in enumerate(units)
         for cable in unit.cables
     )
@@ -145,7 +151,7 @@ def _holders(units: Sequence[WinchUnit], options: PartOptions) -> list[Printed]:
     made: dict[Construction, Printed] = {}
     found = []
     for unit in units:
-        model = tube_holder.tube_holder([leaves.point[2] for leaves in unit.exits], options)
+        model = tube_holder([leaves.point[2] for leaves in unit.exits], options)
         if model not in made:
             made[model] = Printed(
                 name=f"tube_holder_{letters(len(made))}",

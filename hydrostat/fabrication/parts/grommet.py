@@ -3,7 +3,7 @@
 import math
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.solids.construct import Construction, Cylinder, Turning, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 

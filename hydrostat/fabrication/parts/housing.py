@@ -10,8 +10,8 @@ from functools import cached_property
 
 from shapely.geometry import MultiPoint, Polygon
 
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.motor import Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.screws import Screw
 from hydrostat.fabrication.parts.spool import Spool
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder

@@ -4,10 +4,10 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
 from hydrostat.fabrication.parts.grommet import grommet
 from hydrostat.fabrication.parts.motor import Motor, choose_motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.stopper import Stopper, stopper
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
 from hydrostat.fabrication.solids.assembly import Assembly

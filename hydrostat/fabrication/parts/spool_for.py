@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.housing import drive_of, roof_of
 from hydrostat.fabrication.parts.motor import Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, width_for, wraps
 from hydrostat.robot import Robot, Winch
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.screws import M2X6
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Turning, solid_of

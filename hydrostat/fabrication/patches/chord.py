@@ -12,10 +12,9 @@ from scipy.sparse.linalg import splu
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import split
 
-from hydrostat.fabrication.patches.distortion import distortion
-from hydrostat.fabrication.patches.level_cut import cut_at_zero
+from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Disc, Patch
-from hydrostat.fabrication.patches.skin_mesh import SkinMesh
+from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
 
 _DIRECTIONS = 12
 _SHIFTS = (0.0, -0.06, 0.06)

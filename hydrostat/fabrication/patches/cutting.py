@@ -1,16 +1,79 @@
-"""`cut_skin`: the skin of a body in as few patches as lie flat well enough."""
+"""`cut_skin`: the skin of a body in as few patches as lie flat well enough, and what is wrong with them."""
 
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
+from jaxtyping import Float, Int
+from scipy.sparse import csc_array, diags_array
+from scipy.sparse.linalg import splu
 
 from hydrostat.fabrication.patches.chord import best_chord, cut_chord
-from hydrostat.fabrication.patches.distortion import distortion
-from hydrostat.fabrication.patches.flatten import flatten
-from hydrostat.fabrication.patches.front_and_back import front_and_back
+from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import Patch, disc_of
-from hydrostat.fabrication.patches.seams import find_seams
-from hydrostat.fabrication.patches.skin_mesh import SkinMesh
+from hydrostat.fabrication.patches.seams import Seam, find_seams
+from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
+from hydrostat.fabrication.patterns.skin import Skin
+
+_SMOOTH = 0.02
+"""How far the normals are smoothed before the silhouette is drawn, as a share of the body's diagonal."""
+
+_ALONG_AXIS = 0.94
+"""A direction so near to an axis (its cosine) is the axis: 20 degrees."""
+
+
+def thin_direction(mesh: SkinMesh) -> Float[np.ndarray, " 3"]:
+    """The direction towards which, there and back, most of the skin looks; the axis where it is near one."""
+    areas = np.maximum(mesh.areas, 1e-300)[:, None]
+    normals = mesh.crosses / (2 * areas)
+    direction = np.linalg.eigh((normals * areas).T @ normals)[1][:, -1]
+    main = int(np.abs(direction).argmax())
+    if abs(direction[main]) > _ALONG_AXIS:
+        direction = np.eye(3)[main]
+    return direction * np.sign(direction[main])
+
+
+def front_and_back(mesh: SkinMesh) -> SkinMesh:
+    """The mesh in two discs: patch 0 looks against the thin direction (the front), patch 1 along it."""
+    direction = thin_direction(mesh)
+    field = _smoothed(mesh, _looks(mesh, direction))
+    cut, _, side = cut_at_zero(mesh, field, np.ones(len(mesh.triangles), dtype=bool))
+    return cut.labelled(two_discs(cut, side))
+
+
+def two_discs(mesh: SkinMesh, side: Int[np.ndarray, " triangles"]) -> Int[np.ndarray, " triangles"]:
+    """0 below and 1 above, islands given to what is round them, so that both are in one piece.
+
+    On a closed surface without holes through it, a piece whose rest is one piece too is a disc.
+    """
+    above = _largest(mesh, (side > 0).astype(np.int64), 1)
+    return 1 - _largest(mesh, 1 - above, 1)
+
+
+def _largest(mesh: SkinMesh, label: Int[np.ndarray, " triangles"], value: int) -> Int[np.ndarray, " triangles"]:
+    """1 in the largest piece with that label, else 0."""
+    pieces = mesh.pieces(label)
+    areas = np.bincount(pieces, mesh.areas * (label == value))
+    return (pieces == int(areas.argmax())).astype(np.int64)
+
+
+def _looks(mesh: SkinMesh, direction: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " vertices"]:
+    """How far the skin at each vertex looks along a direction: 1 along it, -1 against it."""
+    normals = np.zeros_like(mesh.vertices)
+    for corner in range(3):
+        np.add.at(normals, mesh.triangles[:, corner], mesh.crosses)
+    return (normals @ direction) / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
+
+
+def _smoothed(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Float[np.ndarray, " vertices"]:
+    """One implicit step of diffusion over the skin."""
+    import igl
+
+    reach = _SMOOTH * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    spread = csc_array(igl.intrinsic_delaunay_cotmatrix(mesh.vertices, mesh.triangles)[0])
+    mass = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas / 3, 3), len(mesh.vertices))
+    return splu(csc_array(diags_array(mass) - reach**2 * spread)).solve(mass * values)
+
 
 MOST_GIVE = 0.12
 """How much the cloth may have to give in 95 % of a patch. Felt and woven plush give about that much; assumed, measured
@@ -98,3 +161,63 @@ def _on(mesh: SkinMesh, number: int, patch: Patch) -> Patch:
     """The patch on the final mesh: a later cut beside it may have put vertices on its rim."""
     disc = disc_of(mesh, number)
     return patch if len(disc.vertices) == len(patch.disc.vertices) else flatten(disc)
+
+
+GIVES_LITTLE = 0.06
+"""What any cloth gives: above that a pattern asks for one that stretches. Assumed, measured on none."""
+
+NARROWEST = 8.0
+"""A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed."""
+
+
+def patch_problems(
+    names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
+) -> tuple[str, ...]:
+    """Why the patches cannot be sewn, a line each."""
+    problems = []
+    for name, patch, skin in zip(names, patches, skins, strict=True):
+        give = distortion(patch).give(0.95)
+        if give > MOST_GIVE:
+            problems.append(
+                f"patch {name} would have to stretch or shrink by {give:.1%} to lie on the body, more than "
+                f"{MOST_GIVE:.0%}, which felt gives: cast this body in a mould, or simplify its shape"
+            )
+        if not patch.outline.is_valid:
+            problems.append(f"patch {name} laps over itself when it lies flat: cast this body in a mould")
+        elif isinstance(neck := patch.outline.buffer(-NARROWEST / 2), shapely.MultiPolygon) or neck.is_empty:
+            problems.append(
+                f"patch {name} is narrower than {NARROWEST:g} mm somewhere: it cannot be sewn and turned; cast this "
+                "body in a mould, or make it larger"
+            )
+        problems += [f"patch {name}: {problem}" for problem in skin.problems]
+    worst = max(seams, key=lambda seam: seam.mismatch)
+    if worst.mismatch > MOST_EASE:
+        one, other = (names[number] for number in worst.patches)
+        lengths = " and ".join(f"{length:.0f} mm" for length in worst.lengths)
+        problems.append(
+            f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart: more "
+            f"than {MOST_EASE:.0%} cannot be eased in"
+        )
+    return tuple(problems)
+
+
+def patch_warnings(
+    names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
+) -> tuple[str, ...]:
+    """What to mind with the cloth, a line each."""
+    warnings = []
+    gives = {name: distortion(patch).give(0.95) for name, patch in zip(names, patches, strict=True)}
+    most = max(gives, key=lambda name: gives[name])
+    if gives[most] > GIVES_LITTLE:
+        warnings.append(
+            f"the cloth has to give up to {gives[most]:.0%} (patch {most}, 95 % of its area): take a cloth that "
+            "stretches, such as knitted plush or soft felt"
+        )
+    ease = max((seam.mismatch for seam in seams), default=0.0)
+    if ease > 0.01:
+        warnings.append(
+            f"sides of seams differ by up to {ease:.1%}: pin notch to notch, ease the longer one in between"
+        )
+    for name, skin in zip(names, skins, strict=True):
+        warnings += [f"patch {name}: {warning}" for warning in skin.warnings]
+    return tuple(warnings)

@@ -8,16 +8,15 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.polygon import orient
 
+from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.patch import Patch
-from hydrostat.fabrication.patches.patch_notches import PatchNotch
+from hydrostat.fabrication.patches.seams import PatchNotch
 from hydrostat.fabrication.patches.skin_holes import SHARED, SkinHole
 from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.marks import dashed
 from hydrostat.fabrication.patterns.opening import Opening
-from hydrostat.fabrication.patterns.panel import Panel
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Panel, Part, Place, Shape, trace
 from hydrostat.fabrication.patterns.skin import Skin, skin_of
 from hydrostat.fabrication.patterns.stitches import Side
 

@@ -8,9 +8,9 @@ import numpy as np
 import shapely
 from jaxtyping import Float, Int
 
+from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import Seam
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Place
 from hydrostat.fabrication.patterns.stitches import Side
 from hydrostat.geometry.surface import Solid, Surface

@@ -3,28 +3,33 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Float
 from shapely.affinity import translate
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.patches.back_opening import back_opening
-from hydrostat.fabrication.patches.cutting import cut_skin
-from hydrostat.fabrication.patches.distortion import distortion
-from hydrostat.fabrication.patches.front_and_back import thin_direction
+from hydrostat.fabrication.kit_options import PatternOptions
+from hydrostat.fabrication.patches.cutting import cut_skin, patch_problems, patch_warnings, thin_direction
+from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Patch
-from hydrostat.fabrication.patches.patch_notches import patch_notches, stuffing_gap
 from hydrostat.fabrication.patches.patch_panel import patch_panel, patch_skin
-from hydrostat.fabrication.patches.pattern_words import patch_problems, patch_warnings
-from hydrostat.fabrication.patches.seams import Seam, find_seams
-from hydrostat.fabrication.patches.skin_holes import SkinHole, find_holes, hole_problems, hole_warnings, way_problems
+from hydrostat.fabrication.patches.seams import Seam, find_seams, patch_notches, stuffing_gap
+from hydrostat.fabrication.patches.skin_holes import (
+    NearestOnSkin,
+    SkinHole,
+    find_holes,
+    hole_problems,
+    hole_warnings,
+    way_problems,
+)
 from hydrostat.fabrication.patches.skin_mesh import skin_mesh
-from hydrostat.fabrication.patches.skin_stitches import skin_stitches
-from hydrostat.fabrication.patches.view import front_view, upright
-from hydrostat.fabrication.patterns.opening import Opening
+from hydrostat.fabrication.patches.view import FrontView, front_view, upright
+from hydrostat.fabrication.patterns.opening import Opening, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.patterns.pinholes import Pinhole
 from hydrostat.fabrication.patterns.shape import Place
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
-from hydrostat.robot import Robot
+from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
+from hydrostat.robot import Mount, Robot
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -130,3 +135,54 @@ def _moved(hole: SkinHole, origins: list[Place]) -> SkinHole:
     """The hole in places of the sheet."""
     places = tuple((number, (x + origins[number][0], y + origins[number][1])) for number, (x, y) in hole.places)
     return replace(hole, places=places)
+
+
+def back_opening(
+    robot: Robot,
+    back: tuple[bool, ...],
+    patches: tuple[Patch, ...],
+    holes: tuple[SkinHole, ...],
+    view: FrontView,
+    options: PatternOptions,
+) -> tuple[int, Opening] | None:
+    """The zipper in the patch of the back that is behind the winches, and the number of that patch."""
+    inside = [1e3 * np.array(winch.at) for winch in robot.winches if winch.mount is not Mount.WORLD]
+    if not inside:
+        return None
+    at = _level(view.on_paper(np.array(inside)))
+    best: tuple[float, int, list[Place]] | None = None
+    for number, patch in enumerate(patches):
+        if not back[number]:
+            continue
+        seen = Patch(disc=replace(patch.disc, vertices=_level(view.on_paper(patch.disc.vertices))), flat=patch.flat)
+        behind, _, places = NearestOnSkin((seen,)).nearest(at)
+        gap = float(np.linalg.norm(behind - at, axis=1).sum())
+        if best is None or gap < best[0]:
+            best = (gap, number, [(x, y) for x, y in places.tolist()])
+    if best is None:
+        return None
+    number, places = best[1], best[2]
+    own = [(hole, place) for hole in holes if hole.passes and (place := hole.on(number)) is not None]
+    pinholes = tuple(Pinhole(place, options.pinhole / 2, ((hole.cable - 1, hole.point - 1),)) for hole, place in own)
+    opening = opening_at(places, patches[number].outline, pinholes, options)
+    return None if opening is None else (number, opening)
+
+
+def _level(places: Float[np.ndarray, "places 2"]) -> Float[np.ndarray, "places 3"]:
+    """Places of a drawing in space."""
+    return np.column_stack([places, np.zeros(len(places))])
+
+
+def skin_stitches(robot: Robot, holes: tuple[SkinHole, ...], view: FrontView) -> tuple[CableStitches, ...]:
+    """How each cable is sewn; points deep inside stay on the side of the one before."""
+    sewn = []
+    for number, cable in enumerate(robot.cables, start=1):
+        begins = Side.OUTSIDE if robot.winch(cable.winch).mount is Mount.WORLD else Side.INSIDE
+        own = {hole.point: hole for hole in holes if hole.cable == number}
+        stitches, side = [], begins
+        for point, (x, y) in enumerate(view.on_paper(1e3 * np.array(cable.points)).tolist(), start=1):
+            hole = own.get(point)
+            side = hole.after if hole else side
+            stitches.append(Stitch(number=point, place=(x, y), passes=bool(hole and hole.passes), after=side))
+        sewn.append(CableStitches(cable=number, winch=cable.winch, begins=begins, stitches=tuple(stitches)))
+    return tuple(sewn)

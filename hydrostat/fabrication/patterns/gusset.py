@@ -6,12 +6,10 @@ from itertools import pairwise
 import shapely
 from shapely import LineString, Polygon
 
+from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.notches import Notch
-from hydrostat.fabrication.patterns.panel import Panel
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
-from hydrostat.fabrication.patterns.shape import Layer, Part, Shape, trace
-from hydrostat.fabrication.patterns.skin import Skin
+from hydrostat.fabrication.patterns.shape import Layer, Panel, Part, Shape, trace
+from hydrostat.fabrication.patterns.skin import Notch, Skin
 
 
 def stuffed_thickness(seam: Polygon) -> float:

@@ -9,10 +9,9 @@ from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import substring
 
-from hydrostat.fabrication.patterns.notches import Notch
 from hydrostat.fabrication.patterns.pinholes import Pinhole
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Part, Place, Shape, trace
-from hydrostat.fabrication.patterns.skin import Skin
+from hydrostat.fabrication.patterns.skin import Notch, Skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.robot import Cable, Robot
 

@@ -8,7 +8,7 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import Pinhole
 from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape, trace
 from hydrostat.robot import Robot

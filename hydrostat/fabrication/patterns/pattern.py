@@ -1,19 +1,18 @@
 """`Pattern`: the panels of a plush robot on one sheet, for a laser cutter (R10)."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.gusset import gusset_panels, stuffed_thickness, wants_gusset
 from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, seam_marks, winch_marks
-from hydrostat.fabrication.patterns.notches import Notch, find_notches
 from hydrostat.fabrication.patterns.opening import Opening, find_opening
-from hydrostat.fabrication.patterns.panel import Panel
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import find_pinholes, pinhole_problems
-from hydrostat.fabrication.patterns.shape import Layer, Part, Shape, trace
+from hydrostat.fabrication.patterns.shape import Layer, Line, Panel, Part, Place, Shape, trace
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
-from hydrostat.fabrication.patterns.skin import Skin, flat_skin
+from hydrostat.fabrication.patterns.skin import Notch, Skin, find_notches, flat_skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, cable_stitches
 from hydrostat.robot import Robot
 
@@ -163,3 +162,15 @@ def _warnings(draft: _Draft, thickness: float, *, gusset: bool) -> tuple[str, ..
         if sewn.stopper is Side.INSIDE
     ]
     return tuple(warnings)
+
+
+_GAP = 10.0
+"""Round the plate [mm]."""
+
+
+def cut_sheet(name: str, rings: Iterable[tuple[Place, ...]]) -> Pattern:
+    """A plate with its holes [mm], above the bar of 100 mm."""
+    lines = tuple(Line(layer=Layer.CUT, part=Part.EDGE, points=ring, closed=True) for ring in rings)
+    sheet = lay_out((Panel(name="plate", origin=(0.0, 0.0), mirrored=False, shapes=lines),), (), _GAP)
+    ruler = tuple(line for line in sheet.ruler if line.part is Part.RULER)
+    return Pattern(name=name, panels=sheet.panels, shapes=ruler, width=sheet.width, height=sheet.height)

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from shapely import Polygon
 
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
+from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Part, Place
 from hydrostat.robot import Mount, Robot
 

@@ -1,4 +1,4 @@
-"""`Line` and `Circle`: what a laser follows, each on a `Layer`."""
+"""`Line` and `Circle`: what a laser follows, each on a `Layer`; `Panel`: a piece of cloth with all that is on it."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -7,6 +7,8 @@ from typing import Self
 
 import shapely
 from shapely.geometry.base import BaseGeometry
+
+from hydrostat.robot import Point
 
 Place = tuple[float, float]
 """A place on a panel or sheet [mm]: x to the right, y up."""
@@ -121,3 +123,31 @@ def _lines(geometry: BaseGeometry, layer: Layer, part: Part) -> Iterable[Line]:
     else:
         for piece in getattr(geometry, "geoms", ()):
             yield from _lines(piece, layer, part)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Panel:
+    """One piece of cloth, its right side up.
+
+    Attributes:
+        name: "front", "back", or "gusset-1" and so on for the pieces of the strip between them.
+        origin: where the robot's [0, 0] lies on the sheet [mm]; of a piece of the gusset, where its seam with the back
+            begins.
+        mirrored: whether the robot's x runs to the left, as seen from behind.
+        shapes: in places of the sheet [mm].
+    """
+
+    name: str
+    origin: Place
+    mirrored: bool
+    shapes: tuple[Shape, ...]
+
+    def on_sheet(self, point: Point) -> Place:
+        """Where a point of the robot [m] lies on the sheet [mm]; for the front and the back."""
+        x, y = 1e3 * point[0], 1e3 * point[1]
+        return self.origin[0] + (-x if self.mirrored else x), self.origin[1] + y
+
+    def moved(self, dx: float, dy: float) -> Self:
+        """The same panel elsewhere on the sheet, by a shift [mm]."""
+        origin = (self.origin[0] + dx, self.origin[1] + dy)
+        return replace(self, origin=origin, shapes=tuple(shape.moved(dx, dy) for shape in self.shapes))

@@ -7,8 +7,7 @@ import numpy as np
 import shapely
 
 from hydrostat.fabrication.patterns.lettering import Lettering
-from hydrostat.fabrication.patterns.panel import Panel
-from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place
+from hydrostat.fabrication.patterns.shape import Layer, Line, Panel, Part, Place
 
 _RULER = 100.0
 """Length of the bar that shows whether the sheet was cut at its true scale [mm]."""

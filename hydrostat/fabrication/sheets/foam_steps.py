@@ -1,7 +1,7 @@
 """What to do with a body of foam until it is a robot, in order. Times are estimates; none was measured."""
 
+from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.moulds.mould import Mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.sheets.mould_steps import body_mass, rises
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, tie_step, winch_steps

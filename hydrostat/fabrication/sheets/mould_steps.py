@@ -2,8 +2,8 @@
 
 import re
 
+from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.moulds.mould import Mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, minutes_text
 from hydrostat.units import counted

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 
-from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.kit_options import Method, MouldKind
 from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.sheets import foam_steps, mould_steps, plush_steps
 from hydrostat.fabrication.sheets.cable_map import winch_mark

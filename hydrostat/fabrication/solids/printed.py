@@ -1,14 +1,93 @@
-"""`Printed`: a solid that comes from a 3D printer."""
+"""`Printed`: a solid that comes from a 3D printer, and its triangles as files carry them."""
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from manifold3d import Manifold
 
 from hydrostat.fabrication.solids.construct import Construction
-from hydrostat.fabrication.solids.file_mesh import FileMesh, file_mesh
+
+_DECIMALS = 5
+"""Of a coordinate [mm]: what a file of 32-bit numbers can hold of parts up to 128 mm."""
+
+_STEP = 2e-5
+"""How far apart vertices are put that would fall together, at least [mm]."""
+
+FileMesh = tuple[Float[np.ndarray, "kept 3"], Int[np.ndarray, "faces 3"]]
+"""Vertices [mm], each a number that 32 bits hold, and triangles, counter-clockwise from outside."""
+
+
+def file_mesh(solid: Manifold) -> FileMesh:
+    """The triangles of a solid as STL and 3MF hold them: 32-bit numbers, no vertex twice, none without three corners.
+
+    Vertices that rounding puts in one place become one; triangles that lose a corner by this go, as do two that then
+    lie back to back. Where this would open the surface (booleans leave slivers thinner than 32 bits can tell, and
+    bodies may touch in an edge), such vertices are instead put beside each other, some 0.00002 mm apart: then files
+    that know vertices by their place alone, as STL does, have the very neighbours of the solid.
+    """
+    mesh = solid.to_mesh64()
+    corners = _rounded(np.asarray(mesh.vert_properties, dtype=float)[:, :3])
+    triangles = np.asarray(mesh.tri_verts, dtype=np.int64)
+    merged = _merged(corners, triangles)
+    return merged if loose_edges(merged[1]) == 0 else _merged(_apart(corners), triangles)
+
+
+def loose_edges(triangles: Int[np.ndarray, "triangles 3"]) -> int:
+    """How many edges are not used exactly twice, once in each direction."""
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    forward = edges[:, 0] < edges[:, 1]
+    different, which = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    which = which.reshape(-1)
+    there = np.bincount(which[forward], minlength=len(different))
+    back = np.bincount(which[~forward], minlength=len(different))
+    return int(np.count_nonzero((there != 1) | (back != 1)))
+
+
+def _rounded(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corners 3"]:
+    """The nearest numbers that 32 bits hold, with few decimals; no -0."""
+    return np.round(corners, _DECIMALS).astype(np.float32).astype(float) + 0.0
+
+
+def _merged(corners: Float[np.ndarray, "corners 3"], triangles: Int[np.ndarray, "triangles 3"]) -> FileMesh:
+    vertices, which = np.unique(corners, axis=0, return_inverse=True)
+    triangles = which.reshape(-1)[triangles]
+    first, second, third = triangles.T
+    triangles = triangles[(first != second) & (second != third) & (third != first)]
+    triangles = triangles[~_flaps(triangles)]
+    kept, numbers = np.unique(triangles, return_inverse=True)
+    return vertices[kept], numbers.reshape(-1, 3)
+
+
+def _flaps(triangles: Int[np.ndarray, "triangles 3"]) -> Bool[np.ndarray, " triangles"]:
+    """Which triangles lie back to back with another on the same corners: the two enclose nothing."""
+    _, which, used = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)
+    which = which.reshape(-1)
+    first, second, third = triangles.T
+    rises = ((first < second).astype(int) + (second < third) + (third < first)) == 2
+    flaps = np.zeros(len(triangles), dtype=bool)
+    for corners in np.flatnonzero(used > 1):
+        alike = np.flatnonzero(which == corners)
+        one, other = alike[rises[alike]], alike[~rises[alike]]
+        pairs = min(len(one), len(other))
+        flaps[one[:pairs]] = flaps[other[:pairs]] = True
+    return flaps
+
+
+def _apart(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corners 3"]:
+    """The corners with those in one place put beside each other, along x and y in turn so that a flat bottom stays."""
+    corners = corners.copy()
+    step = max(_STEP, 2 * float(np.spacing(np.float32(np.abs(corners).max(initial=0.0)))))
+    for turn in range(100):
+        _, first = np.unique(corners, axis=0, return_index=True)
+        again = np.setdiff1d(np.arange(len(corners)), first)
+        if len(again) == 0:
+            break
+        corners[again, turn % 2] += step
+        corners = _rounded(corners)
+    return corners
+
 
 PLA = 1.24e-3
 """Density of PLA [g/mm^3]."""

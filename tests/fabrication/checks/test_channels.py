@@ -2,8 +2,8 @@
 
 from foam_bricks import foam_brick
 
-from hydrostat.fabrication.checks.channels import channel_problems
-from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.foam import channel_problems
+from hydrostat.fabrication.kit_options import PartOptions
 
 OPTIONS = PartOptions(tube=2.0)
 

@@ -7,8 +7,7 @@ from manifold3d import Manifold
 from plush_robots import crossed
 
 from hydrostat.fabrication import MOTORS, PartOptions, Printed
-from hydrostat.fabrication.checks.solid_checks import solid_checks, too_large
-from hydrostat.fabrication.checks.spool_checks import spool_checks
+from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.fabrication.solids.assembly import Assembly, Placed
 

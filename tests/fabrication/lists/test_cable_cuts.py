@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from small_inputs import square
 
-from hydrostat.fabrication.lists.cable_cuts import KNOT, STEP, TAIL, cable_cuts, cable_table, check_lengths
+from hydrostat.fabrication.lists.cuts import KNOT, STEP, TAIL, cable_cuts, cable_table, check_lengths
 from hydrostat.robot import Cable
 from hydrostat.simulation import Simulation
 

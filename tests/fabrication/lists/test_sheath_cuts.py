@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from small_inputs import square
 
-from hydrostat.fabrication.lists.sheath_cuts import check_sheaths, sheath_cuts, sheath_table
+from hydrostat.fabrication.lists.cuts import check_sheaths, sheath_cuts, sheath_table
 from hydrostat.robot import Cable
 from hydrostat.simulation import Simulation
 

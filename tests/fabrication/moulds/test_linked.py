@@ -5,10 +5,10 @@ import pytest
 from manifold3d import CrossSection, Manifold
 from mould_robots import foam_robot, slab_body
 
+from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds import mould as mould_module
 from hydrostat.fabrication.moulds.linked import linked, linking_number, loops_of
 from hydrostat.fabrication.moulds.mould import Mould, make_mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.mould_words import TOLERATED
 
 

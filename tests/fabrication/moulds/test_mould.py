@@ -14,16 +14,15 @@ from mould_robots import blob_body, foam_robot, slab_body
 from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.mould_checks import mould_checks
 from hydrostat.fabrication.foam import MANY_PIECES, foam_work
-from hydrostat.fabrication.kit_options import KitOptions, Method
+from hydrostat.fabrication.kit_options import KitOptions, Method, MouldKind, MouldOptions
 from hydrostat.fabrication.moulds import mould as mould_module
-from hydrostat.fabrication.moulds.body_solid import body_solid
 from hydrostat.fabrication.moulds.closing import Closing, make_closing
 from hydrostat.fabrication.moulds.halves import Halves
 from hydrostat.fabrication.moulds.mould import TOP_RIM, Mould, make_mould
-from hydrostat.fabrication.moulds.mould_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.mould_words import mould_problems
 from hydrostat.fabrication.moulds.openings import Sprue, make_sprue
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
+from hydrostat.fabrication.moulds.solids import body_solid
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.robot import MATERIALS, Pin, Robot, gallery_folder, load_robot
 

@@ -2,19 +2,17 @@
 
 import numpy as np
 import pytest
+from hydrostat.fabrication.moulds.stance import Frame
 from manifold3d import Manifold
 from mould_robots import foam_robot, slab_body
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.mould_checks import mould_checks
-from hydrostat.fabrication.moulds.body_solid import body_solid
-from hydrostat.fabrication.moulds.frame import Frame
+from hydrostat.fabrication.kit_options import MouldOptions
 from hydrostat.fabrication.moulds.mould import make_mould
-from hydrostat.fabrication.moulds.mould_options import MouldOptions
-from hydrostat.fabrication.moulds.pocket import Pocket, cable_dents, clashes, make_pockets
+from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.release import skin_of
-from hydrostat.fabrication.moulds.simple_solids import rod
-from hydrostat.fabrication.moulds.winch_room import Sides, WinchRoom
+from hydrostat.fabrication.moulds.solids import body_solid, rod
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.robot import Robot
 

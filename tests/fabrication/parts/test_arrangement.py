@@ -11,9 +11,9 @@ from plush_robots import SQUARE, drawn_body, plush_robot
 from shapely import Polygon, box, transform
 from winch_robots import gallery_robot, with_winches
 
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.arrangement import Laid, arranged
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.robot import Cable, Robot, Winch, gallery_names

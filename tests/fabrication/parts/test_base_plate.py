@@ -11,16 +11,15 @@ from overhang import overhang
 from shapely.geometry import Polygon
 from winch_robots import gallery_robot
 
-from hydrostat.fabrication.parts.base_plan import FREE, holder_at
+from hydrostat.fabrication.checks.solid_checks import watertight_problems
+from hydrostat.fabrication.kit_options import PartOptions
+from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, holder_at, tube_holder
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
-from hydrostat.fabrication.parts.tube_holder import DEEP, tube_holder
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.fabrication.solids.construct import solid_of
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.fabrication.solids.sound import watertight_problems
 from hydrostat.robot import Mount, gallery_names
 
 BED = (220.0, 220.0, 250.0)
@@ -110,7 +109,7 @@ def test_a_straight_tube_runs_from_its_seat_through_its_holder(motor: Motor):
     others = [piece.solid for piece in base.assembly.pieces if not piece.name.startswith("tube_holder")]
     for seat, holder in zip(base.seats, holders, strict=True):
         (leaves,) = units[seat.unit].exits
-        length = FREE + DEEP
+        length = FREE + HOLDER_DEPTH
         assert dict(base.tubes)[leaves.cable] > length
         tube = Manifold.cylinder(length, 0.97, -1, 24).rotate((-90, 0, 0)).translate(leaves.point)
         placed = seat.placed(tube.translate((0, 0.01, 0)))
@@ -146,9 +145,9 @@ def test_every_tube_reaches_a_body_anywhere_in_front_of_the_base(name: str, unch
     assert set(tubes) == set(range(len(robot.cables)))
     begins = 1e3 * np.array([cable.points[0] for cable in robot.cables])
     for unit in units:
-        holder = holders[unit.winch] + np.array([0.0, DEEP / 2])
+        holder = holders[unit.winch] + np.array([0.0, HOLDER_DEPTH / 2])
         for cable in unit.cables:
-            free = tubes[cable] - FREE - DEEP
+            free = tubes[cable] - FREE - HOLDER_DEPTH
             for end in (min(row), max(row)):
                 for nearest in begins:  # stands at the run from the row, in front of one of its ends
                     away = abs(end - holder[0]) + run + float(np.linalg.norm(begins[cable] - nearest))

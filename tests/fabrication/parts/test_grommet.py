@@ -5,11 +5,10 @@ import pytest
 from overhang import overhang
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.checks.solid_checks import watertight_problems
+from hydrostat.fabrication.kit_options import PartOptions, PatternOptions
 from hydrostat.fabrication.parts.grommet import grommet
-from hydrostat.fabrication.parts.part_options import PartOptions
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.fabrication.solids.sound import watertight_problems
 
 HOLES = [PatternOptions().pinhole, 3.0, 6.0]
 

@@ -7,14 +7,14 @@ import pytest
 from manifold3d import Manifold, OpType
 from overhang import overhang
 
+from hydrostat.fabrication.checks.solid_checks import watertight_problems
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.housing import SHEET, Housing, drive_of
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.spool import Groove, Spool
-from hydrostat.fabrication.parts.winch_parts import WinchParts, letters
+from hydrostat.fabrication.parts.winch_unit import WinchParts, letters
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.fabrication.solids.construct import solid_of
-from hydrostat.fabrication.solids.sound import watertight_problems
 
 OPTIONS = [PartOptions(), PartOptions(cable=0.6, tube=4.0, bore=2.0, clearance=0.5, wall=2.2)]
 RADII = [(6.0,), (6.0, 6.0, 6.0), (9.0, 6.0)]

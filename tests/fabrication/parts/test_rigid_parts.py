@@ -8,7 +8,7 @@ import pytest
 from winch_robots import gallery_robot, given_demand
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.robot import gallery_names
 

@@ -10,11 +10,11 @@ import trimesh
 from manifold3d import Manifold
 from overhang import overhang
 
+from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.parts.spool import LAY, Groove, Spool, capacity, width_for, wraps
 from hydrostat.fabrication.solids.construct import solid_of
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.fabrication.solids.sound import watertight_problems
 
 SHAFTS = [(MOTORS[0].shaft, 5.7), (MOTORS[1].shaft, 8.0), (MOTORS[2].shaft, 8.2)]
 GROOVES = [

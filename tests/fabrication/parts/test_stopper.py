@@ -8,12 +8,11 @@ from manifold3d import Manifold
 from overhang import overhang
 from scipy.integrate import solve_ivp
 
-from hydrostat.fabrication.parts.part_options import PartOptions
+from hydrostat.fabrication.checks.solid_checks import watertight_problems
+from hydrostat.fabrication.kit_options import PartOptions, PatternOptions
 from hydrostat.fabrication.parts.screws import M2X6
 from hydrostat.fabrication.parts.stopper import Stopper, holding_force, stopper
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.solids.assembly import Assembly, Placed, interferences
-from hydrostat.fabrication.solids.sound import watertight_problems
 
 CABLES = [PartOptions(), PartOptions(cable=0.2, fit=0.1), PartOptions(cable=0.9, bore=1.5, tube=2.5, clearance=0.5)]
 

@@ -8,12 +8,12 @@ import pytest
 from manifold3d import Manifold
 from winch_robots import gallery_robot, with_winches
 
+from hydrostat.fabrication.checks.solid_checks import watertight_problems
+from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
-from hydrostat.fabrication.parts.part_options import PartOptions
 from hydrostat.fabrication.parts.spool import capacity
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
 from hydrostat.fabrication.solids.assembly import Assembly, interferences
-from hydrostat.fabrication.solids.sound import watertight_problems
 from hydrostat.robot import Mount, Robot, gallery_names
 
 N20, XL330, POLOLU_25D = MOTORS

@@ -5,9 +5,8 @@ import pytest
 from patch_bodies import ellipsoid_body, skin_of_ball
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.patches.cutting import MOST_GIVE, Cutting, cut_skin
-from hydrostat.fabrication.patches.distortion import distortion
-from hydrostat.fabrication.patches.front_and_back import front_and_back, thin_direction
+from hydrostat.fabrication.patches.cutting import MOST_GIVE, Cutting, cut_skin, front_and_back, thin_direction
+from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import disc_of
 from hydrostat.fabrication.patches.seams import find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh

@@ -5,8 +5,7 @@ import pytest
 import shapely
 from patch_bodies import cap, folded, half_cone, half_cylinder
 
-from hydrostat.fabrication.patches.distortion import distortion, quantile
-from hydrostat.fabrication.patches.flatten import flatten
+from hydrostat.fabrication.patches.flatten import distortion, flatten, quantile
 from hydrostat.fabrication.patches.patch import Patch
 
 FINE = 1e-8

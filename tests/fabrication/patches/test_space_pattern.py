@@ -6,10 +6,10 @@ from patch_bodies import cushion, ellipsoid_body
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.fabrication.checks.patch_checks import patch_checks
+from hydrostat.fabrication.checks.pattern_checks import patch_checks
+from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.space_pattern import SpacePattern, space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
-from hydrostat.fabrication.patterns.pattern_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Part
 from hydrostat.fabrication.patterns.stitches import Side
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg

@@ -13,8 +13,7 @@ from read_back import see_dxf, see_svg
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Panel, Part, Pattern, PatternOptions, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.fabrication.patterns.gusset import stuffed_thickness
-from hydrostat.fabrication.patterns.notches import find_notches
-from hydrostat.fabrication.patterns.skin import flat_skin
+from hydrostat.fabrication.patterns.skin import find_notches, flat_skin
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import MATERIALS, Body, Source
 

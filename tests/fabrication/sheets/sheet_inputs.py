@@ -7,11 +7,10 @@ from builders import box_mesh, mesh_body
 from manifold3d import Manifold
 from plush_robots import SQUARE, drawn_body
 
-from hydrostat.fabrication.kit_options import Method, Paper
+from hydrostat.fabrication.kit_options import Method, MouldKind, Paper
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.moulds.mould import Mould, MouldSurface
-from hydrostat.fabrication.moulds.mould_options import MouldKind
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.sheets.cable_map import body_solid

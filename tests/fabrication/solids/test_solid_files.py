@@ -10,10 +10,8 @@ import trimesh
 from manifold3d import Manifold
 
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
-from hydrostat.fabrication.solids.file_mesh import file_mesh, loose_edges
-from hydrostat.fabrication.solids.printed import Printed, triangles_of
-from hydrostat.fabrication.solids.stl import stl_bytes
-from hydrostat.fabrication.solids.three_mf import three_mf_plates
+from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
+from hydrostat.fabrication.solids.printed import Printed, file_mesh, loose_edges, triangles_of
 
 
 def three_mf_bytes(parts: tuple[Printed, ...], title: str) -> bytes:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from manifold3d import Manifold, Mesh
 
+from hydrostat.fabrication.checks.solid_checks import enclosed, watertight_problems
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.fabrication.solids.sound import enclosed, watertight_problems
 
 
 def printed(solid: Manifold) -> Printed:

@@ -1,11 +1,94 @@
-"""`three_mf_plates`: printed parts as 3MF, laid out on beds with their titles and counts."""
+"""Printed parts as files for a slicer: binary STL, and 3MF laid out on beds."""
 
 import io
 import zipfile
+from collections.abc import Iterable
+from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
-from hydrostat.fabrication.solids.plates import Laid, lay_plates
+import numpy as np
+
 from hydrostat.fabrication.solids.printed import Printed
+
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def stl_bytes(printed: Printed) -> bytes:
+    """A part as binary STL in millimetres; the header names it. One copy: STL knows no count."""
+    vertices, triangles = printed.written
+    corners = vertices[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    records = np.zeros(len(triangles), dtype=_TRIANGLE)
+    records["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
+    records["corners"] = corners
+    header = f"hydrostat {printed.name} [mm]".encode("ascii", "replace")[:80].ljust(80, b" ")
+    return header + np.uint32(len(triangles)).astype("<u4").tobytes() + records.tobytes()
+
+
+_GAP = 5.0
+"""Between parts on the bed [mm]."""
+
+
+@dataclass(frozen=True)
+class Laid:
+    """One part on a bed.
+
+    Attributes:
+        part: its index.
+        x: how far it is moved [mm], after it is turned.
+        y: the same along y.
+        turned: whether it is turned by a quarter, counter-clockwise from above.
+    """
+
+    part: int
+    x: float
+    y: float
+    turned: bool
+
+
+@dataclass(frozen=True)
+class _Piece:
+    part: int
+    turned: bool
+    low: tuple[float, float]
+    size: tuple[float, float]
+
+
+def lay_plates(parts: Iterable[Printed], bed: tuple[float, float]) -> tuple[tuple[Laid, ...], ...]:
+    """The parts of each bed, every part as often as it is needed, in rows, the deepest first.
+
+    A part is turned where only so it fits; one that does not fit at all has a bed of its own.
+
+    Args:
+        parts: to print.
+        bed: its width and depth [mm].
+    """
+    pieces = [_piece(number, part, bed) for number, part in enumerate(parts) for _ in range(part.count)]
+    pieces.sort(key=lambda piece: (-piece.size[1], piece.part))
+    plates: list[list[Laid]] = [[]]
+    x = y = row = 0.0
+    for piece in pieces:
+        wide, deep = piece.size
+        if x > 0 and x + wide > bed[0]:
+            x, y, row = 0.0, y + row + _GAP, 0.0
+        if y > 0 and y + deep > bed[1]:
+            plates.append([])
+            x = y = row = 0.0
+        plates[-1].append(Laid(piece.part, x - piece.low[0], y - piece.low[1], piece.turned))
+        x, row = x + wide + _GAP, max(row, deep)
+    return tuple(tuple(plate) for plate in plates if plate)
+
+
+def _piece(number: int, part: Printed, bed: tuple[float, float]) -> _Piece:
+    """A part as it lies best."""
+    low_x, low_y, _, high_x, high_y, _ = part.solid.bounding_box()
+    wide, deep = high_x - low_x, high_y - low_y
+    turned = (wide > bed[0] or deep > bed[1]) and deep <= bed[0] and wide <= bed[1]
+    if turned:
+        return _Piece(number, turned, (-high_y, low_x), (deep, wide))
+    return _Piece(number, turned, (low_x, low_y), (wide, deep))
+
 
 _STRAIGHT, _TURNED = "1 0 0 0 1 0 0 0 1", "0 1 0 -1 0 0 0 0 1"
 """What happens to a part's axes: each row is where one of them goes."""

@@ -1,10 +1,13 @@
-"""`body_solid`: the body of a robot as a solid in millimetres."""
+"""Solids that moulds are made of: the body of a robot, rods, sums of several; in millimetres."""
+
+from collections.abc import Iterable
 
 import numpy as np
 from jaxtyping import Float, Int
 from manifold3d import CrossSection, Error, Manifold, Mesh64
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.solids.construct import segments
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import Body
 
@@ -82,3 +85,32 @@ def _rings(mesh: Mesh) -> tuple[np.ndarray, ...]:
             node = following.pop(node)
         rings.append(mesh.nodes[ring])
     return tuple(rings)
+
+
+_TURNS = {
+    (0, True): (0.0, 90.0, 0.0),
+    (0, False): (0.0, -90.0, 0.0),
+    (1, True): (-90.0, 0.0, 0.0),
+    (1, False): (90.0, 0.0, 0.0),
+    (2, True): (0.0, 0.0, 0.0),
+    (2, False): (180.0, 0.0, 0.0),
+}
+
+
+def rod(
+    start: Float[np.ndarray, "3"], end: Float[np.ndarray, "3"], radius: float, top: float | None = None
+) -> Manifold:
+    """A cylinder, or a cone with another radius at its end, between two points along one of the axes [mm]."""
+    way = end - start
+    axis = int(np.argmax(np.abs(way)))
+    last = radius if top is None else top
+    upright = Manifold.cylinder(float(np.abs(way[axis])), radius, last, segments(max(radius, last)))
+    return upright.rotate(_TURNS[axis, bool(way[axis] > 0)]).translate(tuple(start.tolist()))
+
+
+def joined(solids: Iterable[Manifold]) -> Manifold:
+    """All of them as one."""
+    whole = Manifold()
+    for solid in solids:
+        whole = whole + solid
+    return whole
