@@ -17,7 +17,7 @@ from hydrostat.fabrication.moulds.mould import Mould, make_mould
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Panel, Part, Shape
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Panel, PatternPart, Polyline, Shape
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.printed import Printed
@@ -31,7 +31,6 @@ __all__ = [
     "Kit",
     "KitOptions",
     "Layer",
-    "Line",
     "Method",
     "Motor",
     "Mould",
@@ -39,10 +38,11 @@ __all__ = [
     "MouldOptions",
     "Panel",
     "Paper",
-    "Part",
     "PartOptions",
     "Pattern",
     "PatternOptions",
+    "PatternPart",
+    "Polyline",
     "Printed",
     "Shape",
     "UnbuildableError",

@@ -7,7 +7,7 @@ from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.self_check import Check
-from hydrostat.fabrication.solids.assembly import Assembly
+from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
 
 
@@ -35,7 +35,7 @@ class BodyWork:
     files: Mapping[str, bytes] = field(default_factory=dict)
     printed: tuple[Printed, ...] = ()
     spare: tuple[Printed, ...] = ()
-    assemblies: tuple[Assembly, ...] = ()
+    assemblies: tuple[PartAssembly, ...] = ()
     holes: int = 0
     stitches: tuple[CableStitches, ...] = ()
     gusset: bool = False

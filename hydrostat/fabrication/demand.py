@@ -54,7 +54,7 @@ def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = N
     if not robot.cables:
         count = len(robot.winches)
         return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
-    work = _Work(robot)
+    work = _PoseLoads(robot)
     for done, pose in enumerate(robot.poses.values()):
         if progress is not None:
             progress(done, len(robot.poses))
@@ -65,7 +65,7 @@ def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = N
     return work.demand()
 
 
-class _Work:
+class _PoseLoads:
     """Solves poses of a robot, and keeps what was found."""
 
     def __init__(self, robot: Robot) -> None:

@@ -9,7 +9,7 @@ from hydrostat.fabrication.lists.list_input import Cloth
 from hydrostat.fabrication.patches.space_pattern import space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
-from hydrostat.fabrication.patterns.shape import Circle, Part
+from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.sheets.tiles import tiled_pdf
 from hydrostat.robot import Robot
@@ -37,7 +37,7 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
             "pattern/pattern.dxf": dxf,
             f"pattern/pattern_{options.paper}.pdf": tiled_pdf(pattern, options.paper),
         },
-        holes=sum(shape.part is Part.PINHOLE for panel in pattern.panels for shape in panel.shapes),
+        holes=sum(shape.part is PatternPart.PINHOLE for panel in pattern.panels for shape in panel.shapes),
         stitches=pattern.stitches,
         gusset=bool(pattern.gusset),
         cloth=_cloth(pattern),
@@ -69,7 +69,7 @@ def _cloth(pattern: Pattern) -> Cloth:
         shape.geometry.length
         for panel in pattern.panels
         for shape in panel.shapes
-        if shape.part is Part.SEAM and not isinstance(shape, Circle)
+        if shape.part is PatternPart.SEAM and not isinstance(shape, Circle)
     )
     return Cloth(
         felt=pattern.width * pattern.height,

@@ -11,7 +11,7 @@ import pytest
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from read_back import Seen, see_dxf, see_svg
 
-from hydrostat.fabrication import Part, Pattern, pattern_dxf, pattern_svg, plush_pattern
+from hydrostat.fabrication import Pattern, PatternPart, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.robot import Robot
 
 READERS = [(pattern_svg, see_svg), (pattern_dxf, see_dxf)]
@@ -41,7 +41,7 @@ def test_the_check_of_the_scale_can_fail(write, see):
     robot = crossed()
     pattern = plush_pattern(robot)
     front = pattern.panel("front")
-    off = tuple(shape.moved(0.2, 0.0) if shape.part is Part.PINHOLE else shape for shape in front.shapes)
+    off = tuple(shape.moved(0.2, 0.0) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes)
     wrong = replace(pattern, panels=(replace(front, shapes=off), pattern.panel("back")))
     assert worst_hole(see(write(wrong)), robot, pattern) > 0.1
 

@@ -9,7 +9,7 @@ from hydrostat.fabrication.patches.cutting import MOST_EASE
 from hydrostat.fabrication.patches.skin_holes import NearestOnSkin
 from hydrostat.fabrication.patches.space_pattern import SpacePattern
 from hydrostat.fabrication.patterns.pattern import Pattern
-from hydrostat.fabrication.patterns.shape import Part
+from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Mount, Robot
 
@@ -33,7 +33,7 @@ def pattern_checks(
         InputError: no drawing in millimetres.
     """
     seen = SeenSvg(svg)
-    front = seen.circles(Part.PINHOLE, panel="front")
+    front = seen.circles(PatternPart.PINHOLE, panel="front")
     return _flat_holes(robot, pattern, front, options), *drawing_checks(seen, SeenDxf(dxf))
 
 
@@ -77,7 +77,7 @@ def patch_checks(robot: Robot, pattern: SpacePattern, svg: bytes, dxf: bytes) ->
 
 def _space_holes(robot: Robot, pattern: SpacePattern, svg: SeenSvg) -> Check:
     """Every pinhole of the drawing belongs to a point of a cable, and every such point has its own."""
-    seen = svg.circles(Part.PINHOLE)[:, :2]
+    seen = svg.circles(PatternPart.PINHOLE)[:, :2]
     wanted = [hole for hole in pattern.holes if hole.passes and not hole.in_seam]
     points = np.array([robot.cables[hole.cable - 1].points[hole.point - 1] for hole in wanted]).reshape(-1, 3)
     worst = 0.0
@@ -99,7 +99,7 @@ def _crosses(robot: Robot, pattern: SpacePattern, svg: SeenSvg) -> Check:
             point = 1e3 * np.array(robot.cables[hole.cable - 1].points[hole.point - 1])
             seam = min(pattern.seams, key=lambda seam: seam.nearest(point)[0])
             wanted += [seam.place(seam.nearest(point)[1], side) for side in (0, 1)]
-    seen = np.array([path.mean(axis=0) for path in svg.paths(Part.MARKER)]).reshape(-1, 2)
+    seen = np.array([path.mean(axis=0) for path in svg.paths(PatternPart.MARKER)]).reshape(-1, 2)
     worst = farthest(np.array(wanted).reshape(-1, 2), seen)
     return Check(
         what=f"crosses on seams are where {len(wanted) // 2} points of the simulated cables pass between stitches",
@@ -121,7 +121,7 @@ def _seams(pattern: SpacePattern) -> Check:
 
 def _outlines(pattern: SpacePattern, svg: SeenSvg) -> Check:
     """The seam lines of the drawing are the rims of the patches: compared by the length of each."""
-    drawn = [np.linalg.norm(np.roll(path, -1, axis=0) - path, axis=1).sum() for path in svg.paths(Part.SEAM)]
+    drawn = [np.linalg.norm(np.roll(path, -1, axis=0) - path, axis=1).sum() for path in svg.paths(PatternPart.SEAM)]
     sewn = [patch.outline.exterior.length for patch in pattern.patches]
     gap = float(np.abs(np.sort(drawn) - np.sort(sewn)).max()) if len(drawn) == len(sewn) else np.inf
     return Check(

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.patterns.shape import Layer, Part
+from hydrostat.fabrication.patterns.shape import Layer, PatternPart
 from hydrostat.fabrication.self_check import Check
 
 SCALE = 0.1
@@ -36,7 +36,7 @@ class SeenSvg:
             raise InputError("pattern.svg: no size in millimetres")
         self._scale, self._height = float(width[1]) / box[2], box[3]
 
-    def circles(self, part: Part, *, panel: str = "") -> Float[np.ndarray, "circles 3"]:
+    def circles(self, part: PatternPart, *, panel: str = "") -> Float[np.ndarray, "circles 3"]:
         """Middle and radius of each circle that stands for a part [mm], of all panels or of one."""
         found = [
             (float(item.get("cx", 0)), self._height - float(item.get("cy", 0)), float(item.get("r", 0)))
@@ -47,7 +47,7 @@ class SeenSvg:
         ]
         return self._scale * np.array(found, dtype=float).reshape(-1, 3)
 
-    def paths(self, part: Part) -> list[Float[np.ndarray, "_ 2"]]:
+    def paths(self, part: PatternPart) -> list[Float[np.ndarray, "_ 2"]]:
         """Corners of all paths that stand for a part [mm]."""
         found = []
         for item in self._root.iter(f"{_SVG}path"):
@@ -91,7 +91,7 @@ class SeenDxf:
 
 def drawing_checks(svg: SeenSvg, dxf: SeenDxf) -> tuple[Check, ...]:
     """Whether both drawings show the same holes, and the bar of 100 mm at its length."""
-    return _same_holes(svg.circles(Part.PINHOLE), dxf.pinholes), _bar(svg, dxf)
+    return _same_holes(svg.circles(PatternPart.PINHOLE), dxf.pinholes), _bar(svg, dxf)
 
 
 def farthest(one: Float[np.ndarray, "ones d"], other: Float[np.ndarray, "others d"]) -> float:
@@ -114,7 +114,7 @@ def _same_holes(svg: Float[np.ndarray, "holes 3"], dxf: Float[np.ndarray, "other
 
 
 def _bar(svg: SeenSvg, dxf: SeenDxf) -> Check:
-    drawn = max((float(np.ptp(points[:, 0])) for points in svg.paths(Part.RULER)), default=0.0)
+    drawn = max((float(np.ptp(points[:, 0])) for points in svg.paths(PatternPart.RULER)), default=0.0)
     near = dxf.level_lines[np.argmin(np.abs(dxf.level_lines - 100.0))] if len(dxf.level_lines) else 0.0
     unit = "" if dxf.millimetres else ", but the DXF does not count millimetres"
     return Check(

@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.self_check import Check
-from hydrostat.fabrication.solids.assembly import LEAST, Assembly, interferences
+from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interferences
 from hydrostat.fabrication.solids.printed import Printed, loose_edges
 from hydrostat.robot import Robot
 
@@ -73,7 +73,7 @@ def _pieces(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray
     return int(np.count_nonzero(volumes > _CRUMB))
 
 
-def solid_checks(printed: Iterable[Printed], assemblies: Iterable[Assembly]) -> tuple[Check, ...]:
+def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly]) -> tuple[Check, ...]:
     """Every part watertight, by its edges as they are written; no two of an assembly in one place, by booleans."""
     printed, assemblies = tuple(printed), tuple(assemblies)
     faults = [fault for part in printed for fault in watertight_problems(part)]

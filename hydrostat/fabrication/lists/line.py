@@ -1,4 +1,4 @@
-"""`Line`: braided fishing lines, and whether they bear what the poses ask of the cables."""
+"""`FishingLine`: braided fishing lines, and whether they bear what the poses ask of the cables."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ SOURCE = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
+class FishingLine:
     """A braided line of polyethylene.
 
     Attributes:
@@ -58,7 +58,7 @@ class Line:
 
 
 LINES = tuple(
-    Line(name=f"PE {number:g}, {pounds:g} lb", diameter=diameter, pounds=pounds)
+    FishingLine(name=f"PE {number:g}, {pounds:g} lb", diameter=diameter, pounds=pounds)
     for number, diameter, pounds in (
         (1, 0.165, 15.0),
         (1.5, 0.205, 20.0),
@@ -74,7 +74,7 @@ LINES = tuple(
 """The thinnest first."""
 
 
-def line_for(diameter: float) -> Line:
+def line_for(diameter: float) -> FishingLine:
     """The thickest line that is not thicker than a diameter [mm]; the thinnest if all are."""
     fitting = [line for line in LINES if line.diameter <= diameter + _TOLERANCE]
     return fitting[-1] if fitting else LINES[0]
@@ -91,13 +91,13 @@ class LineCheck:
         warnings: cables above the working load.
     """
 
-    line: Line
+    line: FishingLine
     table: Table
     problems: tuple[str, ...]
     warnings: tuple[str, ...]
 
 
-def check_line(robot: Robot, tensions: Vector, line: Line, *, hold: float | None = None) -> LineCheck:
+def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float | None = None) -> LineCheck:
     """Whether a line and its stopper bear the largest tension of each cable [N].
 
     Args:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit_options import Method, PartOptions
-from hydrostat.fabrication.lists.line import Line
+from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.solids.printed import Printed
@@ -90,7 +90,7 @@ class ListInput:
     stitches: tuple[CableStitches, ...] = ()
     cloth: Cloth | None = None
     foam: FoamNeeds | None = None
-    line: Line | None = None
+    line: FishingLine | None = None
     stopper_hold: float | None = None
 
     def __post_init__(self) -> None:

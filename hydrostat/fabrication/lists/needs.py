@@ -4,7 +4,7 @@ import math
 
 from hydrostat.fabrication.lists.bill import Item
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
-from hydrostat.fabrication.lists.line import Line
+from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
 from hydrostat.fabrication.lists.prices import NO_SOURCE, PRICES, Price
 from hydrostat.fabrication.parts.motor import Motor
@@ -43,7 +43,9 @@ _NEEDLES = Item(
 )
 
 
-def all_needs(given: ListInput, line: Line, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:
+def all_needs(
+    given: ListInput, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]
+) -> list[Item]:
     """What a robot takes, group by group."""
     items = []
     if given.cloth is not None:
@@ -125,7 +127,9 @@ def _foam(given: ListInput, foam: FoamNeeds) -> list[Item]:
     ]
 
 
-def _cables(given: ListInput, line: Line, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:
+def _cables(
+    given: ListInput, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]
+) -> list[Item]:
     length = sum(cut.cut for cut in cuts)
     tube = sum(cut.length for cut in tubes)
     ring = math.pi / 4 * (given.options.tube**2 - given.options.bore**2)

@@ -37,7 +37,7 @@ Spot = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Block:
+class MouldBlock:
     """The outside of a mould [mm].
 
     Attributes:
@@ -85,7 +85,7 @@ class Closing:
     slots: Manifold
 
 
-def make_closing(block: Block, *, sprue: Sprue | None, vents: tuple[float, ...], clearance: float) -> Closing:
+def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, ...], clearance: float) -> Closing:
     """Keys at the corners, bolts along the sides, slots to pry at left and right.
 
     Args:
@@ -138,7 +138,7 @@ def _cone(spot: Spot, radius: float, clearance: float) -> Manifold:
     return root + rod(np.array([*spot, 0.0]), np.array([*spot, height]), wide, _TAPER * radius + clearance)
 
 
-def _slot(block: Block, side: int, bolts: list[float]) -> Manifold:
+def _slot(block: MouldBlock, side: int, bolts: list[float]) -> Manifold:
     """Where a screwdriver is put in, at a side, half way between two bolts or a bolt and a key."""
     depth, length, height = _SLOT
     marks = sorted([block.low[1] + INSET, *bolts, block.high[1] - INSET])

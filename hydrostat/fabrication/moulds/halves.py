@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from manifold3d import Manifold
 
-from hydrostat.fabrication.moulds.closing import Block, Closing
+from hydrostat.fabrication.moulds.closing import Closing, MouldBlock
 from hydrostat.fabrication.moulds.openings import Sprue, Vent
 from hydrostat.fabrication.moulds.pocket import Pocket
 from hydrostat.fabrication.moulds.positive import Frames, Positive
@@ -43,7 +43,7 @@ def make_cavity(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) ->
 
 
 def make_halves(
-    block: Block,
+    block: MouldBlock,
     body: Manifold,
     dents: Manifold,
     pockets: tuple[Pocket, ...],
@@ -74,7 +74,7 @@ def make_halves(
     return Halves(upper=upper, lower=lower, cavity=cavity, poured=poured, volumes=account)
 
 
-def _voids(block: Block, cavity: Manifold, openings: dict[str, Manifold], closing: Closing) -> dict[str, float]:
+def _voids(block: MouldBlock, cavity: Manifold, openings: dict[str, Manifold], closing: Closing) -> dict[str, float]:
     """What each opening takes of the plastic [mm^3], where two meet the first of them; and the gaps round the keys."""
     account, taken = {}, cavity
     for name, opening in openings.items():
@@ -117,7 +117,7 @@ _OVER: _Lying = (180.0, 0.0, 0.0)
 
 
 def mould_prints(
-    halves: Halves, positive: Positive, frames: Frames | None, block: Block, bed: tuple[float, float, float]
+    halves: Halves, positive: Positive, frames: Frames | None, block: MouldBlock, bed: tuple[float, float, float]
 ) -> tuple[tuple[Printed, ...], int, float]:
     """All pieces, how many dowels join those of the mould, and what cutting takes [mm^3].
 

@@ -9,7 +9,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds.casting import Casting, make_casting
-from hydrostat.fabrication.moulds.closing import RIM, Block, make_closing
+from hydrostat.fabrication.moulds.closing import RIM, MouldBlock, make_closing
 from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves, mould_prints
 from hydrostat.fabrication.moulds.linked import linked
 from hydrostat.fabrication.moulds.mould_words import mould_problems, mould_warnings, standing
@@ -19,8 +19,8 @@ from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames,
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.solids import MILLIMETRES, body_solid
 from hydrostat.fabrication.moulds.split import grid
-from hydrostat.fabrication.moulds.stance import Frame, stand
-from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.moulds.stance import Stance, find_stance
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot
 
@@ -83,7 +83,7 @@ class Mould:
     shares: Float[np.ndarray, " tried"]
     surface: MouldSurface
     printed: tuple[Printed, ...]
-    assembly: Assembly
+    assembly: PartAssembly
     volumes: dict[str, float]
     poured: Manifold
     box: tuple[float, float, float]
@@ -104,7 +104,7 @@ class _Inside:
     dents: Manifold
     pockets: tuple[Pocket, ...]
     cavity: Manifold
-    block: Block
+    block: MouldBlock
     sprue: Sprue | None
     vents: tuple[Vent, ...]
 
@@ -122,8 +122,8 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     """
     solid = body_solid(robot.body)
     pull = find_pull(solid)
-    frame = stand(pull, _held(robot))
-    inside = _inside(robot, options, solid, pull, frame, pockets or {})
+    stance = find_stance(pull, _held(robot))
+    inside = _inside(robot, options, solid, pull, stance, pockets or {})
     closing = make_closing(
         inside.block,
         sprue=inside.sprue,
@@ -151,12 +151,12 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     return Mould(
         kind=options.kind,
         pull=pull.direction,
-        up=frame.axes[1],
+        up=stance.axes[1],
         height=pull.height,
         share=pull.share,
         directions=pull.directions,
         shares=pull.shares,
-        surface=MouldSurface(vertices=pull.skin.vertices, triangles=pull.skin.triangles, undercut=pull.undercut),
+        surface=MouldSurface(vertices=pull.surface.vertices, triangles=pull.surface.triangles, undercut=pull.undercut),
         printed=printed,
         assembly=_assembly(robot.name, halves, frames, positive, inside.block),
         volumes=volumes | {"cutting": lost},
@@ -165,7 +165,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
         bolts=0 if silicone else len(closing.bolts),
         dowels=dowels,
         vents=len(inside.vents),
-        stands=standing(frame, inside.sprue, inside.vents, options.kind),
+        stands=standing(stance, inside.sprue, inside.vents, options.kind),
         casting=casting,
         problems=(
             *unlike,
@@ -200,14 +200,14 @@ def _inside(
     options: MouldOptions,
     solid: Manifold,
     pull: Pull,
-    frame: Frame,
+    stance: Stance,
     rooms: Mapping[str, Sides | WinchRoom],
 ) -> _Inside:
     """Cavity, openings and the block round them."""
-    body = frame.enter(solid)
-    pockets = make_pockets(robot, body, frame, rooms, clearance=options.pocket_clearance)
+    body = stance.enter(solid)
+    pockets = make_pockets(robot, body, stance, rooms, clearance=options.pocket_clearance)
     marks = options.mark_cables
-    dents = cable_dents(robot, pull.skin, frame, deepest=options.mark_depth) if marks else Manifold()
+    dents = cable_dents(robot, pull.surface, stance, deepest=options.mark_depth) if marks else Manifold()
     cavity = make_cavity(body, dents, pockets)
     block = _block(body, options)
     top = block.high[1]
@@ -217,16 +217,16 @@ def _inside(
     return _Inside(body=body, dents=dents, pockets=pockets, cavity=cavity, block=block, sprue=sprue, vents=vents)
 
 
-def _block(body: Manifold, options: MouldOptions) -> Block:
+def _block(body: Manifold, options: MouldOptions) -> MouldBlock:
     """The outside: walls at the backs, a rim for keys and bolts, a higher one at the top for the funnel."""
     box = body.bounding_box()
     rim = max(options.wall, RIM)
     low = (box[0] - rim, box[1] - rim, box[2] - options.wall)
     high = (box[3] + rim, box[4] + max(options.wall, TOP_RIM), box[5] + options.wall)
-    return Block(low, high, *grid(low, high, options.bed))
+    return MouldBlock(low, high, *grid(low, high, options.bed))
 
 
-def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: Block) -> Assembly:
+def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: MouldBlock) -> PartAssembly:
     """What belongs where, in the coordinates of the mould."""
     ahead, aback = (0.0, 0.0, 0.6 * block.size[2]), (0.0, 0.0, -0.6 * block.size[2])
     if frames is None:
@@ -242,4 +242,4 @@ def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positi
             Placed(name="positive_upper", title="upper half of the positive", solid=positive.upper),
             Placed(name="frame_upper", title="upper frame", solid=frames.upper, pulled=ahead),
         )
-    return Assembly(name=f"mould of {name}", pieces=pieces)
+    return PartAssembly(name=f"mould of {name}", pieces=pieces)

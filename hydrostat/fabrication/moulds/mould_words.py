@@ -5,7 +5,7 @@ from hydrostat.fabrication.moulds.halves import Halves
 from hydrostat.fabrication.moulds.openings import Sprue, Vent
 from hydrostat.fabrication.moulds.pocket import Pocket, clashes
 from hydrostat.fabrication.moulds.pull import Pull
-from hydrostat.fabrication.moulds.stance import Frame
+from hydrostat.fabrication.moulds.stance import Stance
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material
 from hydrostat.units import counted
@@ -21,9 +21,9 @@ STIFF = 1e6
 """Young's modulus from which on a body is not squeezed past an undercut by hand [Pa]."""
 
 
-def standing(frame: Frame, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
+def standing(stance: Stance, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
     """How the mould stands when it is poured."""
-    held = ", the end that is held at the top" if frame.held_upwards else ""
+    held = ", the end that is held at the top" if stance.held_upwards else ""
     upward = sum(vent.upward for vent in vents)
     backward = len(vents) - upward
     text = f"Closed, on its edge, the parting plane upright and the funnel on top{held}."

@@ -9,9 +9,9 @@ from jaxtyping import Float
 from manifold3d import Manifold
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.moulds.release import Skin, axes_along
+from hydrostat.fabrication.moulds.release import FineSurface, axes_along
 from hydrostat.fabrication.moulds.solids import MILLIMETRES, joined, rod
-from hydrostat.fabrication.moulds.stance import Frame
+from hydrostat.fabrication.moulds.stance import Stance
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Mount, Robot
 
@@ -94,7 +94,7 @@ class Pocket:
 
 
 def make_pockets(
-    robot: Robot, body: Manifold, frame: Frame, rooms: Mapping[str, Sides | WinchRoom], *, clearance: float
+    robot: Robot, body: Manifold, stance: Stance, rooms: Mapping[str, Sides | WinchRoom], *, clearance: float
 ) -> tuple[Pocket, ...]:
     """A pocket for each winch that sits in the body, from its place straight out along the pull.
 
@@ -103,7 +103,7 @@ def make_pockets(
     Args:
         robot: whose winches they are.
         body: in the coordinates of the mould [mm].
-        frame: of the mould.
+        stance: of the mould.
         rooms: what each winch takes up, or its sides [mm] if the shaft is in the middle; winches that are missing get
             no pocket.
         clearance: between a winch and the foam, on each side [mm].
@@ -120,7 +120,7 @@ def make_pockets(
             raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {box.sides}')
     inside = [winch for winch in robot.winches if winch.mount is Mount.BODY and winch.name in boxes]
     ways = [
-        _ways(winch.name, body, frame.into(_spot(winch.at)[None])[0], boxes[winch.name], clearance) for winch in inside
+        _ways(winch.name, body, stance.into(_spot(winch.at)[None])[0], boxes[winch.name], clearance) for winch in inside
     ]
     return _together(ways)
 
@@ -291,24 +291,24 @@ def clashes(pockets: tuple[Pocket, ...]) -> list[str]:
     return found
 
 
-def cable_dents(robot: Robot, skin: Skin, frame: Frame, *, deepest: float) -> Manifold:
+def cable_dents(robot: Robot, surface: FineSurface, stance: Stance, *, deepest: float) -> Manifold:
     """Cones on the wall, in the coordinates of the mould, at the spot nearest to each cable point.
 
     Args:
         robot: whose cables they are.
-        skin: surface of the body, in its own coordinates.
-        frame: of the mould.
+        surface: surface of the body, in its own coordinates.
+        stance: of the mould.
         deepest: cable points further below the surface leave no mark [mm].
     """
     points = [_spot(point) for cable in robot.cables for point in cable.points]
     if not points:
         return Manifold()
-    solid = Solid(Surface(skin.vertices, skin.triangles))
+    solid = Solid(Surface(surface.vertices, surface.triangles))
     asked = np.unique(np.array(points), axis=0)
     spots, triangles = solid.nearest(asked)
     near = np.linalg.norm(spots - asked, axis=1) <= deepest
-    spots = frame.into(spots[near])
-    inward = -(skin.normals[triangles[near]] @ frame.axes.T)
+    spots = stance.into(spots[near])
+    inward = -(surface.normals[triangles[near]] @ stance.axes.T)
     kept: list[int] = []
     for place in range(len(spots)):
         if all(np.linalg.norm(spots[place] - spots[other]) > 2 * _DENT_RADIUS for other in kept):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from manifold3d import Manifold
 
-from hydrostat.fabrication.moulds.closing import Block
+from hydrostat.fabrication.moulds.closing import MouldBlock
 from hydrostat.fabrication.moulds.openings import Sprue
 from hydrostat.fabrication.moulds.solids import joined
 from hydrostat.fabrication.moulds.split import dowels_across
@@ -60,7 +60,7 @@ class Frames:
     lower: Manifold
     upper: Manifold
     dome: Manifold
-    inside: Block
+    inside: MouldBlock
     pours: tuple[float, float]
 
 
@@ -94,7 +94,7 @@ def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
     """Two open frames, and how much silicone goes into each."""
     whole = _with_sprue(cavity, sprue)
     low, high = (np.array(corner) for corner in np.reshape(cavity.bounding_box(), (2, 3)))
-    inside = Block(tuple((low - SILICONE_WALL).tolist()), tuple((high + SILICONE_WALL).tolist()))
+    inside = MouldBlock(tuple((low - SILICONE_WALL).tolist()), tuple((high + SILICONE_WALL).tolist()))
     lower, upper = (_ring(inside, *span) for span in ((inside.low[2], 0.0), (0.0, inside.high[2])))
     silicone = inside.solid - whole
     above, below = silicone.split_by_plane((0.0, 0.0, 1.0), 0.0)
@@ -107,7 +107,7 @@ def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
     )
 
 
-def _ring(inside: Block, low: float, high: float) -> Manifold:
+def _ring(inside: MouldBlock, low: float, high: float) -> Manifold:
     """A wall round the silicone between two heights."""
     width, length, _ = inside.size
     outer = Manifold.cube((width + 2 * FRAME_WALL, length + 2 * FRAME_WALL, high - low))

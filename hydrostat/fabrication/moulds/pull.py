@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 from manifold3d import Manifold
 
 from hydrostat.arrays import Vector
-from hydrostat.fabrication.moulds.release import Release, Skin, axes_along, release, skin_of
+from hydrostat.fabrication.moulds.release import FineSurface, Release, axes_along, fine_surface, release
 
 _DEPTH = 0.05
 """Share of undercut that a mould may have more for being flat instead of as deep as the body is long: deep moulds are
@@ -40,7 +40,7 @@ class Pull:
         direction: unit vector along which the upper half is drawn, in the coordinates of the body.
         height: of the parting plane along it [mm].
         share: of the surface that holds: neither half comes off it.
-        skin: the surface that was looked at.
+        surface: the surface that was looked at.
         undercut: which of its triangles hold.
         directions: all that were tried.
         shares: of each of them, at its best height.
@@ -49,7 +49,7 @@ class Pull:
     direction: Float[np.ndarray, "3"]
     height: float
     share: float
-    skin: Skin
+    surface: FineSurface
     undercut: Bool[np.ndarray, " triangles"]
     directions: Float[np.ndarray, "tried 3"]
     shares: Vector
@@ -64,13 +64,13 @@ def half_sphere(count: int) -> Float[np.ndarray, "count 3"]:
     return np.column_stack([radii * np.cos(angles), radii * np.sin(angles), heights])
 
 
-def best_height(skin: Skin, freed: Release) -> tuple[float, float]:
+def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
     """The height of the plane [mm] with the least area undercut, and its share.
 
     Of heights that are equally good it is the one nearest to the middle of the body.
     """
     order = np.argsort(freed.heights, kind="stable")
-    areas = skin.areas[order]
+    areas = surface.areas[order]
     held_below = np.concatenate([[0.0], np.cumsum(areas * ~freed.downward[order])])
     held_above = np.concatenate([[0.0], np.cumsum(areas * ~freed.upward[order])])
     held = (held_below + held_above[-1] - held_above) / areas.sum()
@@ -78,7 +78,7 @@ def best_height(skin: Skin, freed: Release) -> tuple[float, float]:
     planes = (sorted_heights[1:] + sorted_heights[:-1]) / 2
     held = held[1:-1]
     middle = (sorted_heights[0] + sorted_heights[-1]) / 2
-    held = np.where(np.diff(sorted_heights) > _APART * skin.size, held, np.inf)  # no plane within a level face
+    held = np.where(np.diff(sorted_heights) > _APART * surface.size, held, np.inf)  # no plane within a level face
     good = np.flatnonzero(held <= held.min() + _LEVEL)
     chosen = good[int(np.argmin(np.abs(planes[good] - middle)))]
     return float(planes[chosen]), float(held[chosen])
@@ -91,51 +91,53 @@ def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
         solid: the body [mm].
         count: directions tried on half of the sphere, before those about the best of them.
     """
-    skin = skin_of(solid)
-    tried = np.vstack([_own_axes(skin), np.eye(3), _flat_directions(skin), half_sphere(count)])
-    shares, costs = _rated(skin, tried)
+    surface = fine_surface(solid)
+    tried = np.vstack([_own_axes(surface), np.eye(3), _flat_directions(surface), half_sphere(count)])
+    shares, costs = _rated(surface, tried)
     leaders = tried[np.argsort(costs, kind="stable")[:_BEST]]
     for angle in np.radians(_RINGS):
         near = np.vstack([_ring(leader, angle) for leader in leaders])
-        more_shares, more_costs = _rated(skin, near)
+        more_shares, more_costs = _rated(surface, near)
         tried = np.vstack([tried, near])
         shares, costs = np.concatenate([shares, more_shares]), np.concatenate([costs, more_costs])
         leaders = tried[np.argsort(costs, kind="stable")[:1]]
     direction = _upright(leaders[0])
-    freed = release(skin, direction)
-    height, share = best_height(skin, freed)
+    freed = release(surface, direction)
+    height, share = best_height(surface, freed)
     return Pull(
         direction=direction,
         height=height,
         share=share,
-        skin=skin,
+        surface=surface,
         undercut=freed.undercut(height),
         directions=tried,
         shares=shares,
     )
 
 
-def _rated(skin: Skin, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
+def _rated(surface: FineSurface, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
     """Share of undercut of each direction, and what it costs with the depth of the mould."""
-    shares = np.array([best_height(skin, release(skin, direction))[1] for direction in directions])
-    depths = np.ptp(skin.vertices @ directions.T, axis=0)
-    return shares, shares + _DEPTH * depths / skin.size
+    shares = np.array([best_height(surface, release(surface, direction))[1] for direction in directions])
+    depths = np.ptp(surface.vertices @ directions.T, axis=0)
+    return shares, shares + _DEPTH * depths / surface.size
 
 
-def _own_axes(skin: Skin) -> Float[np.ndarray, "3 3"]:
+def _own_axes(surface: FineSurface) -> Float[np.ndarray, "3 3"]:
     """Main axes of the surface: those of a box, a cylinder, a hand."""
-    places = skin.middles - np.average(skin.middles, axis=0, weights=skin.areas)
-    return np.linalg.eigh(places.T @ (places * skin.areas[:, None]))[1].T
+    places = surface.middles - np.average(surface.middles, axis=0, weights=surface.areas)
+    return np.linalg.eigh(places.T @ (places * surface.areas[:, None]))[1].T
 
 
-def _flat_directions(skin: Skin) -> Float[np.ndarray, "tried 3"]:
+def _flat_directions(surface: FineSurface) -> Float[np.ndarray, "tried 3"]:
     """Normals of the largest flat faces, and the directions along each two of them."""
-    signs = np.where(skin.normals[np.arange(len(skin.normals)), np.abs(skin.normals).argmax(axis=1)] < 0, -1.0, 1.0)
-    normals = signs[:, None] * skin.normals
+    signs = np.where(
+        surface.normals[np.arange(len(surface.normals)), np.abs(surface.normals).argmax(axis=1)] < 0, -1.0, 1.0
+    )
+    normals = signs[:, None] * surface.normals
     groups = np.unique((50 * normals).round(), axis=0, return_inverse=True)[1].reshape(-1)
-    areas = np.bincount(groups, weights=skin.areas)
+    areas = np.bincount(groups, weights=surface.areas)
     largest = np.argsort(-areas, kind="stable")[:_FLATS]
-    flats = [np.average(normals[groups == group], axis=0, weights=skin.areas[groups == group]) for group in largest]
+    flats = [np.average(normals[groups == group], axis=0, weights=surface.areas[groups == group]) for group in largest]
     kept = [flat for flat, group in zip(flats, largest, strict=True) if areas[group] > _FLAT_SHARE * areas.sum()]
     found = [*kept, *(np.cross(one, other) for one, other in combinations(kept, 2))]
     lengths = [float(np.linalg.norm(direction)) for direction in found]

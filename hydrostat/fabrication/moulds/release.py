@@ -34,7 +34,7 @@ _MOST = 16_000
 
 
 @dataclass(frozen=True, eq=False)
-class Skin:
+class FineSurface:
     """The surface of a body in triangles so small that each is asked once.
 
     Attributes:
@@ -77,7 +77,7 @@ class Skin:
         return float(np.ptp(self.vertices, axis=0).max())
 
 
-def skin_of(solid: Manifold) -> Skin:
+def fine_surface(solid: Manifold) -> FineSurface:
     """The surface of a solid [mm] in triangles that are small, but not too many."""
     low, high = np.reshape(solid.bounding_box(), (2, 3))
     size = float((high - low).max())
@@ -86,7 +86,7 @@ def skin_of(solid: Manifold) -> Skin:
     while fine.num_tri() > _MOST and edge < 1:
         coarse, edge = 2 * coarse, 1.5 * edge
         fine = solid.simplify(coarse * size).refine_to_length(edge * size)
-    return Skin(*triangles_of(fine))
+    return FineSurface(*triangles_of(fine))
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,14 +108,14 @@ class Release:
         return np.where(self.heights > height, ~self.upward, ~self.downward)
 
 
-def release(skin: Skin, direction: Float[np.ndarray, "3"]) -> Release:
+def release(surface: FineSurface, direction: Float[np.ndarray, "3"]) -> Release:
     """What comes out when the mould of a body is drawn off along a unit vector."""
     turned = axes_along(direction).T
-    facing = skin.normals @ direction
-    asked = (skin.middles + _OUT * skin.size * skin.normals) @ turned
-    above, below = _covered(np.ascontiguousarray(asked), np.ascontiguousarray(skin.corners @ turned))
+    facing = surface.normals @ direction
+    asked = (surface.middles + _OUT * surface.size * surface.normals) @ turned
+    above, below = _covered(np.ascontiguousarray(asked), np.ascontiguousarray(surface.corners @ turned))
     return Release(
-        heights=skin.middles @ direction,
+        heights=surface.middles @ direction,
         upward=(facing > -_STEEP) & ~above,
         downward=(facing < _STEEP) & ~below,
     )

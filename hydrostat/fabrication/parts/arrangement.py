@@ -8,14 +8,14 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from hydrostat.arrays import Vector
-from hydrostat.fabrication.parts.places import GIVES, TOUCHES, Place, UnitBox, ways_to_lie
+from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, UnitPlace, ways_to_lie
 
 _SWEEPS = 8
 """Rounds of a search."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Laid:
+class LaidUnit:
     """A unit as it is laid in the body.
 
     Attributes:
@@ -24,12 +24,12 @@ class Laid:
         warnings: what to mind.
     """
 
-    place: Place
+    place: UnitPlace
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
 
-def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[Laid, ...]:
+def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
     """How each unit is laid, in their order, with what is wrong with it.
 
     Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
@@ -58,7 +58,7 @@ def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> 
         told = "; ".join(places[number].told for number in moved)
         warnings[moved[0]].append(f"lay these units so, seen from the front, or they meet or reach the seam: {told}")
     return tuple(
-        Laid(place=place, problems=tuple(wrong), warnings=tuple(minded))
+        LaidUnit(place=place, problems=tuple(wrong), warnings=tuple(minded))
         for place, wrong, minded in zip(places, problems, warnings, strict=True)
     )
 
@@ -66,7 +66,7 @@ def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> 
 class _Ways:
     """All ways to lay one unit."""
 
-    def __init__(self, places: list[Place], thickness: float) -> None:
+    def __init__(self, places: list[UnitPlace], thickness: float) -> None:
         self.places = places
         self._footprints = np.array([place.footprint for place in places])
         self._depths = np.array([place.depth for place in places])
@@ -76,10 +76,10 @@ class _Ways:
         bulges = np.maximum(self._depths - thickness, 0.0).round(3).tolist()
         self._before = list(zip(outside, (self._depths > self._room).tolist(), strict=True))
         self._after = list(zip(bulges, range(len(places)), strict=True))
-        self._shares: dict[int, tuple[Place, Vector, Vector]] = {}
+        self._shares: dict[int, tuple[UnitPlace, Vector, Vector]] = {}
         self.alone, _ = self.best([])
 
-    def best(self, others: Sequence[Place]) -> tuple[Place, tuple[float, float]]:
+    def best(self, others: Sequence[UnitPlace]) -> tuple[UnitPlace, tuple[float, float]]:
         """The best beside some others, and what it shares with them [mm^2]: without room above each other, and with."""
         hard, soft = np.zeros(len(self.places)), np.zeros(len(self.places))
         for other in others:
@@ -98,7 +98,7 @@ class _Ways:
         least = min(place.depth for place in inside)
         return _Ways([place for place in inside if place.depth <= least + 1e-9], self._thickness)
 
-    def _shared(self, other: Place) -> tuple[Place, Vector, Vector]:
+    def _shared(self, other: UnitPlace) -> tuple[UnitPlace, Vector, Vector]:
         """What each way shares with another unit, where one cannot lie above the other, and where it can."""
         if id(other) not in self._shares:
             near = shapely.intersects(self._footprints, other.footprint)
@@ -110,9 +110,9 @@ class _Ways:
         return self._shares[id(other)]
 
 
-def _settled(ways: list[_Ways]) -> tuple[tuple[float, float], list[Place]]:
+def _settled(ways: list[_Ways]) -> tuple[tuple[float, float], list[UnitPlace]]:
     """Each in turn at its best beside the others, until none changes; the best of all beginnings, what is shared."""
-    found: list[tuple[tuple[float, float], list[Place]]] = []
+    found: list[tuple[tuple[float, float], list[UnitPlace]]] = []
     for first in range(len(ways)):
         total, places = _swept(ways, [*range(first, len(ways)), *range(first)])
         if total == (0.0, 0.0):
@@ -121,7 +121,7 @@ def _settled(ways: list[_Ways]) -> tuple[tuple[float, float], list[Place]]:
     return min(found, key=lambda pair: pair[0]) if found else ((0.0, 0.0), [])
 
 
-def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float], list[Place]]:
+def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float], list[UnitPlace]]:
     """Where all are after some rounds in an order, and what they share."""
     chosen = [way.alone for way in ways]
     hard = soft = 0.0
@@ -135,16 +135,16 @@ def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float]
     return (hard, soft), chosen
 
 
-def _meet(places: Sequence[Place], numbers: Sequence[int]) -> bool:
+def _meet(places: Sequence[UnitPlace], numbers: Sequence[int]) -> bool:
     """Whether some units all cover a common part of the plane."""
     return float(shapely.intersection_all([places[number].footprint for number in numbers]).area) > TOUCHES
 
 
-def _meets_another(places: Sequence[Place], number: int) -> bool:
+def _meets_another(places: Sequence[UnitPlace], number: int) -> bool:
     return any(_meet(places, (number, other)) for other in range(len(places)) if other != number)
 
 
-def _piles(places: Sequence[Place]) -> list[tuple[int, ...]]:
+def _piles(places: Sequence[UnitPlace]) -> list[tuple[int, ...]]:
     """Units that lie above each other, the largest piles only."""
     piles: list[tuple[int, ...]] = []
     grown = [(number,) for number in range(len(places))]
@@ -160,7 +160,7 @@ def _piles(places: Sequence[Place]) -> list[tuple[int, ...]]:
     return piles
 
 
-def _piled(pile: Sequence[Place], thickness: float) -> tuple[str, bool]:
+def _piled(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
     """What is said of units above each other, and whether that can be built."""
     high = sum(place.depth for place in pile)
     names = " and ".join(f'"{place.box.winch}"' for place in pile)
@@ -179,7 +179,7 @@ def _piled(pile: Sequence[Place], thickness: float) -> tuple[str, bool]:
     )
 
 
-def _alone(place: Place, thickness: float) -> list[str]:
+def _alone(place: UnitPlace, thickness: float) -> list[str]:
     """Why a unit cannot be built well, whatever stands beside it."""
     found = []
     if place.outside > TOUCHES:
@@ -197,7 +197,7 @@ def _alone(place: Place, thickness: float) -> list[str]:
     return found
 
 
-def _bulging(place: Place, thickness: float) -> list[str]:
+def _bulging(place: UnitPlace, thickness: float) -> list[str]:
     if not thickness < place.depth <= (1 + GIVES) * thickness:
         return []
     return [

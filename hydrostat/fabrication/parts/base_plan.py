@@ -1,4 +1,4 @@
-"""`Plan`: the base of winches outside the body, seen from above: where units stand, what is cut out, in which tiles."""
+"""`BasePlan`: the base of winches outside the body from above: where units stand, what is cut out, in which tiles."""
 
 import math
 from collections.abc import Sequence
@@ -104,16 +104,16 @@ class Seat:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plan:
+class BasePlan:
     """The plate seen from above."""
 
     seats: tuple[Seat, ...]
-    tiles: tuple["Tile", ...]
+    tiles: tuple["BaseTile", ...]
     bolts: tuple[Corner, ...]
     sheet: tuple[Ring, ...]
 
     @staticmethod
-    def of(units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]) -> "Plan":
+    def of(units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]) -> "BasePlan":
         """One row, so that all tubes leave to one side, in tiles of as many units as the bed takes."""
         pitch = max(unit.size[0] for unit in units) + _GAP
         low = min(unit.low[1] for unit in units) - _GAP / 2
@@ -121,15 +121,15 @@ class Plan:
         most = max(1, math.floor((bed[0] - 2 * _STRIP) / pitch))
         count = math.ceil(len(units) / most)
         seats: list[Seat] = []
-        tiles: list[Tile] = []
+        tiles: list[BaseTile] = []
         left = 0.0
         for share in (len(units) // count + (place < len(units) % count) for place in range(count)):
             mine = [Seat(unit=len(seats) + place, x=left + _STRIP + (place + 0.5) * pitch) for place in range(share)]
             right = left + share * pitch + 2 * _STRIP
-            tiles.append(Tile.of((left, low), (right, high), [(seat, units[seat.unit]) for seat in mine], options))
+            tiles.append(BaseTile.of((left, low), (right, high), [(seat, units[seat.unit]) for seat in mine], options))
             seats += mine
             left = right
-        return Plan(
+        return BasePlan(
             seats=tuple(seats),
             tiles=tuple(tiles),
             bolts=tuple(bolt for tile in tiles for bolt in tile.bolts),
@@ -138,7 +138,7 @@ class Plan:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tile:
+class BaseTile:
     """A piece of the plate that is printed in one go."""
 
     low: Corner
@@ -148,7 +148,7 @@ class Tile:
     holes: tuple[Hole, ...]
 
     @staticmethod
-    def of(low: Corner, high: Corner, seats: Sequence[tuple[Seat, WinchUnit]], options: PartOptions) -> "Tile":
+    def of(low: Corner, high: Corner, seats: Sequence[tuple[Seat, WinchUnit]], options: PartOptions) -> "BaseTile":
         """With a hole for each motor, the screws of its housing and its tube holder, and one for each leg."""
         inset = _STRIP / 2
         bolts = tuple((x, y) for x in (low[0] + inset, high[0] - inset) for y in (low[1] + inset, high[1] - inset))
@@ -160,7 +160,7 @@ class Tile:
             cuts.append(tuple(seat.put((float(x), float(y))) for x, y in orient(cut).exterior.coords[:-1]))
             holes += [Hole(seat.put((x, y)), passage / 2) for x in (-post, post) for y in (-post, post)]
             holes.append(Hole(seat.put(holder_at(unit)), HOLDER_PASSAGE / 2))
-        return Tile(low=low, high=high, bolts=bolts, cuts=tuple(cuts), holes=tuple(holes))
+        return BaseTile(low=low, high=high, bolts=bolts, cuts=tuple(cuts), holes=tuple(holes))
 
     @property
     def rings(self) -> tuple[Ring, ...]:

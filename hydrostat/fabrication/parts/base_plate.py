@@ -12,7 +12,7 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plan import (
     FREE,
     HOLDER_DEPTH,
-    Plan,
+    BasePlan,
     Ring,
     Seat,
     holder_at,
@@ -20,7 +20,7 @@ from hydrostat.fabrication.parts.base_plan import (
 )
 from hydrostat.fabrication.parts.housing import SHEET
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, letters
-from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
@@ -47,7 +47,7 @@ class BasePlate:
     """
 
     printed: tuple[Printed, ...]
-    assembly: Assembly
+    assembly: PartAssembly
     sheet: tuple[Ring, ...]
     thickness: float
     seats: tuple[Seat, ...]
@@ -71,7 +71,7 @@ def base_plate(
     outside = [unit for unit in units if unit.mount is Mount.WORLD]
     if not outside:
         return None
-    plan = Plan.of(outside, options, bed)
+    plan = BasePlan.of(outside, options, bed)
     tiles = [
         Printed(
             name=f"base_{letters(place)}" if len(plan.tiles) > 1 else "base",
@@ -112,7 +112,9 @@ def base_plate(
     )
 
 
-def _tubes(robot: Robot, units: Sequence[WinchUnit], plan: Plan, options: PartOptions) -> tuple[tuple[int, float], ...]:
+def _tubes(
+    robot: Robot, units: Sequence[WinchUnit], plan: BasePlan, options: PartOptions
+) -> tuple[tuple[int, float], ...]:
     """How long each tube is up to where its cable begins [mm].
 
     Beyond its holder it goes the run straight on, as far to the side as the other end of the row, and from the nearest
@@ -174,11 +176,11 @@ def _leg(height: float) -> Construction:
 def _assembly(
     robot: Robot,
     units: Sequence[WinchUnit],
-    plan: Plan,
+    plan: BasePlan,
     tiles: Sequence[Printed],
     holders: Sequence[Printed],
     legs: Printed,
-) -> Assembly:
+) -> PartAssembly:
     tall = legs.size[2]
     pieces = [
         Placed(name=tile.name, title=tile.title, solid=tile.solid.translate((*place.low, -SHEET)))
@@ -213,7 +215,7 @@ def _assembly(
                 pulled=(0, 0, 20),
             )
         )
-    return Assembly(name=f"base of {robot.name}", pieces=tuple(pieces))
+    return PartAssembly(name=f"base of {robot.name}", pieces=tuple(pieces))
 
 
 def _too_large(pieces: Sequence[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:

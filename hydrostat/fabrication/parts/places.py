@@ -1,4 +1,4 @@
-"""`Place`: one way in which the unit of a winch lies in a flat body."""
+"""`UnitPlace`: one way in which the unit of a winch lies in a flat body."""
 
 import math
 from dataclasses import dataclass
@@ -55,7 +55,7 @@ class UnitBox:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Place:
+class UnitPlace:
     """One way in which a unit lies.
 
     Attributes:
@@ -108,7 +108,7 @@ def seam_of(body: Body) -> BaseGeometry:
     return shapely.union_all(shapely.polygons(1e3 * body.mesh.nodes[body.mesh.elements]))
 
 
-def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[Place]:
+def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[UnitPlace]:
     """Across the body and in its plane, turned by whole hours and slid a little: those first that are moved least."""
     shapely.prepare(seam)
     turns = sorted(range(-180 + _STEP, 181, _STEP), key=lambda turn: (abs(turn), turn))
@@ -121,7 +121,7 @@ def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[Place]:
     ]
 
 
-def _place(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, across: bool, flipped: bool) -> Place:
+def _place(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, across: bool, flipped: bool) -> UnitPlace:
     """With its +y at a turn [degrees]: x is to the right of it, or z to the right or to the left."""
     angle = math.radians(turn)
     up = (math.cos(angle), math.sin(angle))
@@ -138,7 +138,9 @@ def _place(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, acros
     y = box.at[1] + slid[0] * right[1] + slid[1] * up[1]
     footprint = Polygon([(x + u * right[0] + v * up[0], y + u * right[1] + v * up[1]) for u, v in corners])
     outside = 0.0 if seam.covers(footprint) else float(footprint.difference(seam).area)
-    return Place(box=box, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=outside)
+    return UnitPlace(
+        box=box, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=outside
+    )
 
 
 def _turned(angle: float) -> float:

@@ -10,7 +10,7 @@ from hydrostat.fabrication.parts.grommet import grommet
 from hydrostat.fabrication.parts.motor import Motor, choose_motor
 from hydrostat.fabrication.parts.stopper import Stopper, stopper
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
-from hydrostat.fabrication.solids.assembly import Assembly
+from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 
@@ -71,7 +71,7 @@ class RigidParts:
         return tuple(counts.items())
 
     @property
-    def assemblies(self) -> tuple[Assembly, ...]:
+    def assemblies(self) -> tuple[PartAssembly, ...]:
         """Each winch, the base with all on it, the stopper."""
         base = (self.base.assembly,) if self.base else ()
         return (*(unit.assembly for unit in self.units), *base, *((self.stopper.assembly,) if self.stopper else ()))

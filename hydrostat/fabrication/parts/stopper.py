@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.screws import M2X6
-from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Turning, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 
@@ -57,7 +57,7 @@ class Stopper:
     """
 
     printed: tuple[Printed, ...]
-    assembly: Assembly
+    assembly: PartAssembly
     screw: str
     hold: float
 
@@ -106,7 +106,7 @@ def stopper(options: PartOptions) -> Stopper:
         ),
     )
     return Stopper(
-        printed=printed, assembly=Assembly(name="stopper", pieces=pieces), screw=M2X6.title, hold=holding_force()
+        printed=printed, assembly=PartAssembly(name="stopper", pieces=pieces), screw=M2X6.title, hold=holding_force()
     )
 
 

@@ -8,13 +8,13 @@ from itertools import combinations
 from manifold3d import Manifold
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.arrangement import Laid, arranged
+from hydrostat.fabrication.parts.arrangement import LaidUnit, arranged
 from hydrostat.fabrication.parts.housing import Housing
 from hydrostat.fabrication.parts.motor import Motor
-from hydrostat.fabrication.parts.places import Place, UnitBox, seam_of
+from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
 from hydrostat.fabrication.parts.spool import Spool
 from hydrostat.fabrication.parts.spool_for import spool_for
-from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Construction, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot, Winch
@@ -32,7 +32,7 @@ class WinchParts:
         self._made: dict[str, dict[Construction, Printed]] = {}
         self._motors: dict[str, Manifold] = {}
 
-    def of(self, housing: Housing, winch: str) -> tuple[tuple[Printed, ...], Assembly]:
+    def of(self, housing: Housing, winch: str) -> tuple[tuple[Printed, ...], PartAssembly]:
         """What is printed for a winch: spool, box, plate, and the coupling of a servo; and all of it put together."""
         box = housing.box().turned(x=180).moved(0, 0, housing.top)
         printed = [
@@ -52,7 +52,7 @@ class WinchParts:
             made[model] = Printed(name=name, title=title, solid=solid_of(model), note=note, model=model)
         return made[model]
 
-    def _assembly(self, housing: Housing, printed: tuple[Printed, ...], winch: str) -> Assembly:
+    def _assembly(self, housing: Housing, printed: tuple[Printed, ...], winch: str) -> PartAssembly:
         motor, drive = housing.motor, housing.drive
         if motor.key not in self._motors:
             self._motors[motor.key] = solid_of(motor.envelope)
@@ -73,7 +73,7 @@ class WinchParts:
             Placed(name=spool.name, title=spool.title, solid=standing, pulled=(0, 0, far + step)),
             Placed(name=box.name, title=box.title, solid=closed, pulled=(0, 0, far + 3 * step)),
         ]
-        return Assembly(name=f'winch "{winch}"', pieces=tuple(pieces))
+        return PartAssembly(name=f'winch "{winch}"', pieces=tuple(pieces))
 
 
 def letters(number: int) -> str:
@@ -127,11 +127,11 @@ class WinchUnit:
     motor: Motor
     housing: Housing
     printed: tuple[Printed, ...]
-    assembly: Assembly
+    assembly: PartAssembly
     exits: tuple[Exit, ...]
     bought: tuple[tuple[str, int], ...]
     across: bool
-    place: Place | None = None
+    place: UnitPlace | None = None
     problems: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
 
@@ -160,7 +160,7 @@ class WinchUnit:
 def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[WinchUnit, ...]:
     """A unit for each winch that has cables, in winch order; equal parts have the same name."""
     drafts = [
-        _Draft.of(robot, winch, cables, options, motor)
+        _UnitDraft.of(robot, winch, cables, options, motor)
         for winch in robot.winches
         if (cables := tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name))
     ]
@@ -185,7 +185,7 @@ def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Draft:
+class _UnitDraft:
     """A unit whose sizes are known, but not yet on which sides its cables leave."""
 
     winch: Winch
@@ -195,14 +195,14 @@ class _Draft:
     warnings: tuple[str, ...]
 
     @staticmethod
-    def of(robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor) -> "_Draft":
+    def of(robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor) -> "_UnitDraft":
         """Of a winch and its cables."""
         spool, problems, warnings = spool_for(robot, winch, cables, options, motor)
         outside = winch.mount is Mount.WORLD
         housing = Housing(motor=motor, spool=spool, azimuths=(90,) * len(cables), outside=outside, options=options)
-        return _Draft(winch=winch, cables=cables, housing=housing, problems=problems, warnings=warnings)
+        return _UnitDraft(winch=winch, cables=cables, housing=housing, problems=problems, warnings=warnings)
 
-    def unit(self, robot: Robot, parts: WinchParts, laid: Laid | None) -> WinchUnit:
+    def unit(self, robot: Robot, parts: WinchParts, laid: LaidUnit | None) -> WinchUnit:
         """It, as it is laid in a flat body, or else where there is no question of that."""
         housing = replace(self.housing, azimuths=_azimuths(robot, self.cables, self.winch.mount, laid))
         printed, assembly = parts.of(housing, self.winch.name)
@@ -223,7 +223,7 @@ class _Draft:
         )
 
 
-def _laid(robot: Robot, drafts: Sequence[_Draft]) -> dict[str, Laid]:
+def _laid(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
     """How units lie in a flat body, by the name of the winch; none in space."""
     if robot.body.thickness is None:
         return {}
@@ -247,7 +247,7 @@ def _way(robot: Robot, cable: int) -> float:
     return math.degrees(math.atan2(second[1] - first[1], second[0] - first[0]))
 
 
-def _azimuths(robot: Robot, cables: tuple[int, ...], mount: Mount, laid: Laid | None) -> tuple[int, ...]:
+def _azimuths(robot: Robot, cables: tuple[int, ...], mount: Mount, laid: LaidUnit | None) -> tuple[int, ...]:
     """In which way each cable leaves [degrees]; the first along +y, unless a unit is turned out of another's way.
 
     Outside all leave towards the tubes. In a flat body each leaves on the side that is nearest to the way in which it

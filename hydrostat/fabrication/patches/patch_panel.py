@@ -16,7 +16,7 @@ from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.marks import dashed
 from hydrostat.fabrication.patterns.opening import Opening
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Panel, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.shape import Circle, Layer, Panel, PatternPart, Place, Polyline, Shape, trace
 from hydrostat.fabrication.patterns.skin import Skin, skin_of
 from hydrostat.fabrication.patterns.stitches import Side
 
@@ -77,10 +77,10 @@ def patch_panel(
     strokes = [(notch.name, _stroke(notch.place, skin)) for notch in notches]
     cables = tuple(cables)
     shapes: list[Shape] = [
-        *trace(skin.cut, Layer.CUT, Part.EDGE),
-        *trace(skin.slits, Layer.CUT, Part.SLIT),
-        *trace(skin.seam, Layer.MARK, Part.SEAM),
-        *(line for _, stroke in strokes for line in trace(stroke, Layer.MARK, Part.NOTCH)),
+        *trace(skin.cut, Layer.CUT, PatternPart.EDGE),
+        *trace(skin.slits, Layer.CUT, PatternPart.SLIT),
+        *trace(skin.seam, Layer.MARK, PatternPart.SEAM),
+        *(line for _, stroke in strokes for line in trace(stroke, Layer.MARK, PatternPart.NOTCH)),
         *((opening.mark, *opening.placket) if opening else ()),
     ]
     holes = [pair for _, own in cables for pair in own]
@@ -113,9 +113,9 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
     """A pinhole, or a cross on the seam line where the cable passes between two stitches."""
     x, y = place
     if not hole.in_seam:
-        return (Circle(layer=Layer.PINHOLE, part=Part.PINHOLE, centre=place, radius=options.pinhole / 2),)
+        return (Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, centre=place, radius=options.pinhole / 2),)
     return tuple(
-        Line(layer=Layer.MARK, part=Part.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
+        Polyline(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
         for dx, dy in ((_CROSS, _CROSS), (_CROSS, -_CROSS))
     )
 
@@ -132,5 +132,5 @@ def _runs(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: Patte
         drawn = shapely.MultiLineString([part for part in shapely.get_parts(drawn).tolist() if part.length])
         if hole.after is Side.INSIDE:
             drawn = dashed(drawn)
-        shapes += trace(drawn, Layer.MARK, Part.CABLE)
+        shapes += trace(drawn, Layer.MARK, PatternPart.CABLE)
     return tuple(shapes)

@@ -8,7 +8,7 @@ from shapely import LineString, Polygon
 
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.shape import Layer, Panel, Part, Shape, trace
+from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart, Shape, trace
 from hydrostat.fabrication.patterns.skin import Notch, Skin
 
 
@@ -40,12 +40,12 @@ def gusset_panels(
         ends = _ends(seam.length, [notch.along for notch in own if notch.name], options.gusset_piece)
         cuts += [(own, start, end, seam.length) for start, end in pairwise(ends)]
     return tuple(
-        _piece(f"{name} - gusset {number} of {len(cuts)}", number, _Stretch(*cut), thickness, options)
+        _piece(f"{name} - gusset {number} of {len(cuts)}", number, _StripPiece(*cut), thickness, options)
         for number, cut in enumerate(cuts, start=1)
     )
 
 
-class _Stretch:
+class _StripPiece:
     """A stretch of a seam, laid straight: its length, and the notches on it from its beginning."""
 
     def __init__(self, notches: list[Notch], start: float, end: float, seam: float) -> None:
@@ -66,17 +66,17 @@ def _ends(length: float, notches: list[float], longest: float) -> list[float]:
     return [*ends, length]
 
 
-def _piece(title: str, number: int, stretch: _Stretch, thickness: float, options: PatternOptions) -> Panel:
+def _piece(title: str, number: int, stretch: _StripPiece, thickness: float, options: PatternOptions) -> Panel:
     length, allowance = stretch.length, options.seam_allowance
     seam = shapely.box(0.0, 0.0, length, thickness)
     cut = shapely.box(-allowance, -allowance, length + allowance, thickness + allowance)
-    shapes: list[Shape] = [*trace(cut, Layer.CUT, Part.EDGE), *trace(seam, Layer.MARK, Part.SEAM)]
+    shapes: list[Shape] = [*trace(cut, Layer.CUT, PatternPart.EDGE), *trace(seam, Layer.MARK, PatternPart.SEAM)]
     strokes = []
     for along, name in stretch.notches:
         for low, high in ((thickness, thickness + allowance), (-allowance, 0.0)):
             strokes.append((name, LineString([(along, low), (along, high)])))
     for _, stroke in strokes if allowance else ():
-        shapes += trace(stroke, Layer.MARK, Part.NOTCH)
+        shapes += trace(stroke, Layer.MARK, PatternPart.NOTCH)
     labels = PanelLabels(seam, tuple(shapes), mirrored=False)
     labels.notch_names(strokes, cut)
     labels.edge_names("to the front", "to the back")

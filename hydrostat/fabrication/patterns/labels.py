@@ -11,7 +11,7 @@ from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.marks import place
 from hydrostat.fabrication.patterns.opening import Opening
-from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape
+from hydrostat.fabrication.patterns.shape import Layer, PatternPart, Place, Polyline, Shape
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.robot import Robot
 
@@ -86,7 +86,7 @@ class FreeSpace:
         self._taken.extend(box)
         self._texts.extend(box)
 
-    def take_line(self, line: Line) -> None:
+    def take_line(self, line: Polyline) -> None:
         """Keep what is placed later off a line to a label."""
         self._taken.append(line.geometry)
 
@@ -271,15 +271,15 @@ def _way(at: Place, middle: Place, lettering: Lettering) -> np.ndarray:
     return np.sign(offset) * np.maximum(np.abs(offset) - half, 0.0)
 
 
-def _leader(at: Place, way: np.ndarray, gap: float) -> Line:
+def _leader(at: Place, way: np.ndarray, gap: float) -> Polyline:
     """A thin line from a place, a gap off, almost to its label."""
     length = np.linalg.norm(way)
     ends = [np.add(at, way * (distance / length)) for distance in (gap - 1.5, length - 1.0)]
     points = tuple((float(x), float(y)) for x, y in ends)
-    return Line(layer=Layer.MARK, part=Part.LEADER, points=points)
+    return Polyline(layer=Layer.MARK, part=PatternPart.LEADER, points=points)
 
 
-def _arrow(middle: Place, length: float) -> tuple[Line, ...]:
+def _arrow(middle: Place, length: float) -> tuple[Polyline, ...]:
     """A line with a head at both ends."""
     x, y = middle
     low, high = y - length / 2, y + length / 2
@@ -288,4 +288,4 @@ def _arrow(middle: Place, length: float) -> tuple[Line, ...]:
         ((x - 2, high - 4), (x, high), (x + 2, high - 4)),
         ((x - 2, low + 4), (x, low), (x + 2, low + 4)),
     )
-    return tuple(Line(layer=Layer.MARK, part=Part.GRAIN, points=points) for points in strokes)
+    return tuple(Polyline(layer=Layer.MARK, part=PatternPart.GRAIN, points=points) for points in strokes)

@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import substring
 
 from hydrostat.fabrication.patterns.pinholes import Pinhole
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Line, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.shape import Circle, Layer, PatternPart, Place, Polyline, Shape, trace
 from hydrostat.fabrication.patterns.skin import Notch, Skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.robot import Cable, Robot
@@ -36,8 +36,8 @@ def place(point: Iterable[float]) -> Place:
 
 def seam_marks(skin: Skin, notches: Iterable[Notch]) -> tuple[Shape, ...]:
     """The seam line, and the notches across its allowance."""
-    strokes = [line for notch in notches for line in trace(notch.stroke, Layer.MARK, Part.NOTCH)]
-    return (*trace(skin.seam, Layer.MARK, Part.SEAM), *strokes)
+    strokes = [line for notch in notches for line in trace(notch.stroke, Layer.MARK, PatternPart.NOTCH)]
+    return (*trace(skin.seam, Layer.MARK, PatternPart.SEAM), *strokes)
 
 
 def cable_marks(
@@ -51,21 +51,25 @@ def cable_marks(
         for sheathed, run in _runs(cable):
             if sheathed:
                 tube = run.buffer(_SHEATH / 2, cap_style="flat", join_style="mitre").boundary
-                marks.extend(trace(tube.intersection(seam).difference(holes), Layer.MARK, Part.SHEATH))
+                marks.extend(trace(tube.intersection(seam).difference(holes), Layer.MARK, PatternPart.SHEATH))
         for index in np.flatnonzero(cable.bare):
             run = LineString([place(point) for point in cable.points[index : index + 2]])
             drawn = run.intersection(seam).difference(holes)
             if sewn.stitches[index].after is Side.INSIDE:
                 drawn = dashed(drawn)
-            marks.extend(trace(drawn, Layer.MARK, Part.CABLE))
-        marks.append(Circle(layer=Layer.MARK, part=Part.STOPPER, centre=place(cable.points[-1]), radius=_STOPPER))
+            marks.extend(trace(drawn, Layer.MARK, PatternPart.CABLE))
+        marks.append(
+            Circle(layer=Layer.MARK, part=PatternPart.STOPPER, centre=place(cable.points[-1]), radius=_STOPPER)
+        )
     return tuple(marks)
 
 
 def winch_marks(robot: Robot, seam: Polygon) -> tuple[Shape, ...]:
     """A circle as large as the largest spool where each winch sits in the body."""
     return tuple(
-        Circle(layer=Layer.MARK, part=Part.WINCH, centre=place(winch.at), radius=1e3 * robot.largest_spool(winch))
+        Circle(
+            layer=Layer.MARK, part=PatternPart.WINCH, centre=place(winch.at), radius=1e3 * robot.largest_spool(winch)
+        )
         for winch in robot.winches
         if seam.contains(shapely.Point(place(winch.at)))
     )
@@ -77,7 +81,9 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
     for marker in robot.markers:
         x, y = place(marker.at)
         for dx, dy in ((2.0, 0.0), (0.0, 2.0)):
-            marks.append(Line(layer=Layer.MARK, part=Part.MARKER, points=((x - dx, y - dy), (x + dx, y + dy))))
+            marks.append(
+                Polyline(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
+            )
     return tuple(marks)
 
 

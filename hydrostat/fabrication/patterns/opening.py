@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import Pinhole
-from hydrostat.fabrication.patterns.shape import Layer, Line, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.shape import Layer, PatternPart, Place, Polyline, Shape, trace
 from hydrostat.robot import Robot
 
 ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
@@ -39,15 +39,15 @@ class Opening:
     zipper: int
 
     @property
-    def mark(self) -> Line:
+    def mark(self) -> Polyline:
         """The slit for the laser."""
-        return trace(self.slit, Layer.CUT, Part.OPENING)[0]
+        return trace(self.slit, Layer.CUT, PatternPart.OPENING)[0]
 
     @property
     def placket(self) -> tuple[Shape, ...]:
         """The box along which the tape is sewn under the cloth."""
         box = self.slit.buffer(_PLACKET, cap_style="square", join_style="mitre")
-        return trace(box, Layer.MARK, Part.ZIPPER)
+        return trace(box, Layer.MARK, PatternPart.ZIPPER)
 
     @property
     def label(self) -> str:

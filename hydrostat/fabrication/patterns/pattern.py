@@ -10,7 +10,7 @@ from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, seam_marks, winch_marks
 from hydrostat.fabrication.patterns.opening import Opening, find_opening
 from hydrostat.fabrication.patterns.pinholes import find_pinholes, pinhole_problems
-from hydrostat.fabrication.patterns.shape import Layer, Line, Panel, Part, Place, Shape, trace
+from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart, Place, Polyline, Shape, trace
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
 from hydrostat.fabrication.patterns.skin import Notch, Skin, find_notches, flat_skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, cable_stitches
@@ -62,7 +62,7 @@ class Pattern:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Draft:
+class _PatternDraft:
     """What the panels are drawn from."""
 
     robot: Robot
@@ -89,7 +89,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     if problems and not options.force:
         first, *others = problems
         raise InputError(f"{first} (and {len(others)} more such)" if others else first)
-    draft = _Draft(
+    draft = _PatternDraft(
         robot=robot,
         options=options,
         skin=skin,
@@ -97,7 +97,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
         stitches=cable_stitches(robot, skin.seam),
         opening=find_opening(robot, skin.seam, holes if options.back_pinholes else (), options),
     )
-    edges = (*trace(skin.cut, Layer.CUT, Part.EDGE), *trace(skin.slits, Layer.CUT, Part.SLIT))
+    edges = (*trace(skin.cut, Layer.CUT, PatternPart.EDGE), *trace(skin.slits, Layer.CUT, PatternPart.SLIT))
     cloth = (*edges, *seam_marks(skin, draft.notches), *winch_marks(robot, skin.seam))
     pinholes = tuple(hole.circle for hole in holes)
     markers = marker_marks(robot) if options.marker_names else ()
@@ -120,7 +120,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     )
 
 
-def _front(draft: _Draft, shapes: tuple[Shape, ...]) -> Panel:
+def _front(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     """The front panel about the robot's origin, with its labels."""
     labels = PanelLabels(draft.skin.seam, shapes, mirrored=False)
     labels.notch_names([(notch.name, notch.stroke) for notch in draft.notches], draft.skin.cut)
@@ -133,7 +133,7 @@ def _front(draft: _Draft, shapes: tuple[Shape, ...]) -> Panel:
     return Panel(name="front", origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
 
 
-def _back(draft: _Draft, shapes: tuple[Shape, ...]) -> Panel:
+def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     """The back panel about the robot's origin, seen from behind, with its labels."""
     zipper = (draft.opening.mark, *draft.opening.placket) if draft.opening else ()
     mirror = tuple(shape.mirrored() for shape in (*shapes, *zipper))
@@ -147,7 +147,7 @@ def _back(draft: _Draft, shapes: tuple[Shape, ...]) -> Panel:
     return Panel(name="back", origin=(0.0, 0.0), mirrored=True, shapes=(*mirror, *labels.shapes()))
 
 
-def _warnings(draft: _Draft, thickness: float, *, gusset: bool) -> tuple[str, ...]:
+def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[str, ...]:
     """Of the thickness and the opening."""
     warnings = list(draft.opening.warnings if draft.opening else ())
     stuffed = stuffed_thickness(draft.skin.seam)
@@ -170,7 +170,7 @@ _GAP = 10.0
 
 def cut_sheet(name: str, rings: Iterable[tuple[Place, ...]]) -> Pattern:
     """A plate with its holes [mm], above the bar of 100 mm."""
-    lines = tuple(Line(layer=Layer.CUT, part=Part.EDGE, points=ring, closed=True) for ring in rings)
+    lines = tuple(Polyline(layer=Layer.CUT, part=PatternPart.EDGE, points=ring, closed=True) for ring in rings)
     sheet = lay_out((Panel(name="plate", origin=(0.0, 0.0), mirrored=False, shapes=lines),), (), _GAP)
-    ruler = tuple(line for line in sheet.ruler if line.part is Part.RULER)
+    ruler = tuple(line for line in sheet.ruler if line.part is PatternPart.RULER)
     return Pattern(name=name, panels=sheet.panels, shapes=ruler, width=sheet.width, height=sheet.height)

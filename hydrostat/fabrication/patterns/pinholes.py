@@ -9,7 +9,7 @@ import shapely
 from shapely import Polygon
 
 from hydrostat.fabrication.kit_options import PatternOptions
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Part, Place
+from hydrostat.fabrication.patterns.shape import Circle, Layer, PatternPart, Place
 from hydrostat.robot import Mount, Robot
 
 _SAME = 0.01
@@ -41,7 +41,7 @@ class Pinhole:
     @property
     def circle(self) -> Circle:
         """The hole for the laser."""
-        return Circle(layer=Layer.PINHOLE, part=Part.PINHOLE, centre=self.centre, radius=self.radius)
+        return Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, centre=self.centre, radius=self.radius)
 
     def gap(self, other: "Pinhole") -> float:
         """Cloth between two holes [mm], below 0 where they overlap."""

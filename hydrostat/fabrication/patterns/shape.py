@@ -1,4 +1,4 @@
-"""`Line` and `Circle`: what a laser follows, each on a `Layer`; `Panel`: a piece of cloth with all that is on it."""
+"""`Polyline` and `Circle`: what a laser follows, each on a `Layer`; `Panel`: a piece of cloth with its shapes."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ class Layer(StrEnum):
     CUT = "cut"
 
 
-class Part(StrEnum):
+class PatternPart(StrEnum):
     """What a shape stands for on the panel."""
 
     EDGE = "edge"
@@ -44,7 +44,7 @@ class Part(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
+class Polyline:
     """A polyline.
 
     Attributes:
@@ -55,7 +55,7 @@ class Line:
     """
 
     layer: Layer
-    part: Part
+    part: PatternPart
     points: tuple[Place, ...]
     closed: bool = False
 
@@ -85,7 +85,7 @@ class Circle:
     """
 
     layer: Layer
-    part: Part
+    part: PatternPart
     centre: Place
     radius: float
 
@@ -103,23 +103,23 @@ class Circle:
         return shapely.Point(self.centre).buffer(self.radius).exterior
 
 
-Shape = Line | Circle
+Shape = Polyline | Circle
 """Anything on a sheet."""
 
 
-def trace(geometry: BaseGeometry, layer: Layer, part: Part) -> tuple[Line, ...]:
+def trace(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> tuple[Polyline, ...]:
     """The lines of a geometry [mm]: rings of polygons closed, lines open, points left out."""
     return tuple(_lines(geometry, layer, part))
 
 
-def _lines(geometry: BaseGeometry, layer: Layer, part: Part) -> Iterable[Line]:
+def _lines(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> Iterable[Polyline]:
     if isinstance(geometry, shapely.Polygon):
         for ring in (geometry.exterior, *geometry.interiors):
             yield from _lines(ring, layer, part)
     elif isinstance(geometry, shapely.LineString) and not geometry.is_empty:
         closed = geometry.is_ring
         points = tuple((x, y) for x, y in geometry.coords)
-        yield Line(layer=layer, part=part, points=points[:-1] if closed else points, closed=closed)
+        yield Polyline(layer=layer, part=part, points=points[:-1] if closed else points, closed=closed)
     else:
         for piece in getattr(geometry, "geoms", ()):
             yield from _lines(piece, layer, part)

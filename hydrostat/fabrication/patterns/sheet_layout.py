@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from hydrostat.fabrication.patterns.lettering import Lettering
-from hydrostat.fabrication.patterns.shape import Layer, Line, Panel, Part, Place
+from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart, Place, Polyline
 
 _RULER = 100.0
 """Length of the bar that shows whether the sheet was cut at its true scale [mm]."""
@@ -28,12 +28,12 @@ class Sheet:
     """
 
     panels: tuple[Panel, ...]
-    ruler: tuple[Line, ...]
+    ruler: tuple[Polyline, ...]
     width: float
     height: float
 
 
-class _Box(NamedTuple):
+class _PanelBox(NamedTuple):
     """A panel with the bounds of all its shapes [mm]."""
 
     panel: Panel
@@ -65,9 +65,9 @@ def lay_out(panels: tuple[Panel, ...], strips: tuple[Panel, ...], gap: float) ->
     )
 
 
-def _shelves(boxes: list[_Box], width: float, gap: float) -> list[list[_Box]]:
+def _shelves(boxes: list[_PanelBox], width: float, gap: float) -> list[list[_PanelBox]]:
     """Rows of boxes: each goes to the first row that has room for it, the longest first."""
-    shelves: list[list[_Box]] = []
+    shelves: list[list[_PanelBox]] = []
     for box in sorted(boxes, key=lambda box: -round(float(box.size[0]), 6)):
         used = [sum(float(other.size[0]) + gap for other in shelf) + gap for shelf in shelves]
         free = next((shelf for shelf, left in zip(shelves, used, strict=True) if left + box.size[0] <= width), None)
@@ -78,35 +78,35 @@ def _shelves(boxes: list[_Box], width: float, gap: float) -> list[list[_Box]]:
     return shelves
 
 
-def _box(panel: Panel) -> _Box:
+def _box(panel: Panel) -> _PanelBox:
     bounds = shapely.total_bounds(np.array([shape.geometry for shape in panel.shapes]))
-    return _Box(panel, bounds[:2], bounds[2:] - bounds[:2])
+    return _PanelBox(panel, bounds[:2], bounds[2:] - bounds[:2])
 
 
-def _ruler() -> tuple[Line, ...]:
+def _ruler() -> tuple[Polyline, ...]:
     """A bar of 100 mm from (0, 0) to the right, a stroke every 10 mm."""
     strokes: list[tuple[Place, ...]] = [((0.0, 0.0), (_RULER, 0.0))]
     strokes += [((x, 0.0), (x, 4.0 if x % 50 == 0 else 2.0)) for x in np.arange(0.0, _RULER + 1, 10.0).tolist()]
-    bar = tuple(Line(layer=Layer.MARK, part=Part.RULER, points=points) for points in strokes)
+    bar = tuple(Polyline(layer=Layer.MARK, part=PatternPart.RULER, points=points) for points in strokes)
     text = Lettering(f"{_RULER:g} mm", 4.0)
     return (*bar, *text.lines((_RULER + 4 + text.width / 2, 2.0)))
 
 
-def _key(width: float) -> tuple[Line, ...]:
+def _key(width: float) -> tuple[Polyline, ...]:
     """What the lines of cables are, right of the bar, as far as the sheet is wide enough."""
     dashes = tuple(((start, 0.0), (start + 2.0, 0.0)) for start in (0.0, 3.3, 6.7, 10.0))
-    samples: tuple[tuple[str, Part, tuple[tuple[Place, ...], ...]], ...] = (
-        ("cable outside", Part.CABLE, (((0.0, 0.0), (12.0, 0.0)),)),
-        ("cable inside", Part.CABLE, dashes),
-        ("sheath inside", Part.SHEATH, (((0.0, 1.5), (12.0, 1.5)), ((0.0, -1.5), (12.0, -1.5)))),
+    samples: tuple[tuple[str, PatternPart, tuple[tuple[Place, ...], ...]], ...] = (
+        ("cable outside", PatternPart.CABLE, (((0.0, 0.0), (12.0, 0.0)),)),
+        ("cable inside", PatternPart.CABLE, dashes),
+        ("sheath inside", PatternPart.SHEATH, (((0.0, 1.5), (12.0, 1.5)), ((0.0, -1.5), (12.0, -1.5)))),
     )
-    lines: list[Line] = []
+    lines: list[Polyline] = []
     left = _RULER + 40.0
     for text, part, strokes in samples:
         letters = Lettering(text, 3.0)
         if left + 15 + letters.width > width:
             break
-        lines += [Line(layer=Layer.MARK, part=part, points=stroke).moved(left, 2.0) for stroke in strokes]
+        lines += [Polyline(layer=Layer.MARK, part=part, points=stroke).moved(left, 2.0) for stroke in strokes]
         lines += letters.lines((left + 15 + letters.width / 2, 2.0))
         left += 25 + letters.width
     return tuple(lines)

@@ -8,7 +8,7 @@ from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.self_check import Check
-from hydrostat.fabrication.solids.assembly import Assembly
+from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot
 
@@ -39,9 +39,9 @@ class SheetInput:
     method: Method
     paper: Paper
     motor: str = "geared motor"
-    winch: Assembly | None = None
-    base: Assembly | None = None
-    stopper: Assembly | None = None
+    winch: PartAssembly | None = None
+    base: PartAssembly | None = None
+    stopper: PartAssembly | None = None
     printed: tuple[Printed, ...] = ()
     tables: Mapping[str, Table] = field(default_factory=dict)
     stitches: tuple[CableStitches, ...] = ()

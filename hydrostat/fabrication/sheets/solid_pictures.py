@@ -13,7 +13,7 @@ from hydrostat.drawing.canvas import MIDDLE, PIXELS, THIN, Box, Canvas, CanvasFr
 from hydrostat.drawing.depth import Polyline, level_rings
 from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing, line_drawing
 from hydrostat.fabrication.sheets.cable_map import body_solid, flat_rings
-from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import triangles_of
 from hydrostat.robot import Robot
 
@@ -28,7 +28,7 @@ def drawn_solid(solid: Manifold, *, shift: Sequence[float] = (0.0, 0.0, 0.0)) ->
 
 
 def exploded_picture(
-    assembly: Assembly, numbers: Mapping[str, int], *, width: float, height: float, view: Camera | None = None
+    assembly: PartAssembly, numbers: Mapping[str, int], *, width: float, height: float, view: Camera | None = None
 ) -> Canvas:
     """Pieces drawn away from each other, a dashed line on the way of each, and a number in a circle beside it.
 

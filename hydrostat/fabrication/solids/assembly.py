@@ -1,4 +1,4 @@
-"""`Assembly`: solids where they belong, and whether they get into each other's way."""
+"""`PartAssembly`: solids where they belong, and whether they get into each other's way."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -29,7 +29,7 @@ class Placed:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Assembly:
+class PartAssembly:
     """Things put together, in millimetres.
 
     Attributes:
@@ -56,7 +56,7 @@ class Interference:
     volume: float
 
 
-def interferences(assembly: Assembly, *, least: float = LEAST) -> tuple[Interference, ...]:
+def interferences(assembly: PartAssembly, *, least: float = LEAST) -> tuple[Interference, ...]:
     """All pairs of pieces that share room, by booleans.
 
     What two share is what they lose when they are joined: measured on the intersection itself it would be wrong where

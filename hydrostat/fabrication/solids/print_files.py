@@ -31,7 +31,7 @@ _GAP = 5.0
 
 
 @dataclass(frozen=True)
-class Laid:
+class PartOnBed:
     """One part on a bed.
 
     Attributes:
@@ -48,14 +48,14 @@ class Laid:
 
 
 @dataclass(frozen=True)
-class _Piece:
+class _BedPiece:
     part: int
     turned: bool
     low: tuple[float, float]
     size: tuple[float, float]
 
 
-def lay_plates(parts: Iterable[Printed], bed: tuple[float, float]) -> tuple[tuple[Laid, ...], ...]:
+def lay_plates(parts: Iterable[Printed], bed: tuple[float, float]) -> tuple[tuple[PartOnBed, ...], ...]:
     """The parts of each bed, every part as often as it is needed, in rows, the deepest first.
 
     A part is turned where only so it fits; one that does not fit at all has a bed of its own.
@@ -66,7 +66,7 @@ def lay_plates(parts: Iterable[Printed], bed: tuple[float, float]) -> tuple[tupl
     """
     pieces = [_piece(number, part, bed) for number, part in enumerate(parts) for _ in range(part.count)]
     pieces.sort(key=lambda piece: (-piece.size[1], piece.part))
-    plates: list[list[Laid]] = [[]]
+    plates: list[list[PartOnBed]] = [[]]
     x = y = row = 0.0
     for piece in pieces:
         wide, deep = piece.size
@@ -75,19 +75,19 @@ def lay_plates(parts: Iterable[Printed], bed: tuple[float, float]) -> tuple[tupl
         if y > 0 and y + deep > bed[1]:
             plates.append([])
             x = y = row = 0.0
-        plates[-1].append(Laid(piece.part, x - piece.low[0], y - piece.low[1], piece.turned))
+        plates[-1].append(PartOnBed(piece.part, x - piece.low[0], y - piece.low[1], piece.turned))
         x, row = x + wide + _GAP, max(row, deep)
     return tuple(tuple(plate) for plate in plates if plate)
 
 
-def _piece(number: int, part: Printed, bed: tuple[float, float]) -> _Piece:
+def _piece(number: int, part: Printed, bed: tuple[float, float]) -> _BedPiece:
     """A part as it lies best."""
     low_x, low_y, _, high_x, high_y, _ = part.solid.bounding_box()
     wide, deep = high_x - low_x, high_y - low_y
     turned = (wide > bed[0] or deep > bed[1]) and deep <= bed[0] and wide <= bed[1]
     if turned:
-        return _Piece(number, turned, (-high_y, low_x), (deep, wide))
-    return _Piece(number, turned, (low_x, low_y), (wide, deep))
+        return _BedPiece(number, turned, (-high_y, low_x), (deep, wide))
+    return _BedPiece(number, turned, (low_x, low_y), (wide, deep))
 
 
 _STRAIGHT, _TURNED = "1 0 0 0 1 0 0 0 1", "0 1 0 -1 0 0 0 0 1"
@@ -130,7 +130,7 @@ def three_mf_plates(parts: tuple[Printed, ...], title: str, *, bed: tuple[float,
     )
 
 
-def _file(parts: tuple[Printed, ...], plate: tuple[Laid, ...], title: str) -> bytes:
+def _file(parts: tuple[Printed, ...], plate: tuple[PartOnBed, ...], title: str) -> bytes:
     used = sorted({laid.part for laid in plate})
     numbers = {part: number for number, part in enumerate(used, start=1)}
     objects = "".join(_object(numbers[part], parts[part]) for part in used)

@@ -6,7 +6,7 @@ import pytest
 from plush_robots import crossed
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Part, Pattern, PatternOptions, pattern_dxf, pattern_svg, plush_pattern
+from hydrostat.fabrication import Pattern, PatternOptions, PatternPart, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.fabrication.checks.pattern_checks import pattern_checks
 from hydrostat.fabrication.self_check import Check
 
@@ -27,7 +27,7 @@ def shifted(by: float) -> Pattern:
     """The pattern with the holes of its front moved [mm]."""
     pattern = plush_pattern(crossed())
     front, *others = pattern.panels
-    shapes = tuple(shape.moved(by, 0.0) if shape.part is Part.PINHOLE else shape for shape in front.shapes)
+    shapes = tuple(shape.moved(by, 0.0) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes)
     return replace(pattern, panels=(replace(front, shapes=shapes), *others))
 
 
@@ -50,13 +50,15 @@ def test_holes_in_each_others_columns_are_seen():
     """Oracle: two drawings with the same x and the same y, but not in the same holes."""
     pattern = plush_pattern(crossed())
     front, *others = pattern.panels
-    holes = [shape for shape in front.shapes if shape.part is Part.PINHOLE]
+    holes = [shape for shape in front.shapes if shape.part is PatternPart.PINHOLE]
     one, two = holes[1], holes[2]
     swapped = {
         one.centre: replace(one, centre=(one.centre[0], two.centre[1])),
         two.centre: replace(two, centre=(two.centre[0], one.centre[1])),
     }
-    shapes = tuple(swapped.get(shape.centre, shape) if shape.part is Part.PINHOLE else shape for shape in front.shapes)
+    shapes = tuple(
+        swapped.get(shape.centre, shape) if shape.part is PatternPart.PINHOLE else shape for shape in front.shapes
+    )
     assert not checked(dxf=pattern_dxf(replace(pattern, panels=(replace(front, shapes=shapes), *others))))[1]
 
 

@@ -9,7 +9,7 @@ from plush_robots import crossed
 from hydrostat.fabrication import MOTORS, PartOptions, Printed
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
-from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 
 CUBE = Manifold.cube((10.0, 20.0, 30.0))
 
@@ -18,9 +18,9 @@ def part(solid: Manifold = CUBE) -> Printed:
     return Printed(name="cube", title="Cube", solid=solid)
 
 
-def pair(apart: float) -> Assembly:
+def pair(apart: float) -> PartAssembly:
     """Two cubes beside each other [mm]."""
-    return Assembly(
+    return PartAssembly(
         name="pair",
         pieces=(
             Placed(name="one", title="One", solid=CUBE),

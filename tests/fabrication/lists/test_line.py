@@ -5,9 +5,9 @@ import pytest
 from small_inputs import square
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.line import KNOT, LINES, SAFETY, Line, check_line, line_for
+from hydrostat.fabrication.lists.line import KNOT, LINES, SAFETY, FishingLine, check_line, line_for
 
-TEN = Line(name="ten", diameter=0.3, pounds=10 / 4.448222)
+TEN = FishingLine(name="ten", diameter=0.3, pounds=10 / 4.448222)
 """A line that breaks at 10 N."""
 
 

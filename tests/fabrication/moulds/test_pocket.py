@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from hydrostat.fabrication.moulds.stance import Frame
 from manifold3d import Manifold
 from mould_robots import foam_robot, slab_body
 
@@ -11,12 +10,13 @@ from hydrostat.fabrication.checks.mould_checks import mould_checks
 from hydrostat.fabrication.kit_options import MouldOptions
 from hydrostat.fabrication.moulds.mould import make_mould
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
-from hydrostat.fabrication.moulds.release import skin_of
+from hydrostat.fabrication.moulds.release import fine_surface
 from hydrostat.fabrication.moulds.solids import body_solid, rod
+from hydrostat.fabrication.moulds.stance import Stance
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.robot import Robot
 
-PLAIN = Frame(np.eye(3), 0.0)
+PLAIN = Stance(np.eye(3), 0.0)
 SLAB = slab_body()
 
 
@@ -113,12 +113,12 @@ def test_pocket_of_no_winch_or_no_size_is_refused() -> None:
 def test_dents_are_where_cables_come_near_the_surface() -> None:
     robot = foam_robot(SLAB, (0.0, 0.0, 0.0), at=(0.02, 0.01, 0.025))
     solid = body_solid(SLAB)
-    dents = cable_dents(robot, skin_of(solid), PLAIN, deepest=10.0)
+    dents = cable_dents(robot, fine_surface(solid), PLAIN, deepest=10.0)
     inside = dents ^ solid
     x_low, y_low, z_low, x_high, y_high, z_high = inside.bounding_box()
     assert [(x_low + x_high) / 2, (y_low + y_high) / 2] == pytest.approx([20, 10], abs=1e-3)
     assert [z_low, z_high] == pytest.approx([29, 30])  # 1 mm deep; the winch's end lies too deep
-    assert cable_dents(robot, skin_of(solid), PLAIN, deepest=2.0).is_empty()
+    assert cable_dents(robot, fine_surface(solid), PLAIN, deepest=2.0).is_empty()
 
 
 def test_winches_are_laid_beside_each_other_if_they_can_be() -> None:
@@ -136,7 +136,7 @@ def test_dents_that_meet_are_one_hollow() -> None:
 
     def dents(*spots: float) -> Manifold:
         robot = foam_robot(SLAB, *((spot, 0.0, 0.025) for spot in spots), at=(0.0, 0.0, 0.0))
-        return cable_dents(robot, skin_of(solid), PLAIN, deepest=10.0)
+        return cable_dents(robot, fine_surface(solid), PLAIN, deepest=10.0)
 
     alone = dents(0.0).volume()
     both = dents(0.0, 0.004)

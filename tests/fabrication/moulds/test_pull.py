@@ -7,7 +7,7 @@ import pytest
 from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.pull import best_height, find_pull, half_sphere
-from hydrostat.fabrication.moulds.release import release, skin_of
+from hydrostat.fabrication.moulds.release import fine_surface, release
 
 Z = np.array([0.0, 0.0, 1.0])
 
@@ -24,7 +24,7 @@ def mushroom() -> Manifold:
 
 
 def share_along(solid: Manifold, direction: np.ndarray) -> float:
-    skin = skin_of(solid)
+    skin = fine_surface(solid)
     return best_height(skin, release(skin, direction))[1]
 
 
@@ -51,7 +51,7 @@ def test_spool_across_its_axis_and_mushroom_under_its_cap_come_out() -> None:
     found = find_pull(spool(), count=60)
     assert found.share < 0.005
     assert abs(found.direction @ Z) < 0.01
-    skin = skin_of(mushroom())
+    skin = fine_surface(mushroom())
     height, share = best_height(skin, release(skin, Z))
     assert share < 0.005
     assert 39.9 < height < 50.1  # in the cap: its underside leaves with the stem
@@ -64,7 +64,7 @@ def test_sealed_room_never_comes_out() -> None:
 
 def test_release_agrees_with_rays() -> None:
     solid = Manifold.sphere(20, 24) + Manifold.sphere(14, 24).translate((9, 4, 22)) + Manifold.cube((50, 9, 9))
-    skin = skin_of(solid)
+    skin = fine_surface(solid)
     freed = release(skin, Z)
     facing = skin.normals[:, 2]
     asked = skin.middles + 5e-4 * skin.size * skin.normals
@@ -96,6 +96,6 @@ def test_directions_are_spread_evenly() -> None:
 def test_reported_shares_are_those_of_the_directions() -> None:
     found = find_pull(mushroom(), count=30)
     for number in (0, 20, len(found.shares) - 1):
-        assert found.shares[number] == best_height(found.skin, release(found.skin, found.directions[number]))[1]
-    areas = found.skin.areas
+        assert found.shares[number] == best_height(found.surface, release(found.surface, found.directions[number]))[1]
+    areas = found.surface.areas
     assert areas[found.undercut].sum() / areas.sum() == pytest.approx(found.share, abs=1e-12)

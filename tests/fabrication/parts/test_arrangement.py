@@ -12,7 +12,7 @@ from shapely import Polygon, box, transform
 from winch_robots import gallery_robot, with_winches
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.arrangement import Laid, arranged
+from hydrostat.fabrication.parts.arrangement import LaidUnit, arranged
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
@@ -31,11 +31,11 @@ def brick(winch: str, x: float, y: float, *, deep: float = 20.0, along: float = 
     return UnitBox(winch=winch, at=(x, y), low=(-10.0, -10.0, -deep), high=(10.0, 10.0, 10.0), along=along)
 
 
-def problems(laid: tuple[Laid, ...]) -> list[str]:
+def problems(laid: tuple[LaidUnit, ...]) -> list[str]:
     return [text for each in laid for text in each.problems]
 
 
-def warnings(laid: tuple[Laid, ...]) -> list[str]:
+def warnings(laid: tuple[LaidUnit, ...]) -> list[str]:
     return [text for each in laid for text in each.warnings]
 
 

@@ -12,15 +12,15 @@ from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions, PatternOptions
 from hydrostat.fabrication.parts.screws import M2X6
 from hydrostat.fabrication.parts.stopper import Stopper, holding_force, stopper
-from hydrostat.fabrication.solids.assembly import Assembly, Placed, interferences
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed, interferences
 
 CABLES = [PartOptions(), PartOptions(cable=0.2, fit=0.1), PartOptions(cable=0.9, bore=1.5, tube=2.5, clearance=0.5)]
 
 
-def moved_lid(made: Stopper, down: float = 0.0, turned: float = 0.0) -> Assembly:
+def moved_lid(made: Stopper, down: float = 0.0, turned: float = 0.0) -> PartAssembly:
     """The assembly with its lid pressed down [mm] and turned about the screw [degrees]; without the screw."""
     base, lid, _ = made.assembly.pieces
-    return Assembly(
+    return PartAssembly(
         name="moved",
         pieces=(base, Placed(name="lid", title="Lid", solid=lid.solid.translate((0, 0, -down)).rotate((0, 0, turned)))),
     )

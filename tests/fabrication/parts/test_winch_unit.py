@@ -13,7 +13,7 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.spool import capacity
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, crowded, winch_units
-from hydrostat.fabrication.solids.assembly import Assembly, interferences
+from hydrostat.fabrication.solids.assembly import PartAssembly, interferences
 from hydrostat.robot import Mount, Robot, gallery_names
 
 N20, XL330, POLOLU_25D = MOTORS
@@ -64,7 +64,7 @@ def test_a_spool_too_high_is_found():
         replace(piece, solid=piece.solid.translate((0, 0, 0.5 if piece.name.startswith("spool") else 0)))
         for piece in unit.assembly.pieces
     )
-    assert {found.other for found in interferences(Assembly(name="high", pieces=pieces))} == {"housing_a"}
+    assert {found.other for found in interferences(PartAssembly(name="high", pieces=pieces))} == {"housing_a"}
 
 
 @pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)

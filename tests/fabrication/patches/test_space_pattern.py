@@ -10,7 +10,7 @@ from hydrostat.fabrication.checks.pattern_checks import patch_checks
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.space_pattern import SpacePattern, space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
-from hydrostat.fabrication.patterns.shape import Part
+from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.stitches import Side
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.robot import Robot
@@ -90,7 +90,7 @@ def test_left_and_right_are_alike(bear, pattern):
 def test_notches_have_their_partner(pattern):
     """Both panels have as many notches, as far apart along the seam."""
     strokes = [
-        [shape for shape in panel.shapes if shape.part is Part.NOTCH]
+        [shape for shape in panel.shapes if shape.part is PatternPart.NOTCH]
         for panel in (pattern.panels[0], pattern.panels[1])
     ]
     assert len(strokes[0]) == len(strokes[1]) > 10
@@ -104,7 +104,7 @@ def test_notches_have_their_partner(pattern):
 
 def test_cut_is_one_allowance_outside_the_seam(pattern):
     for panel, patch in zip(pattern.panels, pattern.patches, strict=True):
-        (edge,) = [shape for shape in panel.shapes if shape.part is Part.EDGE]
+        (edge,) = [shape for shape in panel.shapes if shape.part is PatternPart.EDGE]
         assert patch.outline.exterior.distance(edge.geometry) == pytest.approx(8.0, abs=0.02)
 
 

@@ -11,7 +11,7 @@ from plush_robots import HOLED, SQUARE, crossed, disc_path, drawn_body, plush_ro
 from read_back import see_dxf, see_svg
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Panel, Part, Pattern, PatternOptions, pattern_dxf, pattern_svg, plush_pattern
+from hydrostat.fabrication import Panel, Pattern, PatternOptions, PatternPart, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.fabrication.patterns.gusset import stuffed_thickness
 from hydrostat.fabrication.patterns.skin import find_notches, flat_skin
 from hydrostat.geometry.mesh import Mesh
@@ -22,7 +22,7 @@ GUSSET = PatternOptions(gusset=True)
 
 def seam_of(panel: Panel) -> np.ndarray:
     """Bounds of the rectangle that is seen when sewn."""
-    (seam,) = (shape for shape in panel.shapes if shape.part is Part.SEAM)
+    (seam,) = (shape for shape in panel.shapes if shape.part is PatternPart.SEAM)
     return np.array(seam.geometry.bounds)
 
 
@@ -33,7 +33,7 @@ def strip_notches(pattern: Pattern, edge: int) -> list[float]:
         left, bottom, right, top = seam_of(panel)
         y = (bottom, top)[edge]
         line = shapely.LineString([(left, y), (right, y)])
-        notches = [shape for shape in panel.shapes if shape.part is Part.NOTCH]
+        notches = [shape for shape in panel.shapes if shape.part is PatternPart.NOTCH]
         found += [before + notch.points[0][0] - left for notch in notches if notch.geometry.distance(line) < 1e-9]
         before += right - left
     return found
@@ -41,8 +41,8 @@ def strip_notches(pattern: Pattern, edge: int) -> list[float]:
 
 def seam_notches(panel: Panel, length: float, *, mirrored: bool) -> list[float]:
     """How far along the seam each notch is from the first of the double notch, the body on the left (seen in front)."""
-    (seam,) = (shape.geometry for shape in panel.shapes if shape.part is Part.SEAM)
-    feet = [shapely.Point(shape.points[0]) for shape in panel.shapes if shape.part is Part.NOTCH]
+    (seam,) = (shape.geometry for shape in panel.shapes if shape.part is PatternPart.SEAM)
+    feet = [shapely.Point(shape.points[0]) for shape in panel.shapes if shape.part is PatternPart.NOTCH]
     along = np.array([seam.project(foot) for foot in feet])
     turn = 1 if seam.is_ccw != mirrored else -1
     return sorted(round(float(turn * (one - along[0]) % length), 5) % round(length, 5) for one in along)
@@ -76,7 +76,7 @@ def test_the_strip_is_as_long_as_the_seam_and_as_wide_as_the_body_is_thick(piece
 def test_each_piece_has_its_own_allowance():
     """Oracle: closed form: length + 2 a by thickness + 2 a."""
     for panel in plush_pattern(crossed(), options=GUSSET).gusset:
-        (edge,) = (shape.geometry for shape in panel.shapes if shape.part is Part.EDGE)
+        (edge,) = (shape.geometry for shape in panel.shapes if shape.part is PatternPart.EDGE)
         np.testing.assert_allclose(np.subtract(edge.bounds, seam_of(panel)), [-8, -8, 8, 8], atol=1e-9)
 
 

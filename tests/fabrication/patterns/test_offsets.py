@@ -8,7 +8,7 @@ import shapely
 from plush_robots import disc_path, drawn_body, plush_robot
 from scipy.spatial import cKDTree
 
-from hydrostat.fabrication import Panel, Part, PatternOptions, plush_pattern
+from hydrostat.fabrication import Panel, PatternOptions, PatternPart, plush_pattern
 
 CONVEX = {
     "triangle": "M0 0H120L30 90Z",
@@ -28,8 +28,8 @@ BENT = {
 def cut_and_seam(path: str, allowance: float) -> tuple[shapely.Polygon, shapely.Polygon]:
     options = PatternOptions(seam_allowance=allowance, force=True)
     panel: Panel = plush_pattern(plush_robot(drawn_body(path), marker=(0, 0)), options=options).panel("front")
-    found = {shape.part: shape for shape in panel.shapes if shape.part in (Part.EDGE, Part.SEAM)}
-    return shapely.Polygon(found[Part.EDGE].points), shapely.Polygon(found[Part.SEAM].points)
+    found = {shape.part: shape for shape in panel.shapes if shape.part in (PatternPart.EDGE, PatternPart.SEAM)}
+    return shapely.Polygon(found[PatternPart.EDGE].points), shapely.Polygon(found[PatternPart.SEAM].points)
 
 
 @pytest.mark.parametrize("allowance", [5.0, 8.0, 12.0])

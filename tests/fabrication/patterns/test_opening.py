@@ -3,7 +3,7 @@ import pytest
 import shapely
 from plush_robots import drawn_body, plush_robot
 
-from hydrostat.fabrication import Layer, Part, Pattern, PatternOptions, plush_pattern
+from hydrostat.fabrication import Layer, Pattern, PatternOptions, PatternPart, plush_pattern
 from hydrostat.fabrication.patterns.opening import ZIPPERS
 from hydrostat.robot import Cable, Robot, Winch
 
@@ -18,7 +18,7 @@ def with_winches(path: str, *places: tuple[float, float]) -> Robot:
     return plush_robot(drawn_body(path)).with_network(winches, cables)
 
 
-def back_parts(pattern: Pattern, part: Part) -> list:
+def back_parts(pattern: Pattern, part: PatternPart) -> list:
     return [shape for shape in pattern.panel("back").shapes if shape.part is part]
 
 
@@ -29,13 +29,13 @@ def back_parts(pattern: Pattern, part: Part) -> list:
 def test_the_zipper_is_one_that_is_sold(places, length):
     """Oracle: the row of winches and 30 mm beyond, rounded up by hand; 270 mm are free, so 320 become 250."""
     pattern = plush_pattern(with_winches(WIDE, *places))
-    (slit,) = back_parts(pattern, Part.OPENING)
+    (slit,) = back_parts(pattern, PatternPart.OPENING)
     assert slit.layer is Layer.CUT
     assert slit.geometry.length == pytest.approx(length)
     assert pattern.opening is not None
     assert pattern.opening.label == f"zipper {length} mm"
     assert length in ZIPPERS
-    (box,) = back_parts(pattern, Part.ZIPPER)
+    (box,) = back_parts(pattern, PatternPart.ZIPPER)
     assert shapely.Polygon(box.points).area == pytest.approx((length + 8) * 8)
     assert box.layer is Layer.MARK
 
@@ -44,8 +44,8 @@ def test_the_zipper_is_one_that_is_sold(places, length):
 def test_the_slit_stays_inside_and_reaches_the_winches(places):
     """Oracle: shapely: the placket lies in the seam, the slit not farther from the winches' middle than its inset."""
     pattern = plush_pattern(with_winches(WIDE, *places))
-    (slit,), (box,) = back_parts(pattern, Part.OPENING), back_parts(pattern, Part.ZIPPER)
-    seam = shapely.Polygon(back_parts(pattern, Part.SEAM)[0].points)
+    (slit,), (box,) = back_parts(pattern, PatternPart.OPENING), back_parts(pattern, PatternPart.ZIPPER)
+    seam = shapely.Polygon(back_parts(pattern, PatternPart.SEAM)[0].points)
     assert seam.contains(shapely.Polygon(box.points))
     assert seam.exterior.distance(slit.geometry) > 10 - 1e-6
     middle = pattern.panel("back").on_sheet(tuple(1e-3 * np.mean(places, axis=0)))
@@ -56,10 +56,10 @@ def test_the_slit_keeps_off_pinholes_on_the_back():
     """Oracle: distances: without the option the slit runs over the exit of the cable, with it the placket is off."""
     robot = plush_robot(drawn_body(WIDE), [(-20, 0), (-40, 0), (-60, 0), (-80, 0), (-100, 0)])
     plain, careful = (plush_pattern(robot, options=PatternOptions(back_pinholes=back)) for back in (False, True))
-    holes = [shape for shape in careful.panel("back").shapes if shape.part is Part.PINHOLE]
+    holes = [shape for shape in careful.panel("back").shapes if shape.part is PatternPart.PINHOLE]
 
     def gap(pattern: Pattern) -> float:
-        box = shapely.Polygon(back_parts(pattern, Part.ZIPPER)[0].points)
+        box = shapely.Polygon(back_parts(pattern, PatternPart.ZIPPER)[0].points)
         return min(box.distance(shapely.Point(hole.centre)) - hole.radius for hole in holes)
 
     assert gap(plain) < 0

@@ -4,7 +4,7 @@ import pytest
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 
 from hydrostat.fabrication import Pattern, PatternOptions, plush_pattern
-from hydrostat.fabrication.patterns.shape import Part
+from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.robot import Cable, Mount, Robot
 
@@ -84,7 +84,7 @@ def test_stitches_are_where_the_cable_is_and_have_a_hole():
     robot = crossed()
     pattern = plush_pattern(robot)
     front = pattern.panel("front")
-    holes = [shape.centre for shape in front.shapes if shape.part is Part.PINHOLE]
+    holes = [shape.centre for shape in front.shapes if shape.part is PatternPart.PINHOLE]
     for cable, stitches in zip(robot.cables, pattern.stitches, strict=True):
         for point, stitch in zip(cable.points, stitches.stitches, strict=True):
             assert stitch.place == pytest.approx([1e3 * x for x in point])
@@ -95,7 +95,7 @@ def test_lines_are_solid_outside_and_dashed_inside():
     """Oracle: counting: a cable of three holes goes out, in and out: one solid line, one of dashes."""
     robot = plush_robot(drawn_body(SQUARE), [(-40, 0), (-10, 0), (30, 0)])
     front = plush_pattern(robot).panel("front")
-    lines = [line.geometry for line in front.shapes if line.part is Part.CABLE]
+    lines = [line.geometry for line in front.shapes if line.part is PatternPart.CABLE]
     hole = front.on_sheet((-0.01, 0.0))[0]
     assert [line.length for line in lines if line.bounds[2] < hole] == pytest.approx([30 - 2 * 1.8])
     dashes = [line for line in lines if line.bounds[0] > hole]

@@ -15,19 +15,19 @@ from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.sheets.cable_map import body_solid
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.solids.assembly import Assembly, Placed
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import MATERIALS, Body, Cable, Mount, Pin, Robot, Winch
 
 
-def winch() -> Assembly:
+def winch() -> PartAssembly:
     """A motor, a spool and a housing on one axis."""
     spool = Cylinder(2, 9) + Cylinder(12, 6) + Cylinder(2, 9).moved(0, 0, 10) - Cylinder(12, 1.5)
     housing = Box((24, 24, 17)).moved(-12, -12, 0) - Cylinder(14, 10).moved(0, 0, 3) - Cylinder(30, 2.2)
     motor = Box((12, 10, 25)).moved(-6, -5, -25) + Cylinder(12, 1.5)
-    return Assembly(
+    return PartAssembly(
         name="winch",
         pieces=(
             Placed(name="motor", title="Geared motor", solid=solid_of(motor), pulled=(0, 0, -22), printed=False),
@@ -37,10 +37,10 @@ def winch() -> Assembly:
     )
 
 
-def stopper() -> Assembly:
+def stopper() -> PartAssembly:
     """Two blocks."""
     block = solid_of(Box((10, 8, 3)))
-    return Assembly(
+    return PartAssembly(
         name="stopper",
         pieces=(
             Placed(name="stopper_base", title="Stopper base", solid=block),
@@ -142,7 +142,7 @@ def mould(robot: Robot, *, silicone: bool = False) -> Mould:
         shares=np.zeros(3),
         surface=MouldSurface(vertices=piece.vertices, triangles=piece.triangles, undercut=held),
         printed=(),
-        assembly=Assembly(name="mould", pieces=pieces),
+        assembly=PartAssembly(name="mould", pieces=pieces),
         volumes={},
         poured=Manifold(),
         box=(120.0, 100.0, 80.0),

@@ -7,14 +7,14 @@ import pytest
 from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.solids import closed_solid
-from hydrostat.fabrication.solids.assembly import Assembly, Placed, interferences
+from hydrostat.fabrication.solids.assembly import PartAssembly, Placed, interferences
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 from hydrostat.fabrication.solids.printed import triangles_of
 
 
-def put_together(*solids: Manifold) -> Assembly:
+def put_together(*solids: Manifold) -> PartAssembly:
     pieces = tuple(Placed(name=f"piece{k}", title="Piece", solid=solid) for k, solid in enumerate(solids))
-    return Assembly(name="whole", pieces=pieces)
+    return PartAssembly(name="whole", pieces=pieces)
 
 
 def test_an_overlap_is_found_with_its_volume():

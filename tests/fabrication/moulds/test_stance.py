@@ -1,9 +1,9 @@
 """High points: oracles are shapes whose tops are known."""
 
 import numpy as np
-from hydrostat.fabrication.moulds.stance import high_points
 from manifold3d import Manifold
 
+from hydrostat.fabrication.moulds.stance import high_points
 from hydrostat.fabrication.solids.printed import triangles_of
 
 UP = np.array([0.0, 1.0, 0.0])
