@@ -1,11 +1,14 @@
-"""`Cable`: a line from a winch through the body to a stopper."""
+"""`Cable`: a tendon, a line from a winch through the body to a stopper; and how cables get their names."""
 
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.robot.checks import check_not_negative, check_point, check_positive
+from hydrostat.robot.name import LONGEST_NAME
 from hydrostat.robot.point import Point
 
 LARGEST_FRICTION = 2.0
@@ -27,6 +30,7 @@ class Cable:
             sides by at most a factor exp(mu * angle) (capstan).
         spool_radius: of its own step on the shaft of its winch [m]; None: that of the winch. It takes in as much more
             than the winch's contraction as this radius is larger.
+        name: unique in the robot; a `Robot` gives one to a cable that has none.
 
     Raises:
         InputError: fewer than two points, coincident points, or a number out of its range.
@@ -40,6 +44,7 @@ class Cable:
     sheathed: tuple[tuple[int, int], ...] = ()
     friction: float = 0.0
     spool_radius: float | None = None
+    name: str = ""
 
     def __post_init__(self) -> None:
         count = len(self.points)
@@ -86,3 +91,47 @@ class Cable:
     def length(self) -> float:
         """Rest length from winch to stopper, sheaths included [m]."""
         return float(self.segments.sum())
+
+
+def name_cables(cables: Iterable[Cable]) -> tuple[Cable, ...]:
+    """The same cables, each with a name: its own, or its winch's and which of its cables it is, such as "left 2".
+
+    A name that is taken is not given: counting goes on from there.
+    """
+    cables = tuple(cables)
+    if all(cable.name for cable in cables):
+        return cables
+    taken = {cable.name for cable in cables}
+    named = []
+    for cable, number in zip(cables, _numbers(cables), strict=True):
+        if not cable.name:
+            while (name := _usual_name(cable.winch, number)) in taken:
+                number += 1
+            taken.add(name)
+            cable = replace(cable, name=name)
+        named.append(cable)
+    return tuple(named)
+
+
+def given_names(cables: Sequence[Cable]) -> tuple[str, ...]:
+    """Name of each cable, but "" where `name_cables` would give it that name again."""
+    return tuple(
+        "" if cable.name == _usual_name(cable.winch, number) else cable.name
+        for cable, number in zip(cables, _numbers(cables), strict=True)
+    )
+
+
+def _numbers(cables: Sequence[Cable]) -> list[int]:
+    """Which of its winch's cables each is, from 1."""
+    seen: Counter[str] = Counter()
+    numbers = []
+    for cable in cables:
+        seen[cable.winch] += 1
+        numbers.append(seen[cable.winch])
+    return numbers
+
+
+def _usual_name(winch: str, number: int) -> str:
+    """The winch's name and a number, no longer than a name may be."""
+    tail = f" {number}"
+    return winch[: LONGEST_NAME - len(tail)] + tail

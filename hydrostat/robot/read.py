@@ -99,7 +99,7 @@ class RobotReader(TablesFile):
         points = tuple(self.point(point) for point in entry.points)
         sheathed = {} if entry.sheathed is None else {"sheathed": tuple((start, end) for start, end in entry.sheathed)}
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
-        given = _given(entry, "stiffness", "smoothing", "slack", "spool_radius")
+        given = _given(entry, "name", "stiffness", "smoothing", "slack", "spool_radius")
         return Cable(winch=entry.winch, points=points, **sheathed, **friction, **given)
 
     def _marker(self, entry: Any) -> Marker:

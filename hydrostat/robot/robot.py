@@ -2,20 +2,22 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
-from hydrostat.robot.cable import Cable
+from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.gravity import check_gravity
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.point import Point
 from hydrostat.robot.pose import Pose
 from hydrostat.robot.winch import Mount, Winch
+
+_Part = TypeVar("_Part", Winch, Cable)
 
 LARGEST_STEP = 4.0
 """The spool of a cable is at most so many times larger or smaller than its winch's: more is no step on one shaft."""
@@ -30,7 +32,7 @@ class Robot:
         body: the soft part.
         pins: where it is held; together they must leave it no rigid motion.
         winches: in the order of every array of contractions.
-        cables: in the order of every array of tensions.
+        cables: in the order of every array of tensions; those without a name get one.
         markers: tracked points.
         poses: by name.
         length_unit: of the coordinates in its file.
@@ -53,7 +55,9 @@ class Robot:
     def __post_init__(self) -> None:
         if not self.name:
             raise InputError("name must not be empty")
+        object.__setattr__(self, "cables", name_cables(self.cables))
         _unique("winch", [winch.name for winch in self.winches])
+        _unique("cable", [cable.name for cable in self.cables])
         _unique("marker", [marker.name for marker in self.markers])
         for index, (name, pose) in enumerate(self.poses.items()):
             if name != pose.name:
@@ -71,10 +75,20 @@ class Robot:
         Raises:
             InputError: there is none.
         """
-        for winch in self.winches:
-            if winch.name == name:
-                return winch
-        raise InputError(f'there is no winch "{name}"; {_choices("winches", [winch.name for winch in self.winches])}')
+        return _named("winch", "winches", self.winches, name)
+
+    def cable(self, name: str) -> Cable:
+        """The cable of this name.
+
+        Raises:
+            InputError: there is none.
+        """
+        return _named("cable", "cables", self.cables, name)
+
+    @property
+    def given_cable_names(self) -> tuple[str, ...]:
+        """Name of each cable, but "" where it is the one that a cable without a name gets here."""
+        return given_names(self.cables)
 
     def pose(self, name: str) -> Pose:
         """The pose of this name.
@@ -202,6 +216,13 @@ def _unique(kind: str, names: list[str]) -> None:
     for index, name in enumerate(names):
         if name in names[:index]:
             raise InputError(f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique')
+
+
+def _named(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Part:
+    for part in parts:
+        if part.name == name:
+            return part
+    raise InputError(f'there is no {kind} "{name}"; {_choices(kinds, [part.name for part in parts])}')
 
 
 def _choices(kind: str, names: list[str]) -> str:

@@ -173,6 +173,7 @@ class WinchTable(Table):
 class CableTable(Table):
     """[[cable]]."""
 
+    name: Name | None = None
     winch: Text
     points: Annotated[list[Coordinates], Field(max_length=1000)]
     stiffness: Stiffness | None = None

@@ -36,7 +36,7 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     Raises:
         InputError: a name that robot.toml does not allow, or a folder that cannot be written.
     """
-    for name in (robot.name, *robot.poses, *(part.name for part in (*robot.winches, *robot.markers))):
+    for name in (robot.name, *robot.poses, *(part.name for part in (*robot.winches, *robot.cables, *robot.markers))):
         check_name(name)
     folder = Path(folder)
     try:
@@ -95,7 +95,7 @@ def robot_text(robot: Robot) -> str:
     groups: dict[str, Iterable[dict[str, Any]]] = {
         "pin": map(writer.pin, robot.pins),
         "winch": map(writer.winch, robot.winches),
-        "cable": map(writer.cable, robot.cables),
+        "cable": map(writer.cable, robot.cables, robot.given_cable_names),
         "marker": ({"name": marker.name, "at": writer.point(marker.at)} for marker in robot.markers),
         "pose": map(writer.pose, robot.poses.values()),
     }
@@ -196,8 +196,9 @@ class _Writer:
         mount = {"mount": str(winch.mount)} if winch.mount is not Mount.BODY else {}
         return {"name": winch.name, "at": self.point(winch.at), **_lengths(lengths), **mount}
 
-    def cable(self, cable: Cable) -> dict[str, Any]:
-        entry: dict[str, Any] = {"winch": cable.winch, "points": self.points(cable.points)}
+    def cable(self, cable: Cable, given_name: str) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": given_name} if given_name else {}
+        entry.update({"winch": cable.winch, "points": self.points(cable.points)})
         entry["stiffness"] = units.format_quantity(cable.stiffness, units.STIFFNESS)
         lengths = {"smoothing": cable.smoothing, "slack": cable.slack or None, "spool_radius": cable.spool_radius}
         entry.update(_lengths(lengths))

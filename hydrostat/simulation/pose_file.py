@@ -15,12 +15,13 @@ from hydrostat.simulation.solved_pose import SolvedPose
 
 
 def pose_facts(robot: Robot, pose: SolvedPose) -> dict[str, Any]:
-    """What pose.json holds: SI units, contractions by winch, tensions in the order of the cables."""
+    """What pose.json holds: SI units, contractions by winch, tensions in the order of the named cables."""
     return {
         "robot": robot_hash(robot),
         "contractions": {
             winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)
         },
+        "cables": [cable.name for cable in robot.cables],
         "tensions": [float(tension) for tension in pose.tensions],
         "energy": pose.energy,
         "residual": pose.result.residual,

@@ -33,6 +33,7 @@ from hydrostat.robot import (
     robot_text,
     save_robot,
 )
+from hydrostat.robot.cable import name_cables
 
 MESHED = """\
 format = 1
@@ -177,6 +178,7 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
         slack=draw(LENGTH | st.just(0.0)),
         friction=draw(st.floats(0, 2)),
         spool_radius=draw(st.none() | st.floats(0.25, 4).map(lambda ratio: ratio * winch.spool_radius)),
+        name=draw(st.just("") | WORDS),
     )
     numbers = {"young": LENGTH, "poisson": st.floats(0, 0.499), "density": LENGTH}
     name = draw(st.sampled_from(["", *MATERIALS]))
@@ -206,7 +208,7 @@ def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
     assert read_material(reader.table.body.material) == material
     assert (reader.table.body.volume or Volume.ELEMENT) is robot.body.volume
     assert reader.records("winch", reader._winch) == robot.winches
-    assert reader.records("cable", reader._cable) == robot.cables
+    assert name_cables(reader.records("cable", reader._cable)) == robot.cables
     assert reader.records("pin", reader._pin) == robot.pins
     assert reader.records("marker", reader._marker) == robot.markers
     assert reader.records("pose", reader._pose) == tuple(robot.poses.values())
@@ -277,6 +279,7 @@ NAMED = 'material = { name = "Polyester fibre", '
         ('material = "p', NAMED + 'viscosity = "0 Pa s", relaxation = [] }\n#', 'material = "polyester fibre"'),
         ('material = "p', 'volume = "patch"\nmaterial = "p', 'volume = "patch"'),
         ('winch = "left"', 'winch = "left"\nfriction = 0.2', "friction = 0.2"),
+        ('winch = "left"', 'winch = "left"\nname = "bends the tip"', 'name = "bends the tip"'),
     ],
 )
 def test_mechanics_as_typed(old: str, new: str, line: str, tmp_path: Path) -> None:

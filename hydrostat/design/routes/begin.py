@@ -54,8 +54,9 @@ def mirrored(layout: Layout) -> Layout | None:
             )
     points = np.vstack([stands[number].winch.at, line.points[1:]])
     own = replace(line, points=points)
+    make = None if line.make is None else replace(line.make, name="")
     image_line = Line(
-        twin, flipped(layout, points), lead=line.lead, slack=line.slack, ratio=line.ratio, make=line.make,
+        twin, flipped(layout, points), lead=line.lead, slack=line.slack, ratio=line.ratio, make=make,
         twin=len(layout.lines) - 1,
     )  # fmt: skip
     return replace(layout, stands=tuple(stands), lines=(*layout.lines[:-1], own, image_line))
@@ -104,7 +105,7 @@ def layout_of(robot: Robot, constraints: Constraints, *, locked: Collection[int]
     locked = constraints.locked_cables if locked is None else locked
     names = [winch.name for winch in robot.winches]
     lines = []
-    for number, cable in enumerate(robot.cables):
+    for number, (cable, given_name) in enumerate(zip(robot.cables, robot.given_cable_names, strict=True)):
         lead = _lead(cable)
         kept = number in locked or lead is None
         winch = robot.winch(cable.winch)
@@ -116,7 +117,7 @@ def layout_of(robot: Robot, constraints: Constraints, *, locked: Collection[int]
                 lead=lead or 0,
                 slack=cable.slack,
                 ratio=ratio,
-                make=cable,
+                make=replace(cable, name=given_name),  # one that was made up follows its winch
                 kept=cable if kept else None,
             )
         )

@@ -26,7 +26,9 @@ RANGES = {"radius": (1e-4, 20.0), "spool_radius": (1e-4, 20.0), "travel": (0.0, 
 
 
 def rename(robot: Robot, key: str, name: str) -> Robot:
-    """The same robot with another name of a winch or marker; its cables and poses follow.
+    """The same robot with another name of a winch, cable or marker; its cables and poses follow.
+
+    Cables whose names were made up of a winch's name follow it too.
 
     Raises:
         InputError: no such part, a name that is taken or that robot.toml does not allow.
@@ -37,8 +39,17 @@ def rename(robot: Robot, key: str, name: str) -> Robot:
         before = robot.winches[part.index].name
         winches = tuple(replace(winch, name=name) if winch.name == before else winch for winch in robot.winches)
         _free(name, [winch.name for winch in winches])
-        cables = tuple(replace(cable, winch=name) if cable.winch == before else cable for cable in robot.cables)
+        cables = tuple(
+            replace(cable, winch=name, name=given) if cable.winch == before else cable
+            for cable, given in zip(robot.cables, robot.given_cable_names, strict=True)
+        )
         return replace(robot, winches=winches, cables=cables)
+    if part is not None and part.kind is Kind.CABLE:
+        cables = tuple(
+            replace(cable, name=name) if index == part.index else cable for index, cable in enumerate(robot.cables)
+        )
+        _free(name, [cable.name for cable in cables])
+        return replace(robot, cables=cables)
     if part is not None and part.kind is Kind.MARKER:
         before = robot.markers[part.index].name
         markers = tuple(replace(marker, name=name) if marker.name == before else marker for marker in robot.markers)
@@ -68,6 +79,8 @@ def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
         if part is None or not set(values) <= set(FIELDS.get(part.kind, ())):
             raise InputError(f"{key} has no {' or '.join(values)}")
         changed: list[Any] = {Kind.PIN: pins, Kind.WINCH: winches, Kind.CABLE: cables}[part.kind]
+        if "winch" in values:  # a name made up of that of the winch before goes with it
+            changed[part.index] = replace(changed[part.index], name=robot.given_cable_names[part.index])
         changed[part.index] = replace(changed[part.index], **values)
     if values.get("mount") is Mount.WORLD:  # there its cables begin in the winch itself
         places = {winch.name: winch.at for winch in winches if winch.mount is Mount.WORLD}

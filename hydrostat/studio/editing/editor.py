@@ -16,7 +16,7 @@ from hydrostat.studio.editing.change import change, remesh, rename, set_gravity
 from hydrostat.studio.editing.findings import Findings, look_over
 from hydrostat.studio.editing.hold import Hold, below_skin, inside, take_hold
 from hydrostat.studio.editing.mirror import Mirror
-from hydrostat.studio.editing.part import find_part, title_of
+from hydrostat.studio.editing.part import find_part, name_of, title_of
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import followed
@@ -145,17 +145,18 @@ class Editor(Stage):
         self._change(f"move {title_of(key)}", move(robot, take_hold(robot, key, self.mirror).places(at)))
 
     def rename(self, key: str, name: str) -> None:
-        """Give a winch or marker another name.
+        """Give a winch, cable or marker another name.
 
         Raises:
             InputError: a name that is taken or not allowed.
         """
-        if key == f"{key.partition(':')[0]}:{name}":
+        before, robot = name_of(self._document.robot, key), self._document.robot
+        if name == before:
             return
-        kind, _, before = key.partition(":")
-        renamed = rename(self._document.robot, key, name)
-        self._change(f"rename {title_of(key)}", renamed, {before: name} if kind == "winch" else None)
-        self.choose(f"{kind}:{name}")
+        kind = key.partition(":")[0]
+        renames = {before: name} if kind == "winch" else None
+        self._change(f"rename {title_of(key)}", rename(robot, key, name), renames)
+        self.choose(key if kind == "cable" else f"{kind}:{name}")
 
     def set(self, key: str, **values: Any) -> None:
         """Change numbers of a part, in SI, and of its twin; see `change.FIELDS`.

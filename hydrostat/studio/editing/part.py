@@ -74,6 +74,13 @@ def keys_of(robot: Robot) -> list[str]:
     return [*keys, *(f"marker:{marker.name}" for marker in robot.markers)]
 
 
+def name_of(robot: Robot, key: str) -> str:
+    """Name of a winch, cable or marker; "" for what has none."""
+    part = find_part(robot, key)
+    named = {Kind.WINCH: robot.winches, Kind.CABLE: robot.cables, Kind.MARKER: robot.markers}
+    return "" if part is None or part.kind not in named else named[part.kind][part.index].name
+
+
 def title_of(key: str) -> str:
     """A part as a person would call it: "cable 1", "winch left", "point 2 of cable 1"."""
     kind, _, rest = key.partition(":")

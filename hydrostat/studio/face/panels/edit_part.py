@@ -9,7 +9,7 @@ from nicegui import ui
 from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.change import sheathed_segments, sheaths
-from hydrostat.studio.editing.part import Kind, Part, find_part, place_of, title_of
+from hydrostat.studio.editing.part import Kind, Part, find_part, name_of, place_of, title_of
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import Page
 
@@ -119,8 +119,8 @@ def _build(page: Page, key: str, part: Part) -> Shows:
         delete = ui.button(icon="delete_outline", on_click=page.doing(editor.delete)).props("flat round dense size=sm")
         delete.props('aria-label="Delete"').tooltip("Delete (Del)").mark("edit-delete")
     shows: Shows = []
-    if part.kind in (Kind.WINCH, Kind.MARKER):
-        _name(page, key)
+    if name_of(page.session.document.robot, key):
+        shows.append(_name(page, key))
     if part.kind is not Kind.CABLE:
         shows.append(_place(page, key))
     if part.kind is Kind.PIN and page.session.document.robot.pins[part.index].box is None:
@@ -138,19 +138,28 @@ def _title(key: str) -> str:
     return (kind if kind in ("winch", "marker") else title_of(key)).capitalize()
 
 
-def _name(page: Page, key: str) -> None:
-    name = key.partition(":")[2]
-    box = ui.input("Name", value=name).props("dense outlined maxlength=60").classes("w-full").mark("edit-name")
+def _name(page: Page, key: str) -> Callable[[Robot, Part], None]:
+    document = page.session.document
+    box = (
+        ui.input("Name", value=name_of(document.robot, key))
+        .props("dense outlined maxlength=60")
+        .classes("w-full")
+        .mark("edit-name")
+    )
 
     def send() -> None:
         typed = (box.value or "").strip()
-        if typed not in ("", name):
+        if typed:
             page.act(page.session.editor.rename, key, typed)
         if page.session.editor.chosen == key:
-            box.set_value(name)
+            show(document.robot)
+
+    def show(robot: Robot, _: Part | None = None) -> None:
+        box.set_value(name_of(robot, key))
 
     box.on("keydown.enter", send)
     box.on("blur", send)
+    return show
 
 
 def _place(page: Page, key: str) -> Callable[[Robot, Part], None]:
