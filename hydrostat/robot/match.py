@@ -34,7 +34,7 @@ def _ranked(
 
 
 def _same_name(old: Mapping[str, Any], new: Mapping[str, Any]) -> float:
-    return float(new.get("name") is not None and old["name"] == new["name"])
+    return float(bool(new.get("name")) and old["name"] == new["name"])
 
 
 def _same(old: Mapping[str, Any], new: Mapping[str, Any]) -> float:

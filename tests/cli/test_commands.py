@@ -62,6 +62,7 @@ def test_simulate_writes_what_the_library_solves(run: Run, tmp_path: Path, starf
     pose = simulation.solve({"left": 0.012})
     facts = json.loads((tmp_path / "pose.json").read_text())
     assert facts["contractions"] == {"right": 0.0, "left": 0.012, "feet": 0.0}
+    assert facts["cables"] == ["right 1", "left 1", "left 2", "feet 1", "feet 2"]
     assert facts["tensions"] == pytest.approx(pose.tensions.tolist(), abs=1e-9)
     assert facts["markers"]["left"] == pytest.approx(pose.markers["left"].tolist(), abs=1e-9)
     assert facts["reason"] == "converged"

@@ -62,7 +62,7 @@ def reach(robot: Robot) -> tuple[ReachedPose, ...]:
 
 def with_idle_cable(robot: Robot) -> tuple[Robot, Cable]:
     """The robot with a cable so slack that it never pulls."""
-    idle = replace(robot.cables[0], slack=1.0)
+    idle = replace(robot.cables[0], name="idle", slack=1.0)
     return robot.with_network(robot.winches, (*robot.cables, idle)), idle
 
 

@@ -22,7 +22,7 @@ def sized(winches: int, cables: int, error: float) -> Alternative:
     network = plain_network()
     robot, (reached, *_) = network.robot, network.reached
     parts = [replace(robot.winches[0], name=f"w{index}") for index in range(winches)]
-    lines = [replace(robot.cables[0], winch=parts[index % winches].name) for index in range(cables)]
+    lines = [replace(robot.cables[0], name="", winch=parts[index % winches].name) for index in range(cables)]
     return Alternative(robot=robot.with_network(parts, lines), reached=(replace(reached, errors={"tip": error}),))
 
 

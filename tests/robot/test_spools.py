@@ -52,7 +52,7 @@ def test_a_travel_that_is_longer_than_the_cable_of_a_larger_step() -> None:
     """80 mm at the winch are 200 mm on a spool 2.5 times as large; a shorter cable of the winch has room."""
     assert not any("longer than a cable" in risk for risk in find_risks(stepped(None, travel=0.08)))
     robot = stepped(0.015, travel=0.08)
-    short = replace(robot.cables[0], points=robot.cables[0].points[:5], spool_radius=None)
+    short = replace(robot.cables[0], name="short", points=robot.cables[0].points[:5], spool_radius=None)
     risks = find_risks(robot.with_network(robot.winches, [short, *robot.cables]))
     assert (
         "winch[0] up: the travel of 80 mm, 200 mm at its spool, is longer than a cable that it pulls "

@@ -87,7 +87,7 @@ def test_a_winch_without_cables_asks_for_nothing() -> None:
 def test_a_demand_of_another_robot_is_refused() -> None:
     robot = square()
     with pytest.raises(InputError, match="the demand is of 1 winches and 2 cables"):
-        size_winches(robot, demand_of(square(*robot.cables, *robot.cables), 1.0, 1.0), PLAIN)
+        size_winches(robot, demand_of(square(*robot.cables, replace(robot.cables[0], name="again")), 1.0, 1.0), PLAIN)
     with pytest.raises(InputError, match="stall_torque of plain motor must be above 0"):
         size_winches(robot, demand_of(robot), replace(PLAIN, stall_torque=0.0))
     assert np.isfinite(sizing(1.0).time or np.nan)

@@ -162,10 +162,25 @@ def test_names_are_changed_everywhere(starfish: Robot) -> None:
     for key, name, words in (
         ("winch:feet", "left", "unique"),
         ("marker:top", "a/b", "letters"),
+        ("cable:0", "left 1", "unique"),
+        ("cable:0", "a/b", "letters"),
         ("pin:0", "x", "no name"),
     ):
         with pytest.raises(InputError, match=words):
             rename(starfish, key, name)
+
+
+def test_names_of_cables(starfish: Robot) -> None:
+    """Oracle: by hand: a name that was given stays, one made up of the winch's follows the winch."""
+    robot = rename(starfish, "cable:1", "thumb")
+    assert [cable.name for cable in robot.cables] == ["right 1", "thumb", "left 2", "feet 1", "feet 2"]
+    legs = rename(rename(robot, "winch:left", "arm"), "winch:feet", "legs")
+    assert [cable.name for cable in legs.cables] == ["right 1", "thumb", "arm 2", "legs 1", "legs 2"]
+    assert rename(robot, "cable:1", "left 1") == starfish
+    near = replace(robot, winches=(*robot.winches, replace(robot.winch("left"), name="near")))
+    moved = change(near, ["cable:1", "cable:2"], winch="near")
+    assert [cable.name for cable in moved.cables] == ["right 1", "thumb", "near 2", "feet 1", "feet 2"]
+    assert [cable.name for cable in remove(robot, ["cable:3"]).cables] == ["right 1", "thumb", "left 2", "feet 2"]
 
 
 def test_numbers_are_changed_of_all_parts_named(starfish: Robot) -> None:
