@@ -1,4 +1,4 @@
-"""Array shapes and types of all of hydrostat are checked while the tests run; one thread of BLAS; two kits."""
+"""Array shapes and types of what is public are checked while the tests run; one thread of BLAS; two kits."""
 
 import os
 import sys
@@ -13,12 +13,18 @@ _HERE = Path(__file__).parent
 sys.path[:0] = [str(_HERE), str(_HERE / "fabrication"), str(_HERE.parent / "benchmarks")]
 
 import pytest  # noqa: E402
-from jaxtyping import config, install_import_hook  # noqa: E402
+import shape_checks  # noqa: E402
+from jaxtyping import config  # noqa: E402
 
 if TYPE_CHECKING:
     from hydrostat.fabrication import Kit
 
-install_import_hook("hydrostat", "typechecker.checked")
+shape_checks.install("hydrostat")
+
+
+def pytest_runtest_setup() -> None:
+    """Check the first calls of each function in each test."""
+    shape_checks.begin_test()
 
 
 @pytest.fixture
