@@ -13,6 +13,11 @@ from hydrostat.arrays import Elements, Nodes, Points
 from hydrostat.errors import InputError
 
 
+def joined_groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarray, " count"]:
+    """Number of the group to which each of `count` things belongs that are joined in pairs."""
+    return connected_components(coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count)), directed=False)[1]
+
+
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """Linear simplices: triangles (dim 2) or tetrahedra (dim 3), positively oriented.
@@ -56,9 +61,8 @@ class Mesh:
     @cached_property
     def parts(self) -> Int[np.ndarray, " nodes"]:
         """Which part of the mesh each node belongs to: elements that share a node are of one part."""
-        ends = self.elements[:, :-1].ravel(), self.elements[:, 1:].ravel()
-        joins = coo_array((np.ones(len(ends[0])), ends), shape=(len(self.nodes), len(self.nodes)))
-        return connected_components(joins, directed=False)[1]
+        ends = np.stack([self.elements[:, :-1].ravel(), self.elements[:, 1:].ravel()])
+        return joined_groups(ends, len(self.nodes))
 
     @cached_property
     def volumes(self) -> Float[np.ndarray, " elements"]:

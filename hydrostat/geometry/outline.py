@@ -137,21 +137,21 @@ class Curve:
 
     def turned(self, stations: Vector, reach: float) -> Vector:
         """Angle turned within `reach` to either side of each station [rad]."""
-        places, totals = self._unrolled()
-        total = np.concatenate([[0.0], totals])
+        places = self._unrolled
+        total = np.concatenate([[0.0], np.cumsum(np.tile(self.turning, 3))])
         upper = np.searchsorted(places, stations + reach * (1 + 1e-9), side="right")
         lower = np.searchsorted(places, stations - reach * (1 + 1e-9), side="left")
         return total[upper] - total[lower]
 
-    def _unrolled(self) -> tuple[Vector, Vector]:
-        """Stations of the corners three times round, and the angle turned up to each."""
-        places = np.concatenate([self.stations[:-1] + turn * self.length for turn in (-1, 0, 1)])
-        return places, np.cumsum(np.tile(self.turning, 3))
+    @cached_property
+    def _unrolled(self) -> Stations:
+        """Stations of the corners three times round."""
+        return np.concatenate([self.stations[:-1] + turn * self.length for turn in (-1, 0, 1)])
 
     def sagitta(self, start: float, end: float) -> float:
         """How far the curve strays from its chord between two stations, start < end."""
         ends = self.at(np.array([start, end]))
-        between = np.concatenate([self.stations[:-1] + turn * self.length for turn in (-1, 0, 1)])
+        between = self._unrolled
         inner = self.at(between[(between > start) & (between < end)]) - ends[0]
         chord = ends[1] - ends[0]
         along = (inner * chord).sum(axis=1)

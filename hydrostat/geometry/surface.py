@@ -129,16 +129,15 @@ class Solid:
 
     def distances(self, points: Points) -> Vector:
         """Distance of points from the surface [m], negative inside."""
-        squares = self._distance_tree.squared_distance(
-            self.surface.vertices, self.surface.triangles, np.ascontiguousarray(points)
-        )[0]
-        return np.where(self.inside(points), -1.0, 1.0) * np.sqrt(squares)
+        return np.where(self.inside(points), -1.0, 1.0) * self.gaps(points)
+
+    def gaps(self, points: Points) -> Vector:
+        """Distance of points from the surface [m], inside or outside alike."""
+        return np.sqrt(self._nearest(points)[0])
 
     def nearest(self, points: Points) -> tuple[Points, Int[np.ndarray, " points"]]:
         """The nearest place of the surface to each point [m], and the triangle that it is on."""
-        _, triangles, places = self._distance_tree.squared_distance(
-            self.surface.vertices, self.surface.triangles, np.ascontiguousarray(points)
-        )
+        _, triangles, places = self._nearest(points)
         return places, triangles.astype(np.int64)  # from long long, another type to NumPy
 
     @cached_property
@@ -147,6 +146,12 @@ class Solid:
         crosses = self.surface.crosses
         lengths = np.linalg.norm(crosses, axis=1, keepdims=True)
         return crosses / np.where(lengths > 0, lengths, 1.0)
+
+    def _nearest(self, points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Squared distances, triangles and places."""
+        return self._distance_tree.squared_distance(
+            self.surface.vertices, self.surface.triangles, np.ascontiguousarray(points)
+        )
 
     @cached_property
     def _distance_tree(self) -> Any:

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Points
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.mesh import Mesh, joined_groups
 
 _REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}
 """(Edge of a regular simplex)^dim over its size."""
@@ -156,8 +156,6 @@ def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
 
     Tips, corners and notches are no limbs: what is not longer than `_SLENDER` times its thickness is left out.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     thin = np.flatnonzero(thickness.across < least)
@@ -168,10 +166,9 @@ def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
     gaps, near = KDTree(middles).query(middles, k=min(_NEIGHBOURS, len(thin)), distance_upper_bound=reach)
     gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
     one, two = np.nonzero(np.isfinite(gaps))[0], near[np.isfinite(gaps)]
-    joins = coo_array((np.ones(len(one)), (one, two)), shape=(len(thin), len(thin)))
-    count, labels = connected_components(joins, directed=False)
+    labels = joined_groups(np.stack([one, two]), len(thin))
     found = []
-    for part in range(count):
+    for part in range(labels.max() + 1):
         members = thin[labels == part]
         spread = thickness.middles[members] - thickness.middles[members].mean(axis=0)
         axis = np.linalg.svd(spread, full_matrices=False)[2][0]

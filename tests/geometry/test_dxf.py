@@ -8,7 +8,7 @@ import pytest
 from drawings import dxf
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.files.dxf import dxf_drawing, read_dxf
+from hydrostat.geometry.files.outline_file import read_drawing, read_outline
 from hydrostat.geometry.files.rings import join
 
 Draw = Callable[[Any, Any], object]
@@ -110,7 +110,7 @@ def hidden_and_words(space: Any, document: Any) -> None:
 )
 def test_area(draw: Draw, area: float) -> None:
     """Oracle: closed forms [mm^2]; chords cost at most their error times the length of the outline."""
-    assert 1e6 * read_dxf(dxf(draw), name="a.dxf").area == pytest.approx(area, rel=3e-4)
+    assert 1e6 * read_outline(dxf(draw), name="a.dxf").area == pytest.approx(area, rel=3e-4)
 
 
 def test_area_of_the_periodic_spline() -> None:
@@ -132,24 +132,24 @@ def test_area_of_the_periodic_spline() -> None:
 @pytest.mark.parametrize(("code", "metres"), [(1, 0.0254), (2, 0.3048), (4, 1e-3), (5, 1e-2), (6, 1.0), (13, 1e-6)])
 def test_unit(code: int, metres: float) -> None:
     """Oracle: the codes of $INSUNITS in the DXF reference."""
-    assert read_dxf(dxf(polyline(*SQUARE), unit=code), name="a.dxf").size == pytest.approx(20 * metres, rel=1e-12)
+    assert read_outline(dxf(polyline(*SQUARE), unit=code), name="a.dxf").size == pytest.approx(20 * metres, rel=1e-12)
 
 
 def test_size_given_wins_and_y_is_up() -> None:
     """Oracle: a triangle with its tip at the top, corner by corner, from the middle of its box."""
     for unit in (0, 1, 4):
-        outline = read_dxf(dxf(polyline((50, 90), (40, 50), (60, 50)), unit=unit), name="a.dxf", size=0.08)
+        outline = read_outline(dxf(polyline((50, 90), (40, 50), (60, 50)), unit=unit), name="a.dxf", size=0.08)
         expected = {(0.0, 40.0), (-20.0, -40.0), (20.0, -40.0)}
         assert {tuple(np.round(1e3 * corner, 9)) for corner in outline.exterior} == expected
 
 
 def test_notes() -> None:
     """Oracle: what was drawn and is no line of the outline, in words."""
-    notes = dxf_drawing(dxf(hidden_and_words), name="a.dxf").notes
+    notes = read_drawing(dxf(hidden_and_words), name="a.dxf").notes
     assert notes == ("left out 1 DIMENSION, 1 TEXT, 3 hidden",)
     tail = several(lines(*SQUARE), lines((30, 30), (35, 35), closed=False))
-    assert dxf_drawing(dxf(tail), name="a.dxf").notes == ("left out 1 open line, the largest at (30, 30)",)
-    assert dxf_drawing(dxf(lines(*SQUARE)), name="a.dxf").notes == ()
+    assert read_drawing(dxf(tail), name="a.dxf").notes == ("left out 1 open line, the largest at (30, 30)",)
+    assert read_drawing(dxf(lines(*SQUARE)), name="a.dxf").notes == ()
 
 
 def grid_of_blocks(space: Any, document: Any) -> None:
@@ -208,7 +208,7 @@ def test_refused(content: bytes, message: str) -> None:
     """Oracle: the message: one line that names the file, what is wrong, where, and what to do; and within 10 s."""
     begin = time.perf_counter()
     with pytest.raises(OutlineError, match=message) as caught:
-        read_dxf(content, name="a.dxf")
+        read_outline(content, name="a.dxf")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 300
     assert time.perf_counter() - begin < 10.0
@@ -217,7 +217,7 @@ def test_refused(content: bytes, message: str) -> None:
 def test_bad_size() -> None:
     """Oracle: the message names the file and the value."""
     with pytest.raises(InputError, match=r"a.dxf: the size must be positive, not -1.0 m"):
-        read_dxf(dxf(polyline(*SQUARE)), name="a.dxf", size=-1.0)
+        read_outline(dxf(polyline(*SQUARE)), name="a.dxf", size=-1.0)
 
 
 @pytest.mark.parametrize("seed", range(5))

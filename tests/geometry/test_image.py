@@ -7,7 +7,6 @@ from PIL import Image, PngImagePlugin
 from shapely import Polygon, get_coordinates, hausdorff_distance, segmentize
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.files.image import image_drawing, read_image
 from hydrostat.geometry.files.outline_file import read_drawing, read_outline
 from hydrostat.geometry.outline import Outline
 
@@ -39,7 +38,7 @@ DISCS = {
 @pytest.mark.parametrize("content", DISCS.values(), ids=DISCS.keys())
 def test_disc(content: bytes) -> None:
     """Oracle: the disc's area, within 0.5 %, and its circle, within 1 % of its radius, in few corners."""
-    outline = read_image(content, name="a.png", size=SIZE)
+    outline = read_outline(content, name="a.png", size=SIZE)
     assert outline.area == pytest.approx(np.pi * 0.01, rel=5e-3)
     assert np.abs(np.linalg.norm(outline.exterior, axis=1) - 0.1).max() < 1e-3
     assert outline.size == pytest.approx(SIZE, rel=1e-12)
@@ -52,7 +51,7 @@ def test_no_stairs(one_bit: bool) -> None:
     """Oracle: a slanting bar, whose sides are straight: no corner turns but at its ends."""
     corners = np.array([(100, 300), (500, 330), (497, 370), (97, 340)], dtype=float)
     image = canvas(shape(corners, "black"), fine=1 if one_bit else 4)
-    ring = read_image(picture(image), name="a.png", size=SIZE).exterior
+    ring = read_outline(picture(image), name="a.png", size=SIZE).exterior
     ring = get_coordinates(segmentize(Polygon(ring), SIZE / 400))
     pixel = SIZE / 404
     inner = ring[np.abs(ring[:, 0]) < SIZE / 2 - 15 * pixel]
@@ -94,7 +93,7 @@ def test_line_drawing_is_filled() -> None:
         picture(canvas(fish)),
         picture(noisy(lit(canvas(lambda draw, fine: fish(draw, fine, 4, (90, 80, 120))), 0.3), 5), "JPEG", quality=40),
     ):
-        drawing = image_drawing(content, name="fish.png", size=0.24)
+        drawing = read_drawing(content, name="fish.png", size=0.24)
         assert drawing.outline.holes == ()
         assert drawing.outline.area == pytest.approx(np.pi * 0.12 * 0.06, rel=5e-3)
         assert drawing.notes[0].startswith("a drawing of lines: filled to its outer line")
@@ -103,7 +102,7 @@ def test_line_drawing_is_filled() -> None:
 @pytest.mark.parametrize("radius", [40, 90, 200])
 def test_holes(radius: float) -> None:
     """Oracle: the ring's area; a hole in a filled body is kept, and counted."""
-    drawing = image_drawing(picture(canvas(disc("red"), disc("white", radius))), name="a.png", size=SIZE)
+    drawing = read_drawing(picture(canvas(disc("red"), disc("white", radius))), name="a.png", size=SIZE)
     assert len(drawing.outline.holes) == 1
     assert drawing.outline.area == pytest.approx(np.pi * 0.01 * (1 - (radius / 250) ** 2), rel=5e-3)
     assert drawing.notes == ("kept 1 hole",)
@@ -114,7 +113,7 @@ def test_pale_parts_and_eyes_are_no_holes() -> None:
     rings = canvas(disc("red"), disc((255, 235, 120), 200), disc("navy", 150), disc((255, 200, 60), 60))
     eye = canvas(disc("orange"), disc("white", 40, (200, 250)), disc("black", 12, (200, 250)))
     for image, notes in ((rings, 0), (eye, 1)):
-        drawing = image_drawing(picture(image), name="a.png", size=SIZE)
+        drawing = read_drawing(picture(image), name="a.png", size=SIZE)
         assert drawing.outline.holes == ()
         assert drawing.outline.area == pytest.approx(np.pi * 0.01, rel=5e-3)
         assert len(drawing.notes) == notes
@@ -126,7 +125,7 @@ def test_small_things_are_named() -> None:
     image = canvas(
         disc("red"), disc("white", 10, (300, 200)), disc("black", 5, (30, 30)), disc("black", 12, (570, 570))
     )
-    drawing = image_drawing(picture(image), name="a.png", size=SIZE)
+    drawing = read_drawing(picture(image), name="a.png", size=SIZE)
     filled, specks = drawing.notes
     assert filled == "filled 1 hole, the largest 8 mm across at (0.0, 40.0) mm"
     assert specks.startswith("left out 2 specks beside the body, the largest ")
@@ -138,7 +137,7 @@ def test_soft_shadow_is_left_out() -> None:
     """Oracle: the star without its shadow, and a note of it."""
     image = shadowed(canvas(shape(STAR, (150, 40, 60)), ground=(235, 230, 225)),
                      canvas(shape(STAR, "white"), ground="black"), 0.3)  # fmt: skip
-    drawing = image_drawing(picture(noisy(image, 3), "JPEG", quality=60), name="a.jpg", size=SIZE)
+    drawing = read_drawing(picture(noisy(image, 3), "JPEG", quality=60), name="a.jpg", size=SIZE)
     pixel = SIZE / float(np.ptp(STAR, axis=0).max())
     assert drawing.outline.area == pytest.approx(Polygon(STAR).area * pixel**2, rel=0.02)
     assert "shadow" in drawing.notes[0]
@@ -152,14 +151,14 @@ def test_upright_as_the_camera_says() -> None:
     for tag, image in turned.items():
         exif = Image.Exif()
         exif[0x0112] = tag
-        shapes.append(read_image(picture(image, "JPEG", quality=95, exif=exif), name="a.jpg", size=SIZE).polygon)
+        shapes.append(read_outline(picture(image, "JPEG", quality=95, exif=exif), name="a.jpg", size=SIZE).polygon)
     for other in shapes[1:]:
         assert shapes[0].symmetric_difference(other).area < 0.01 * shapes[0].area
 
 
 def test_body_at_the_border() -> None:
     """Oracle: the disc with a cap cut off by the border: closed there, and said."""
-    drawing = image_drawing(picture(canvas(disc("navy", 250, (150, 300)))), name="a.png", size=SIZE)
+    drawing = read_drawing(picture(canvas(disc("navy", 250, (150, 300)))), name="a.png", size=SIZE)
     share = (np.pi - np.arccos(0.6) + 0.6 * 0.8) / np.pi
     assert drawing.outline.area == pytest.approx(np.pi * 0.01 * share, rel=1e-2)
     assert drawing.notes == ("the body reaches the border of the picture and is cut off there",)
@@ -170,7 +169,7 @@ def test_corners_stay_few() -> None:
     angle = np.linspace(0, 2 * np.pi, 1200, endpoint=False)
     radius = np.where(np.arange(1200) % 2 == 0, 480, 440)
     gear = 500 + np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
-    outline = read_image(picture(canvas(shape(gear, "black"), size=(1000, 1000), fine=2)), name="a.png", size=SIZE)
+    outline = read_outline(picture(canvas(shape(gear, "black"), size=(1000, 1000), fine=2)), name="a.png", size=SIZE)
     assert 500 < len(outline.exterior) <= 2000
 
 
@@ -229,7 +228,7 @@ GOOD = DISCS["dark on light"]
 def test_refused(content: bytes, message: str) -> None:
     """Oracle: the message: one line that names the file, what is wrong, where, and what to do."""
     with pytest.raises(OutlineError, match=message) as caught:
-        read_image(content, name="a.png", size=SIZE)
+        read_outline(content, name="a.png", size=SIZE)
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 300
 
@@ -238,15 +237,15 @@ def test_not_plain_ground() -> None:
     """Oracle: a chequered ground, which has no one colour."""
     board = np.kron((np.indices((12, 12)).sum(axis=0) % 2).astype(np.uint8) * 255, np.ones((50, 50), np.uint8))
     with pytest.raises(OutlineError, match=r"a.png: the ground is not plain"):
-        read_image(picture(Image.fromarray(board)), name="a.png", size=SIZE)
+        read_outline(picture(Image.fromarray(board)), name="a.png", size=SIZE)
 
 
 def test_size() -> None:
     """Oracle: the message asks for the size, or names the bad one."""
     with pytest.raises(OutlineError, match=r"a.png: a picture has no physical size: give"):
-        read_image(GOOD, name="a.png")
+        read_outline(GOOD, name="a.png")
     with pytest.raises(InputError, match=r"a.png: the size must be positive, not 0.0 m"):
-        read_image(GOOD, name="a.png", size=0.0)
+        read_outline(GOOD, name="a.png", size=0.0)
 
 
 @pytest.mark.parametrize("name", ["a.bmp", "a", "a.svg.zip", ".svg"])
@@ -272,5 +271,5 @@ def test_endings_in_capitals() -> None:
 def test_same_picture_same_outline() -> None:
     """Oracle: the same bytes twice give the same corners, bit for bit."""
     content = DISCS["noise, fading light, JPEG 40"]
-    first, second = (read_image(content, name="a.jpg", size=SIZE).exterior for _ in range(2))
+    first, second = (read_outline(content, name="a.jpg", size=SIZE).exterior for _ in range(2))
     assert np.array_equal(first, second)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import HydrostatError, InputError, OutlineError
-from hydrostat.geometry import Outline, read_svg
+from hydrostat.geometry import Outline, read_outline
 
 SQUARE = '<path d="M10,10 h20 v20 h-20 z"/>'
 
@@ -13,7 +13,7 @@ def svg(shapes: str, attributes: str = 'width="100mm" height="100mm" viewBox="0 
 
 
 def read(shapes: str, attributes: str = 'width="100mm" height="100mm" viewBox="0 0 100 100"') -> Outline:
-    return read_svg(svg(shapes, attributes), name="a.svg")
+    return read_outline(svg(shapes, attributes), name="a.svg")
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_physical_size(attributes: str, unit: float) -> None:
 def test_size_given_wins() -> None:
     """Oracle: the asked size is the longest side, exactly, whatever the file says."""
     for attributes in ("", 'viewBox="0 0 9 9"', 'width="5mm"', 'width="300" height="20px"'):
-        outline = read_svg(svg('<rect width="31" height="7"/>', attributes), name="a.svg", size=0.2)
+        outline = read_outline(svg('<rect width="31" height="7"/>', attributes), name="a.svg", size=0.2)
         assert outline.size == pytest.approx(0.2, rel=1e-15)
         assert np.ptp(outline.exterior[:, 1]) == pytest.approx(0.2 * 7 / 31)
 
@@ -131,7 +131,7 @@ USES = "".join(f'<g id="u{n}"><use href="#u{n + 1}"/><use href="#u{n + 1}"/></g>
 def test_refused(content: bytes, message: str) -> None:
     """Oracle: the message: one line that names the file, what is wrong, where, and what to do."""
     with pytest.raises(OutlineError, match=message) as caught:
-        read_svg(content, name="a.svg")
+        read_outline(content, name="a.svg")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 300
 
@@ -140,7 +140,7 @@ def test_refused(content: bytes, message: str) -> None:
 def test_bad_size(size: float) -> None:
     """Oracle: the message names the file and the value."""
     with pytest.raises(InputError, match=f"a.svg: the size must be positive, not {size} m"):
-        read_svg(svg(SQUARE), name="a.svg", size=size)
+        read_outline(svg(SQUARE), name="a.svg", size=size)
 
 
 def test_garbage_never_crashes() -> None:
@@ -153,7 +153,7 @@ def test_garbage_never_crashes() -> None:
         for place in random.integers(0, len(good), 3):
             bad[place] = random.integers(32, 127)
         try:
-            read_svg(bytes(bad), name="a.svg", size=0.1)
+            read_outline(bytes(bad), name="a.svg", size=0.1)
         except HydrostatError as error:
             lines.append(str(error))
     assert len(lines) > 20

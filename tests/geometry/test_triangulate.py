@@ -10,7 +10,7 @@ from shapely import MultiLineString, box, hausdorff_distance
 from shapely.affinity import rotate
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry import Mesh, Outline, read_svg, smallest_angle, triangulate
+from hydrostat.geometry import Mesh, Outline, read_outline, smallest_angle, triangulate
 
 
 def boundary_distance(shape: Outline, mesh: Mesh) -> float:
@@ -130,5 +130,5 @@ def test_examples(path: Path) -> None:
     if "outline" not in body:
         pytest.skip("not drawn")
     size, element_size = (1e-3 * float(body[key].removesuffix("mm")) for key in ("size", "element_size"))
-    shape = read_svg((path.parent / body["outline"]).read_bytes(), name=body["outline"], size=size)
+    shape = read_outline((path.parent / body["outline"]).read_bytes(), name=body["outline"], size=size)
     check(shape, triangulate(shape, element_size), element_size, least_angle=30)

@@ -19,20 +19,16 @@ from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
     body_and_holes,
-    check_size,
     checked,
     closed_rings,
-    counted,
     join,
     placed,
 )
-from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.geometry.outline import Ring
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
-
-MOST_BYTES = 10_000_000
-"""A file larger than this is refused."""
 
 MOST_ENTITIES = 20_000
 """A drawing with more entities, counting what its blocks repeat, is refused."""
@@ -47,31 +43,17 @@ _LINES = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "LINE", "ARC"
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError, AssertionError)
 
 
-def read_dxf(content: bytes, *, name: str, size: float | None = None) -> Outline:
-    """Read the outline of a body from a DXF drawing.
+def read_dxf(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
+    """Read the outline of a body from a DXF drawing in text form, and in words what was left out.
 
     The largest closed line is the body, those inside it are holes. Polylines, circles, ellipses, splines, lines and
     arcs are read, also in blocks; lines and arcs whose ends meet are joined. All else (text, dimensions, hatches), what
-    is hidden, and open lines smaller than the body are ignored. Heights (z) play no part. Curves become chords.
-
-    Args:
-        content: the bytes of the file, in DXF's text form.
-        name: what errors call the file.
-        size: longest side of the body's bounding box [m]; if not given, the file must name its unit ($INSUNITS).
-
-    Returns:
-        The outline [m], x to the right, y up, origin at the centre of its bounding box.
+    is hidden, and open lines smaller than the body are ignored. Heights (z) play no part. Curves become chords. Without
+    `size` or `page` the file must name its unit ($INSUNITS); see `read_outline`.
 
     Raises:
         OutlineError: the file is no DXF, or no body can be made of it; the message says where, in the drawing's units.
-        InputError: `size` is not positive.
     """
-    return dxf_drawing(content, name=name, size=size).outline
-
-
-def dxf_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
-    """Read the outline of a body, and in words what was left out; on the page of another, or as in `read_dxf`."""
-    check_size(size, name)
     document, mended = _open(content, name)
     unit = _unit(document)
     kind = f"a DXF drawing in units of {1e3 * unit:.4g} mm" if unit else "a DXF drawing without a unit"
@@ -79,7 +61,7 @@ def dxf_drawing(content: bytes, *, name: str, size: float | None = None, page: P
         page.check(kind, name)
     elif size is None and unit is None:
         raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): give its size")
-    layout = _Layout(document, name)
+    layout = _ModelSpace(document, name)
     lines = list(checked(layout.lines(), name))
     chains = join([line for line, closed in lines if not closed], name)
     rings, left_out = closed_rings([pair for pair in lines if pair[1]] + chains, name)
@@ -90,13 +72,6 @@ def dxf_drawing(content: bytes, *, name: str, size: float | None = None, page: P
 
 def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
     """The document, and a note on what the reader mended in it."""
-    if not content.strip():
-        raise OutlineError(f"{name}: the file is empty: export the drawing again as DXF")
-    if len(content) > MOST_BYTES:
-        raise OutlineError(
-            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read: "
-            "save the outline alone"
-        )
     if content.startswith(b"AutoCAD Binary DXF"):
         raise OutlineError(f"{name}: a binary DXF, which is not read: save it as DXF in text form (ASCII)")
     if not re.search(rb"\bEOF\s*\Z", content):
@@ -138,7 +113,7 @@ def _unit(document: "Document") -> float | None:
 
 
 @dataclass
-class _Layout:
+class _ModelSpace:
     """Walks through the model space of a document; counts what it leaves out."""
 
     document: "Document"

@@ -10,15 +10,12 @@ from jaxtyping import Float
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.page import Drawing, Page, page_about
-from hydrostat.geometry.files.rings import check_size, counted, placed
-from hydrostat.geometry.files.silhouette import Contrast, Patch, Silhouette, contrast, covered, silhouette
-from hydrostat.geometry.outline import Outline
+from hydrostat.geometry.files.rings import placed
+from hydrostat.geometry.files.silhouette import Contrast, PixelPatch, Silhouette, contrast, covered, silhouette
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from PIL.Image import Image
-
-MOST_BYTES = 50_000_000
-"""A file larger than this is refused."""
 
 MOST_PIXELS = 50_000_000
 """A picture with more pixels is refused."""
@@ -29,34 +26,19 @@ _UNEVEN = 80.0
 _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, AttributeError, EOFError)
 
 
-def read_image(content: bytes, *, name: str, size: float | None = None) -> Outline:
-    """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG.
+def read_image(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
+    """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG, and what was left out.
 
     A picture with transparent parts tells the body by them; else the body is what differs in colour from the ground,
     darker or lighter, which is taken from the border of the picture and may change slowly across it. A drawing of lines
     is filled to the outer side of its outer line, and what is drawn inside plays no part. Elsewhere ground within the
     body is a hole if it is larger than 1 % of the body and nothing lies in it. A soft shadow is left out where the body
-    is much stronger.
-
-    Args:
-        content: the bytes of the file.
-        name: what errors call the file.
-        size: longest side of the body's bounding box [m]; needed, for a picture has none.
-
-    Returns:
-        The outline [m], x to the right, y up, origin at the centre of its bounding box; it strays from the picture by
-        about half a pixel, of at most 1600 along the longer side.
+    is much stronger. The outline strays from the picture by about half a pixel, of at most 1600 along the longer side.
+    A picture has no size of its own: `size` or `page` is needed; see `read_outline`.
 
     Raises:
         OutlineError: no picture, too large, without size, or no single body on plain ground; the message says where.
-        InputError: `size` is not positive.
     """
-    return image_drawing(content, name=name, size=size).outline
-
-
-def image_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
-    """Read the outline of a body, on the page of another if given, and in words what was left out; see `read_image`."""
-    check_size(size, name)
     if size is None and page is None:
         raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')
     pixels, step = _pixels(content, name)
@@ -66,22 +48,14 @@ def image_drawing(content: bytes, *, name: str, size: float | None = None, page:
     found, notes = _body(pixels, name)
     page = page or page_about(found.body, kind, (1.0, -1.0), size)
     outline, scale = placed(found.body, list(found.holes), page, name), page.scale[0]
-    words = _Words(scale, page.origin)
     coarse = (f"read at one pixel in {step * step}: the outline is known to {1e3 * scale:.2g} mm",) if step > 1 else ()
-    return Drawing(outline, page, (*notes, *words.of(found), *coarse))
+    return Drawing(outline, page, (*notes, *_notes(found, page), *coarse))
 
 
 def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 4"], int]:
     """Red, green, blue and opacity from 0 to 255, upright, and how many pixels of the file are one along each side."""
     from PIL import Image, ImageOps
 
-    if not content:
-        raise OutlineError(f"{name}: the file is empty: save the picture again")
-    if len(content) > MOST_BYTES:
-        raise OutlineError(
-            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read: "
-            "save a smaller picture"
-        )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -157,31 +131,25 @@ def _level(seen: Contrast) -> tuple[float, bool]:
     return 0.5 * (seen.faint + min(seen.strong, 3.0 * seen.faint)), False
 
 
-class _Words:
-    """Says where things of a picture are and how large, in millimetres of the body."""
+def _notes(found: Silhouette, page: Page) -> tuple[str, ...]:
+    """What was left out, filled or assumed, in words."""
+    notes = []
+    if found.lines:
+        notes.append("a drawing of lines: filled to its outer line, what is drawn inside plays no part")
+    if found.cut:
+        notes.append("the body reaches the border of the picture and is cut off there")
+    if found.filled:
+        notes.append(f"filled {counted(len(found.filled), 'hole')}, {_largest(found.filled, page)}")
+    if found.specks:
+        notes.append(f"left out {counted(len(found.specks), 'speck')} beside the body, {_largest(found.specks, page)}")
+    if found.holes:
+        notes.append(f"kept {counted(len(found.holes), 'hole')}")
+    return tuple(notes)
 
-    def __init__(self, scale: float, middle: tuple[float, float]) -> None:
-        self.scale, self.middle = scale, middle
 
-    def of(self, found: Silhouette) -> tuple[str, ...]:
-        """Notes on what was left out, filled or assumed."""
-        notes = []
-        if found.lines:
-            notes.append("a drawing of lines: filled to its outer line, what is drawn inside plays no part")
-        if found.cut:
-            notes.append("the body reaches the border of the picture and is cut off there")
-        if found.filled:
-            notes.append(f"filled {counted(len(found.filled), 'hole')}, {self._largest(found.filled)}")
-        if found.specks:
-            notes.append(
-                f"left out {counted(len(found.specks), 'speck')} beside the body, {self._largest(found.specks)}"
-            )
-        if found.holes:
-            notes.append(f"kept {counted(len(found.holes), 'hole')}")
-        return tuple(notes)
-
-    def _largest(self, patches: tuple[Patch, ...]) -> str:
-        patch = max(patches, key=lambda one: one.area)
-        x, y = patch.place[0] - self.middle[0], self.middle[1] - patch.place[1]
-        across, where = 1e3 * self.scale * patch.extent, [round(1e3 * self.scale * value, 1) + 0.0 for value in (x, y)]
-        return f"the largest {across:.2g} mm across at ({where[0]:.1f}, {where[1]:.1f}) mm"
+def _largest(patches: tuple[PixelPatch, ...], page: Page) -> str:
+    """The largest of some patches in words: where it is and how large, in millimetres of the body."""
+    patch, scale = max(patches, key=lambda one: one.area), page.scale[0]
+    x, y = patch.place[0] - page.origin[0], page.origin[1] - patch.place[1]
+    across, where = 1e3 * scale * patch.extent, [round(1e3 * scale * value, 1) + 0.0 for value in (x, y)]
+    return f"the largest {across:.2g} mm across at ({where[0]:.1f}, {where[1]:.1f}) mm"

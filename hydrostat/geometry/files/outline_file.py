@@ -2,11 +2,16 @@
 
 from pathlib import PurePath
 
+import numpy as np
+
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.files.page import Drawing, Page
 from hydrostat.geometry.outline import Outline
 
-OUTLINE_SUFFIXES = (".svg", ".dxf", ".png", ".jpg", ".jpeg")
+_MOST_BYTES = {".svg": 20_000_000, ".dxf": 10_000_000, ".png": 50_000_000, ".jpg": 50_000_000, ".jpeg": 50_000_000}
+"""Larger files are refused."""
+
+OUTLINE_SUFFIXES = tuple(_MOST_BYTES)
 """Names of files that outlines are read from end in one of these."""
 
 
@@ -33,17 +38,24 @@ def read_drawing(content: bytes, *, name: str, size: float | None = None, page: 
     """Read the outline of a body, and in words what was left out; all else is as in `read_outline`."""
     if size is not None and page is not None:
         raise InputError(f"{name}: a drawing on the page of another has its size from there: leave the size out")
+    if size is not None and not 0.0 < size < np.inf:
+        raise InputError(f"{name}: the size must be positive, not {size} m")
     suffix = PurePath(name).suffix.lower()
+    if suffix not in OUTLINE_SUFFIXES:
+        raise OutlineError(
+            f"{name}: outlines are read from SVG, DXF, PNG and JPG files: save the drawing as one of these"
+        )
+    if not content.strip():
+        raise OutlineError(f"{name}: the file is empty: export the drawing again")
+    if len(content) > _MOST_BYTES[suffix]:
+        raise OutlineError(
+            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {_MOST_BYTES[suffix] / 1e6:.0f} MB are read: "
+            "save the outline alone, or a smaller picture"
+        )
     if suffix == ".svg":
-        from hydrostat.geometry.files.svg import svg_drawing
-
-        return svg_drawing(content, name=name, size=size, page=page)
-    if suffix == ".dxf":
-        from hydrostat.geometry.files.dxf import dxf_drawing
-
-        return dxf_drawing(content, name=name, size=size, page=page)
-    if suffix in OUTLINE_SUFFIXES:
-        from hydrostat.geometry.files.image import image_drawing
-
-        return image_drawing(content, name=name, size=size, page=page)
-    raise OutlineError(f"{name}: outlines are read from SVG, DXF, PNG and JPG files: save the drawing as one of these")
+        from hydrostat.geometry.files.svg import read_svg as read
+    elif suffix == ".dxf":
+        from hydrostat.geometry.files.dxf import read_dxf as read
+    else:
+        from hydrostat.geometry.files.image import read_image as read
+    return read(content, name, size, page)

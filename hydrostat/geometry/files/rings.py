@@ -4,14 +4,14 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 from shapely import Polygon
 
-from hydrostat.errors import InputError, OutlineError
+from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.page import Page
+from hydrostat.geometry.mesh import joined_groups
 from hydrostat.geometry.outline import Outline, Ring, fault
+from hydrostat.units import counted
 
 MOST_POINTS = 200_000
 """A drawing with more points, counting what it repeats, is refused."""
@@ -24,16 +24,6 @@ CHORD_ERROR = 2e-5
 
 _GAP = 1e-3
 _ROUNDING = 1e-6
-
-
-def check_size(size: float | None, name: str) -> None:
-    """Refuse a size that is no length.
-
-    Raises:
-        InputError: `size` [m] is not positive.
-    """
-    if size is not None and not 0.0 < size < np.inf:
-        raise InputError(f"{name}: the size must be positive, not {size} m")
 
 
 def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ring], tuple[str, ...]]:
@@ -152,11 +142,6 @@ def place(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:
     return f"({point[0]:.4g}, {point[1]:.4g})"
 
 
-def counted(count: int, thing: str) -> str:
-    """How many of a thing, in words."""
-    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
-
-
 _SAME = 1e-6
 _JOINED = 1e-3
 
@@ -207,7 +192,7 @@ def _meet(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
     grid = np.repeat(np.arange(4), len(flat))
     _, cell = np.unique(np.column_stack([grid, cells]), axis=0, return_inverse=True)
     count = len(flat) + int(cell.max()) + 1
-    numbers = _joined(np.tile(np.arange(len(flat)), 4), cell.ravel() + len(flat), count)[: len(flat)]
+    numbers = joined_groups(np.stack([np.tile(np.arange(len(flat)), 4), cell.ravel() + len(flat)]), count)[: len(flat)]
     free = np.flatnonzero(np.bincount(numbers)[numbers] == 1)
     if len(free) > 1:
         found = KDTree(flat[free]).query(flat[free], k=2)
@@ -215,14 +200,8 @@ def _meet(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
         other = near[:, 1]
         mutual = (other[other] == np.arange(len(free))) & (distance[:, 1] <= _JOINED * extent)
         mutual &= free // 2 != free[other] // 2
-        numbers = _joined(numbers[free[mutual]], numbers[free[other[mutual]]], count)[numbers]
+        numbers = joined_groups(numbers[np.stack([free[mutual], free[other[mutual]]])], count)[numbers]
     return numbers.reshape(-1, 2)
-
-
-def _joined(first: Int[np.ndarray, " _"], second: Int[np.ndarray, " _"], count: int) -> Int[np.ndarray, " _"]:
-    """The part that each of `count` numbers belongs to when the pairs of first and second are joined."""
-    joins = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
-    return np.asarray(connected_components(joins, directed=False)[1])
 
 
 def _once(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray, " kept"]:

@@ -9,7 +9,7 @@ from shapely import Polygon, get_coordinates
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.outline import Ring
+from hydrostat.geometry.outline import Curve, Ring
 
 _FAINT = 16.0
 _GRAIN = 1.0
@@ -127,7 +127,7 @@ _Mask = Bool[np.ndarray, "rows columns"]
 
 
 @dataclass(frozen=True)
-class Patch:
+class PixelPatch:
     """A connected part of a picture.
 
     Attributes:
@@ -156,8 +156,8 @@ class Silhouette:
 
     body: Ring
     holes: tuple[Ring, ...]
-    specks: tuple[Patch, ...]
-    filled: tuple[Patch, ...]
+    specks: tuple[PixelPatch, ...]
+    filled: tuple[PixelPatch, ...]
     lines: bool
     cut: bool
 
@@ -219,14 +219,14 @@ def _depth(mask: _Mask) -> Field:
     return np.asarray(distance_transform_edt(mask), dtype=float)
 
 
-def _patches(mask: _Mask) -> tuple[np.ndarray, list[Patch]]:
+def _patches(mask: _Mask) -> tuple[np.ndarray, list[PixelPatch]]:
     """Number of the connected part that each pixel belongs to, and the parts; corners connect."""
     labels = _parts(mask, corners=True)
     areas = np.bincount(labels.ravel())[1:]
     patches = []
     for area, (rows, columns) in zip(areas, find_objects(labels), strict=True):
         place = 0.5 * (columns.start + columns.stop - 1), 0.5 * (rows.start + rows.stop - 1)
-        patches.append(Patch(int(area), place, float(max(rows.stop - rows.start, columns.stop - columns.start))))
+        patches.append(PixelPatch(int(area), place, float(max(rows.stop - rows.start, columns.stop - columns.start))))
     return labels, patches
 
 
@@ -248,7 +248,7 @@ def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
     return float((opened & whole).sum()) < _INKED * float(whole.sum())
 
 
-def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[Patch, ...]]:
+def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[PixelPatch, ...]]:
     """Which of the gaps in a body are holes in it, and those that are ground but too small, or hold something."""
     labels = _parts(gaps, corners=False)
     areas = np.bincount(labels.ravel())
@@ -264,7 +264,7 @@ def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[Patch,
     return open_[labels], tuple(patch for patch in shut if patch.area > _NOISE)
 
 
-def _specks(mask: _Mask, body: int, name: str) -> tuple[Patch, ...]:
+def _specks(mask: _Mask, body: int, name: str) -> tuple[PixelPatch, ...]:
     """What lies beside the body, if all of it is small."""
     _, patches = _patches(mask)
     second = max(patches, key=lambda patch: patch.area, default=None)
@@ -307,11 +307,9 @@ def _rings(field: Field, stepped: bool, body: int) -> list[Ring]:
 
 def _smooth(ring: Ring, reach: float, tolerance: float, most: int) -> Ring:
     """A ring without the grain of the pixels."""
-    closed = np.concatenate([ring, ring[:1]])
-    stations = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))]
-    count = max(int(2 * stations[-1]), 16)
-    at = stations[-1] * np.arange(count) / count
-    even = np.column_stack([np.interp(at, stations, closed[:, axis]) for axis in range(2)])
+    curve = Curve(ring)
+    count = max(int(2 * curve.length), 16)
+    even = curve.at(curve.length * np.arange(count) / count)
     while reach > 0.25:
         smooth = Polygon(gaussian_filter1d(even, 2.0 * reach, axis=0, mode="wrap"))
         allowed = tolerance

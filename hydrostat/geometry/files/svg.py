@@ -12,14 +12,11 @@ import numpy as np
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.page import Drawing, Page, page_about
-from hydrostat.geometry.files.rings import CHORD_ERROR, MOST_POINTS, body_and_holes, check_size, closed_rings, placed
-from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.geometry.files.rings import CHORD_ERROR, MOST_POINTS, body_and_holes, closed_rings, placed
+from hydrostat.geometry.outline import Ring
 
 if TYPE_CHECKING:
     from svgelements import Path
-
-MOST_BYTES = 20_000_000
-"""A drawing larger than this is refused."""
 
 _MOST_DEPTH = 200
 _NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
@@ -33,7 +30,7 @@ _NO_SHAPES = {
 
 
 @dataclass(frozen=True)
-class SvgDocument:
+class _SvgDocument:
     """A drawing without what is no shape, in its own units.
 
     Attributes:
@@ -47,19 +44,12 @@ class SvgDocument:
     sheet: tuple[float, float, float, float] | None
 
 
-def open_svg(content: bytes, *, name: str) -> SvgDocument:
+def _open(content: bytes, name: str) -> _SvgDocument:
     """Check the bytes of a drawing, which nobody vouches for, and find the length of its unit.
 
     Raises:
-        OutlineError: empty, too large, no XML, no SVG, with entities, or with `use` elements without end.
+        OutlineError: no XML, no SVG, with entities, or with `use` elements without end.
     """
-    if not content.strip():
-        raise OutlineError(f"{name}: the file is empty: export the drawing again as SVG")
-    if len(content) > MOST_BYTES:
-        raise OutlineError(
-            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read: "
-            "save the outline alone, without pictures"
-        )
     _guard(content, name)
     root = ElementTree.fromstring(content)
     if _tag(root) != "svg":
@@ -68,7 +58,7 @@ def open_svg(content: bytes, *, name: str) -> SvgDocument:
     _count(root, name)
     sheet = _sheet(root)
     unit = _normalise(root)
-    return SvgDocument(ElementTree.tostring(root), unit, sheet)
+    return _SvgDocument(ElementTree.tostring(root), unit, sheet)
 
 
 def _guard(content: bytes, name: str) -> None:
@@ -182,31 +172,17 @@ def _box(text: str) -> tuple[float, float, float, float] | None:
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError)
 
 
-def read_svg(content: bytes, *, name: str, size: float | None = None) -> Outline:
-    """Read the outline of a body from a drawing.
+def read_svg(content: bytes, name: str, size: float | None, page: Page | None) -> Drawing:
+    """Read the outline of a body from an SVG drawing, and in words what was left out.
 
     The largest closed shape is the body, the shapes inside it are holes; whether they are filled plays no part. Text,
-    pictures, what is hidden and open lines smaller than the body are ignored. Curves become chords.
-
-    Args:
-        content: the bytes of the file.
-        name: what errors call the file.
-        size: longest side of the body's bounding box [m]; if not given, the file must have a size in mm, cm, in, ...
-
-    Returns:
-        The outline [m], x to the right, y up, origin at the centre of its bounding box.
+    pictures, what is hidden and open lines smaller than the body are ignored. Curves become chords. Without `size` or
+    `page` the file must have a size in mm, cm, in, ...; see `read_outline`.
 
     Raises:
         OutlineError: the file is no SVG, or no body can be made of it; the message says where, in the drawing's units.
-        InputError: `size` is not positive.
     """
-    return svg_drawing(content, name=name, size=size).outline
-
-
-def svg_drawing(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Drawing:
-    """Read the outline of a body, and in words what was left out; on the page of another, or as in `read_svg`."""
-    check_size(size, name)
-    document = open_svg(content, name=name)
+    document = _open(content, name)
     across, down = document.unit or (1.0, 1.0)
     kind = _kind(document)
     if page is not None:
@@ -219,7 +195,7 @@ def svg_drawing(content: bytes, *, name: str, size: float | None = None, page: P
     return Drawing(placed(body, holes, page, name), page, notes)
 
 
-def _kind(document: SvgDocument) -> str:
+def _kind(document: _SvgDocument) -> str:
     """What two drawings must have in common, in words: some programs count from a corner of the page."""
     kind = "an SVG drawing without a physical size"
     if document.unit is not None:
@@ -231,7 +207,7 @@ def _kind(document: SvgDocument) -> str:
     return f"{kind} on a page of {width:.6g} x {height:.6g} units from ({left:.6g}, {top:.6g})"
 
 
-def _lines(document: SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
+def _lines(document: _SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
     """Every visible subpath of a drawing as points in its own units, and whether it closes itself."""
     from svgelements import SVG, Path, Shape
 

@@ -5,10 +5,9 @@ from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from hydrostat.errors import SurfaceError
+from hydrostat.geometry.mesh import joined_groups
 from hydrostat.geometry.surface import Surface
 
 
@@ -56,9 +55,7 @@ class Sides:
         """Number of the group of each triangle, where triangles are joined by some of the edges."""
         rows, columns = np.nonzero(joins[self.of])
         nodes = len(self.of) + self.of[rows, columns]  # a node for each triangle, and one for each edge
-        size = len(self.of) + len(self.ends)
-        graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, nodes)), shape=(size, size))
-        labels = connected_components(graph, directed=False)[1][: len(self.of)]
+        labels = joined_groups(np.stack([rows, nodes]), len(self.of) + len(self.ends))[: len(self.of)]
         return np.unique(labels, return_inverse=True)[1].astype(np.int64)
 
 
@@ -130,8 +127,7 @@ def _merged(surface: Surface, used: Int[np.ndarray, " used"]) -> Int[np.ndarray,
     joins = [
         _same_cell(places / cell + shift) for shift in (0.0, 0.5)
     ]  # not pairs: where all is in one place, too many
-    graph = coo_array((np.ones(2 * len(used)), np.concatenate(joins, axis=1)), shape=(len(used), len(used)))
-    labels = connected_components(graph, directed=False)[1]
+    labels = joined_groups(np.concatenate(joins, axis=1), len(used))
     _, first = np.unique(labels, return_index=True)
     result = np.arange(len(surface.vertices))
     result[used] = used[first[labels]]
@@ -215,8 +211,7 @@ def holes_of(surface: Surface) -> Holes:
     if not len(edges):
         return Holes(edges, np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0, dtype=bool))
     size = len(surface.vertices)
-    graph = coo_array((np.ones(len(edges), dtype=np.int8), edges.T), shape=(size, size))
-    label = np.unique(connected_components(graph, directed=False)[1][edges[:, 0]], return_inverse=True)[1]
+    label = np.unique(joined_groups(edges.T, size)[edges[:, 0]], return_inverse=True)[1]
     ends, starts = (np.bincount(edges[:, side], minlength=size) for side in (1, 0))
     balanced = np.bincount(label, (ends != starts)[edges].any(axis=1)) == 0
     touches = np.bincount(label, (starts > 1)[edges[:, 0]]) > 0

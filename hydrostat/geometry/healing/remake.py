@@ -10,7 +10,7 @@ from hydrostat.errors import SurfaceError
 from hydrostat.geometry.contour import MOST_GRID_POINTS, contour
 from hydrostat.geometry.healing.faults import Piece
 from hydrostat.geometry.healing.mend import members, sides_of
-from hydrostat.geometry.surface import Surface, spread_points
+from hydrostat.geometry.surface import Solid, Surface, spread_points
 
 _ACCURACY = 1e-3  # of the spacing: how near crossings are to where they should be
 _SUM_ERROR = 0.05  # how wrong the fast sum may be, amply
@@ -63,13 +63,7 @@ class WindingField:
     """One half minus the winding number, and how far from a point its sign cannot change."""
 
     def __init__(self, surface: Surface) -> None:
-        import igl
-
-        self.surface = surface
-        self.sum = igl.FastWindingNumberBVH()
-        self.sum.init(surface.vertices, surface.triangles)
-        self.tree = igl.AABB()
-        self.tree.init(surface.vertices, surface.triangles)
+        self.solid = Solid(surface)
         sides = sides_of(surface.triangles)
         rim = sides.turns != 0
         self.rim = sides.ends[rim]
@@ -78,7 +72,7 @@ class WindingField:
 
     def __call__(self, points: Points) -> Vector:
         """One half minus the winding number."""
-        return 0.5 - np.array(self.sum.winding_number(np.ascontiguousarray(points)))
+        return 0.5 - self.solid.winding(points)
 
     def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
         """Whether the sign is the same all within a reach [m] of points: where no triangle is, and no rim is near.
@@ -88,11 +82,11 @@ class WindingField:
         """
         import igl
 
-        vertices, triangles = self.surface.vertices, self.surface.triangles
-        free = np.sqrt(np.array(self.tree.squared_distance(vertices, triangles, points)[0])) > reach
+        free = self.solid.gaps(points) > reach
         if not len(self.rim):
             return free
-        rim = np.sqrt(np.array(igl.point_mesh_squared_distance(points, vertices, self.rim)[0])) - reach
+        squares = igl.point_mesh_squared_distance(points, self.solid.surface.vertices, self.rim)[0]
+        rim = np.sqrt(np.array(squares)) - reach
         change = reach * self.length / (4.0 * np.pi * np.maximum(rim, 1e-12) ** 2)
         return free & (rim > 0.0) & (np.abs(self(points)) > change + _SUM_ERROR)
 

@@ -2,12 +2,10 @@
 
 import numpy as np
 from jaxtyping import Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from hydrostat.arrays import Elements, Nodes, Points
-from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.mesh import Mesh, joined_groups
 from hydrostat.geometry.tetrahedra.lattice import Numbers, signed_volumes
 
 
@@ -58,14 +56,9 @@ def _joins(simplices: Elements) -> Int[np.ndarray, "2 joins"]:
     return np.stack([faces[order[same]].ravel(), faces[order[same + 1]].ravel()])
 
 
-def _groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarray, " count"]:
-    """Number of the group to which each of `count` things belongs that are joined in pairs."""
-    return connected_components(coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count)), directed=False)[1]
-
-
 def _parts(elements: Elements) -> Numbers:
     """Number of the part, joined by faces, that each element is of."""
-    return _groups(_joins(elements) // 4, len(elements))
+    return joined_groups(_joins(elements) // 4, len(elements))
 
 
 def _largest(part: Numbers) -> int:
@@ -74,7 +67,7 @@ def _largest(part: Numbers) -> int:
 
 def _parted(nodes: Nodes, elements: Elements) -> Mesh:
     """A node for every group of elements that faces join about it."""
-    group = _groups(_joins(elements), elements.size)
+    group = joined_groups(_joins(elements), elements.size)
     first = np.unique(group, return_index=True)[1]
     origin = elements.ravel()[first]
     order = np.lexsort((first, origin))
@@ -92,7 +85,7 @@ def _crowded(mesh: Mesh) -> np.ndarray:
     out = np.zeros(len(mesh.elements), dtype=bool)
     for edge in edges[counts > 2]:
         around = np.flatnonzero(np.isin(mesh.elements, edge).sum(axis=1) == 2)
-        group = _groups(_joins(mesh.elements[around]) // 4, len(around))
+        group = joined_groups(_joins(mesh.elements[around]) // 4, len(around))
         volumes = signed_volumes(mesh.nodes, mesh.elements[around])
         sizes = np.bincount(group, weights=volumes)
         out[around[group != np.argmax(sizes)]] = True
@@ -101,7 +94,7 @@ def _crowded(mesh: Mesh) -> np.ndarray:
 
 def _pinched(mesh: Mesh) -> np.ndarray:
     """Which elements to leave out for nodes of the boundary with several fans of facets: those at the smaller fans."""
-    fan = _groups(_joins(mesh.boundary), mesh.boundary.size)
+    fan = joined_groups(_joins(mesh.boundary), mesh.boundary.size)
     _, first, sizes = np.unique(fan, return_index=True, return_counts=True)
     owner = mesh.boundary.ravel()[first]
     order = np.lexsort((first, -sizes, owner))

@@ -92,7 +92,7 @@ def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft
 
     def objective(variables: Vector) -> tuple[float, Vector]:
         moved = _moved(draft, variables, slides)
-        value, gradient = _energy(np.concatenate([_ring_points(moved), moved.interior]), triangles, power)
+        value, gradient = _energy(moved.points, triangles, power)
         if not np.isfinite(value):
             return 1e12, np.zeros_like(variables)
         tangents = np.concatenate([part.curve.tangents(part.stations, 0.02) for part in moved.divisions])
@@ -101,11 +101,6 @@ def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft
 
     best = minimize(objective, start, jac=True, method="L-BFGS-B", options={"maxiter": iterations}).x
     return _moved(draft, best, slides)
-
-
-def _ring_points(draft: Draft) -> Points:
-    """The boundary nodes."""
-    return np.concatenate([part.curve.at(part.stations) for part in draft.divisions])
 
 
 def _moved(draft: Draft, variables: Vector, slides: Bool[np.ndarray, " boundary"]) -> Draft:
