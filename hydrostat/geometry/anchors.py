@@ -38,7 +38,7 @@ class Anchors:
     distances: Float[np.ndarray, " points"]
 
     def positions(self, nodes: Nodes) -> Points:
-        """Where the anchors are when the nodes are at `nodes` [m]."""
+        """Positions [m] of the anchors when the nodes are at `nodes` [m]."""
         return np.einsum("pc,pcd->pd", self.weights, nodes[self.stencils])
 
     def matrix(self, node_count: int) -> csr_array:
@@ -54,7 +54,7 @@ class Anchors:
 
     @property
     def inside(self) -> Bool[np.ndarray, " points"]:
-        """Whether each point lay in the body (a hair outside, 1e-9 of an element, counts as inside)."""
+        """Tell whether each point lay in the body (a hair outside, 1e-9 of an element, counts as inside)."""
         return self.distances == 0.0
 
 

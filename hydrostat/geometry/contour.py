@@ -21,7 +21,7 @@ _CHUNK = 200_000  # points in one call of the field
 _BLOCK = 8  # cells along the side of a block that is settled as a whole
 
 Settled = Callable[[Points, Vector], Bool[np.ndarray, " points"]]
-"""Whether the field has one sign all within a reach [m] of each point."""
+"""Tell whether the field has one sign all within a reach [m] of each point."""
 
 
 def contour(
@@ -102,13 +102,13 @@ class _Grid:
         return values
 
     def inside(self, field: Field, numbers: Int[np.ndarray, " some"]) -> Bool[np.ndarray, " some"]:
-        """Whether some of its points are inside."""
+        """Tell whether some of its points are inside."""
         chunks = [numbers[start : start + _CHUNK] for start in range(0, len(numbers), _CHUNK)]
         return np.concatenate([self.clip(field, self.at(chunk)) < 0.0 for chunk in chunks] or [np.zeros(0, dtype=bool)])
 
 
 def _inside_by_blocks(field: Field, settled: Settled, grid: _Grid) -> Bool[np.ndarray, " points"]:
-    """Whether each grid point is inside, computed one by one only in blocks that are not settled by their middle."""
+    """Tell whether each grid point is inside, one by one only in blocks that are not settled by their middle."""
     corners = np.stack(np.meshgrid(*(np.arange(0, side, _BLOCK) for side in grid.shape), indexing="ij"), axis=-1)
     corners = corners.reshape(-1, 3)
     last = np.minimum(corners + _BLOCK, grid.shape) - 1
@@ -151,7 +151,7 @@ def _crossed_edges(
 def _crossings(
     field: Field, start: Points, end: Points, start_inside: Bool[np.ndarray, " points"], accuracy: float
 ) -> Vector:
-    """Where the field changes its sign on the way from start to end, as a share of the way.
+    """Find where the field changes its sign from start to end, as a share of the way.
 
     The false position and bisection take turns: the first is quick on smooth fields, the second cannot be slowed by
     a jump, at which both are bisections.
@@ -178,6 +178,6 @@ def _crossings(
 
 
 def _zero(low: Vector, high: Vector) -> Vector:
-    """Where a straight line from a value below or at 0 to one above or at 0 crosses it, as a share of the way."""
+    """Zero of the straight line from a value below or at 0 to one above or at 0, as a share of the way."""
     span = high - low
     return np.where(span > 0.0, -low / np.where(span > 0.0, span, 1.0), 0.5)

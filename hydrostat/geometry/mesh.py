@@ -60,7 +60,7 @@ class Mesh:
 
     @cached_property
     def parts(self) -> Int[np.ndarray, " nodes"]:
-        """Which part of the mesh each node belongs to: elements that share a node are of one part."""
+        """Number of the part of the mesh that each node belongs to: elements that share a node are of one part."""
         ends = np.stack([self.elements[:, :-1].ravel(), self.elements[:, 1:].ravel()])
         return joined_groups(ends, len(self.nodes))
 

@@ -61,7 +61,7 @@ class Outline:
 
 
 def fault(polygon: Polygon) -> tuple[str, tuple[float, float]] | None:
-    """What keeps a polygon from being a body, in words, and where; None if nothing does."""
+    """Find what keeps a polygon from being a body, in words, and where; None if nothing does."""
     if polygon.is_valid and polygon.area > 0.0:
         return None
     explanation = explain_validity(polygon)
@@ -149,7 +149,7 @@ class Curve:
         return np.concatenate([self.stations[:-1] + turn * self.length for turn in (-1, 0, 1)])
 
     def sagitta(self, start: float, end: float) -> float:
-        """How far the curve strays from its chord between two stations, start < end."""
+        """Largest distance of the curve from its chord between two stations, start < end."""
         ends = self.at(np.array([start, end]))
         between = self._unrolled
         inner = self.at(between[(between > start) & (between < end)]) - ends[0]

@@ -15,7 +15,7 @@ Facets = Int[np.ndarray, "facets dim"]
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """Where a shell is nearest to points, and how far that is.
+    """Places of a shell nearest to points, and their distances.
 
     The distance of a point p is differentiable where this place is the only one: then it changes by direction . dp, and
     by -direction . (shares @ dx) when the nodes of the stencil move, whichever way the nearest place slides.
@@ -61,7 +61,7 @@ class Shell:
 
     @property
     def closed(self) -> bool:
-        """Whether every side of a facet is one of exactly one other, which runs through it the other way."""
+        """Tell whether every side of a facet is one of exactly one other, which runs through it the other way."""
         if self.facets.shape[1] == 2:
             there, back = self.facets.T
         else:

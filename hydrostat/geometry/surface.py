@@ -116,15 +116,15 @@ class Solid:
     surface: Surface
 
     def __getstate__(self) -> dict[str, Any]:
-        """What another process is sent: trees cannot be, and are made again where they are asked for."""
+        """State that another process is sent: trees cannot be, and are made again where they are asked for."""
         return {"surface": self.surface}
 
     def winding(self, points: Points) -> Vector:
-        """How often the surface goes round each point: 1 inside, 0 outside, in between near holes."""
+        """Winding number of the surface about each point: 1 inside, 0 outside, in between near holes."""
         return self._winding_tree.winding_number(np.ascontiguousarray(points))
 
     def inside(self, points: Points) -> Bool[np.ndarray, " points"]:
-        """Whether points lie inside."""
+        """Tell whether points lie inside."""
         return self.winding(points) > 0.5
 
     def distances(self, points: Points) -> Vector:

@@ -28,7 +28,7 @@ _SLENDER = 1.5
 
 @dataclass(frozen=True, eq=False)
 class Thickness:
-    """What is inside of each facet of the boundary.
+    """Thickness of the body inside of each facet of the boundary.
 
     Attributes:
         chords: how far it is from the facet, straight in, to where the body ends [m].
@@ -44,7 +44,7 @@ class Thickness:
 
     @property
     def across(self) -> Float[np.ndarray, " facets"]:
-        """How many elements there are across the body at each facet."""
+        """Number of elements across the body at each facet."""
         return self.chords / self.spacing
 
     def part(self, share: float) -> tuple[float, float]:
@@ -96,7 +96,7 @@ def _smooth_spacing(mesh: Mesh) -> Float[np.ndarray, " facets"]:
 def _march(
     mesh: Mesh, elements: Int[np.ndarray, " rays"], starts: Points, directions: Points
 ) -> Float[np.ndarray, " rays"]:
-    """How far each ray runs in the body, from a start in its element to where no element follows."""
+    """Length [m] of each ray in the body, from a start in its element to where no element follows."""
     beyond = _neighbours(mesh)
     spans = np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2)
     slopes = np.linalg.inv(spans)

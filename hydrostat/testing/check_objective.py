@@ -82,7 +82,7 @@ class _ObjectiveCheck:
         self._values(posture_at(self.simulation, self.simulation.solve(contractions, start=self.pose)))
 
     def repeats(self) -> None:
-        """What is asked again is answered as before, by this term and by a new one, whatever was asked in between."""
+        """An answer is the same when asked again, of this term or a new one, whatever was asked in between."""
         rest = posture_at(self.simulation, self.simulation.solve({}))
         again = self.objective.on(self.simulation)
         first, slopes, errors = self.term.residual(self.at), self._slopes(self.term), dict(self.term.errors(self.at))

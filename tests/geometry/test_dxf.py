@@ -9,7 +9,7 @@ from drawings import dxf
 
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.files.outline_file import read_drawing, read_outline
-from hydrostat.geometry.files.rings import join
+from hydrostat.geometry.files.rings import join_lines
 
 Draw = Callable[[Any, Any], object]
 SQUARE = [(10, 10), (30, 10), (30, 30), (10, 30)]
@@ -232,7 +232,7 @@ def test_chains(seed: int) -> None:
         for start, end in pairwise(cuts):
             piece = ring[start : end + 1] + random.uniform(-1e-6, 1e-6, 2)
             pieces.append(piece[:: random.choice([-1, 1])])
-    joined = join([pieces[index] for index in random.permutation(len(pieces))], "a")
+    joined = join_lines([pieces[index] for index in random.permutation(len(pieces))], "a")
     assert [closed for _, closed in joined] == [True] * 3
     assert sorted(round(float(line[:, 0].mean() / 3)) for line, _ in joined) == [0, 1, 2]
     assert [len(line) for line, _ in joined] == [121] * 3

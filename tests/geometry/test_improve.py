@@ -11,7 +11,7 @@ from solids import ball, boundary, brick
 from hydrostat.geometry.mesh import Mesh, dihedral_angles
 from hydrostat.geometry.surface import Solid, Surface, covering_points
 from hydrostat.geometry.tetrahedra import improve as module
-from hydrostat.geometry.tetrahedra.improve import Stage, improve
+from hydrostat.geometry.tetrahedra.improve import ImproveStage, improve
 from hydrostat.geometry.tetrahedra.lattice import signed_volumes
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 
@@ -133,7 +133,7 @@ def test_a_sweep_lowers_the_energy_and_turns_nothing_over(seed: int, power: floa
 def test_a_regular_tetrahedron_on_its_own_surface_stays() -> None:
     mesh = Mesh(REGULAR, np.array([[0, 1, 2, 3]]))
     assert signed_volumes(REGULAR, mesh.elements) > 0
-    stage = Stage(rounds=2, sweeps=2, power=2.0, pull=10.0)
+    stage = ImproveStage(rounds=2, sweeps=2, power=2.0, pull=10.0)
     after = improve(mesh, Solid(Surface(REGULAR, mesh.boundary)), element_size=2.0, stages=(stage,))
     np.testing.assert_allclose(after.nodes, REGULAR, atol=1e-9)
 
@@ -142,7 +142,7 @@ def test_a_node_moved_inside_comes_back_to_the_middle() -> None:
     """By symmetry: of four equal parts of a regular tetrahedron the common node is in the middle."""
     nodes = np.concatenate([REGULAR, [[0.3, -0.2, 0.25]]])
     mesh = Mesh(nodes, np.array([[4, 1, 2, 3], [0, 4, 2, 3], [0, 1, 4, 3], [0, 1, 2, 4]]))
-    stage = Stage(rounds=1, sweeps=20, power=2.0, pull=1e6)
+    stage = ImproveStage(rounds=1, sweeps=20, power=2.0, pull=1e6)
     after = improve(
         mesh, Solid(Surface(REGULAR, np.delete(mesh.boundary, [], axis=0))), element_size=2.0, stages=(stage,)
     )
@@ -154,7 +154,7 @@ def test_a_box_that_is_too_small_grows_to_its_surface_with_its_corners() -> None
     """Closed form: the corners of the box; nothing is promised before."""
     small = box_mesh((5, 4, 3), size=(0.05, 0.04, 0.03))
     inner = Mesh(0.9 * (small.nodes - [0.025, 0.02, 0.015]), small.elements)
-    stages = (Stage(rounds=12, sweeps=4, power=1.0, pull=300.0),)
+    stages = (ImproveStage(rounds=12, sweeps=4, power=1.0, pull=300.0),)
     solid = Solid(brick(0.05, 0.04, 0.03))
     after = improve(inner, solid, element_size=0.01, stages=stages)
     assert after.volumes.sum() == pytest.approx(0.05 * 0.04 * 0.03, rel=0.01)

@@ -19,10 +19,10 @@ from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
     body_and_holes,
-    checked,
+    checked_lines,
     closed_rings,
-    join,
-    placed,
+    join_lines,
+    outline_on_page,
 )
 from hydrostat.geometry.outline import Ring
 from hydrostat.units import counted
@@ -62,12 +62,12 @@ def read_dxf(content: bytes, name: str, size: float | None, page: Page | None) -
     elif size is None and unit is None:
         raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): give its size")
     layout = _ModelSpace(document, name)
-    lines = list(checked(layout.lines(), name))
-    chains = join([line for line, closed in lines if not closed], name)
+    lines = list(checked_lines(layout.lines(), name))
+    chains = join_lines([line for line, closed in lines if not closed], name)
     rings, left_out = closed_rings([pair for pair in lines if pair[1]] + chains, name)
     body, holes = body_and_holes(rings, name)
     page = page or page_about(body, kind, (unit or 1.0, unit or 1.0), size)
-    return Drawing(placed(body, holes, page, name), page, (*mended, *layout.notes(), *left_out))
+    return Drawing(outline_on_page(body, holes, page, name), page, (*mended, *layout.notes(), *left_out))
 
 
 def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
@@ -83,16 +83,16 @@ def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
         with _listening() as said:
             document, auditor = recover.read(io.BytesIO(content))
     except (DXFError, OSError, *_BROKEN) as error:
-        raise OutlineError(f"{name}: cannot be read as DXF ({_line(error)}): export the drawing again") from error
+        raise OutlineError(f"{name}: cannot be read as DXF ({_one_line(error)}): export the drawing again") from error
     if auditor.errors:
-        raise OutlineError(f"{name}: the file is damaged ({_line(auditor.errors[0].message)}): export it again")
-    mended = [_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
+        raise OutlineError(f"{name}: the file is damaged ({_one_line(auditor.errors[0].message)}): export it again")
+    mended = [_one_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
     return document, (f"mended {counted(len(mended), 'fault')} of the file: {mended[0]}",) if mended else ()
 
 
 @contextmanager
 def _listening() -> Iterator[list[str]]:
-    """What ezdxf says while it reads, which would else go to the screen."""
+    """Collect what ezdxf says while it reads, which would else go to the screen."""
     said: list[str] = []
     handler = logging.Handler(logging.WARNING)
     handler.emit = lambda record: said.append(record.getMessage())
@@ -128,7 +128,7 @@ class _ModelSpace:
         try:
             yield from self._lines_of(self.document.modelspace(), 0)
         except (DXFError, *_BROKEN) as error:
-            raise OutlineError(f"{self.name}: cannot be read as DXF ({_line(error)}): export it again") from error
+            raise OutlineError(f"{self.name}: cannot be read as DXF ({_one_line(error)}): export it again") from error
 
     def notes(self) -> tuple[str, ...]:
         """In words, what was left out."""
@@ -164,7 +164,7 @@ class _ModelSpace:
             raise OutlineError(f"{self.name}: blocks nested deeper than {_MOST_DEPTH}: explode the blocks")
 
     def _hidden(self, entity: Any) -> bool:
-        """Whether an entity or its layer is switched off."""
+        """Tell whether an entity or its layer is switched off."""
         layers = self.document.layers
         layer = entity.dxf.get("layer", "0")
         off = layer in layers and (layers.get(layer).is_off() or layers.get(layer).is_frozen())
@@ -216,13 +216,13 @@ def _without_repeats(points: Ring) -> Ring:
 
 
 def _closed(entity: Any, points: Ring) -> bool:
-    """Whether an entity returns to where it begins, by what it says of itself or by its points."""
+    """Tell whether an entity returns to where it begins, by what it says of itself or by its points."""
     if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") and entity.is_closed:
         return True
     extent = float(np.ptp(points, axis=0).max())
     return float(np.linalg.norm(points[0] - points[-1])) <= 1e-9 * extent
 
 
-def _line(error: object) -> str:
+def _one_line(error: object) -> str:
     """The text of an error as the part of a line."""
     return re.sub(r"[^ -~]+", " ", str(error))[:120]

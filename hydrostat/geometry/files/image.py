@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.page import Drawing, Page, page_about
-from hydrostat.geometry.files.rings import placed
+from hydrostat.geometry.files.rings import outline_on_page
 from hydrostat.geometry.files.silhouette import Contrast, PixelPatch, Silhouette, contrast, covered, silhouette
 from hydrostat.units import counted
 
@@ -45,9 +45,9 @@ def read_image(content: bytes, name: str, size: float | None, page: Page | None)
     kind = f"a picture of {step * pixels.shape[1]} x {step * pixels.shape[0]} pixels"
     if page is not None:
         page.check(kind, name)
-    found, notes = _body(pixels, name)
+    found, notes = _find_body(pixels, name)
     page = page or page_about(found.body, kind, (1.0, -1.0), size)
-    outline, scale = placed(found.body, list(found.holes), page, name), page.scale[0]
+    outline, scale = outline_on_page(found.body, list(found.holes), page, name), page.scale[0]
     coarse = (f"read at one pixel in {step * step}: the outline is known to {1e3 * scale:.2g} mm",) if step > 1 else ()
     return Drawing(outline, page, (*notes, *_notes(found, page), *coarse))
 
@@ -100,7 +100,7 @@ def _plain(image: "Image", step: int) -> Float[np.ndarray, "rows columns 4"]:
     return np.asarray(coloured, dtype=float)
 
 
-def _body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silhouette, tuple[str, ...]]:
+def _find_body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silhouette, tuple[str, ...]]:
     """The body in a picture, and a note on how it was told from its ground."""
     opacity = pixels[..., 3]
     if float((opacity < 128.0).mean()) > 0.005:
@@ -115,12 +115,12 @@ def _body(pixels: Float[np.ndarray, "rows columns 4"], name: str) -> tuple[Silho
             f"{name}: the ground is not plain: put the body on a sheet of one colour, away from the picture's border, "
             "or cut it out"
         )
-    level, shadow = _level(seen)
+    level, shadow = _body_level(seen)
     note = ("a grey part beside the body was taken for its shadow and left out",) if shadow else ()
     return silhouette(seen.field, level, seen.faint, name), note
 
 
-def _level(seen: Contrast) -> tuple[float, bool]:
+def _body_level(seen: Contrast) -> tuple[float, bool]:
     """The contrast at which the body begins, and whether a shadow lies below it."""
     faint, strong = covered(seen.field > seen.faint), covered(seen.field > seen.strong)
     if faint < 1.1 * strong or strong == 0:
@@ -132,7 +132,7 @@ def _level(seen: Contrast) -> tuple[float, bool]:
 
 
 def _notes(found: Silhouette, page: Page) -> tuple[str, ...]:
-    """What was left out, filled or assumed, in words."""
+    """Describe what was left out, filled or assumed, a line each."""
     notes = []
     if found.lines:
         notes.append("a drawing of lines: filled to its outer line, what is drawn inside plays no part")

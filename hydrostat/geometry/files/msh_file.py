@@ -22,7 +22,7 @@ _Found = dict[int, list[np.ndarray]]
 
 
 def read_msh(content: bytes, name: str) -> Cells:
-    """What an MSH file says of nodes, tetrahedra and triangles; all else is passed over.
+    """Read nodes, tetrahedra and triangles of an MSH file; all else is passed over.
 
     Raises:
         InputError: another version, damaged, or with elements of an unknown kind.
@@ -138,7 +138,7 @@ def _old_rows(cursor: Cursor, count: int) -> _Found:
 
 
 def _blocks(cursor: Cursor) -> int:
-    """How many blocks a section of version 4.1 has."""
+    """Number of blocks of a section of version 4.1."""
     blocks = int(cursor.numbers(4, "i8")[0])
     if not 0 <= blocks <= _MOST_BLOCKS:
         raise cursor.damaged(f"declares {blocks} blocks, at most {_MOST_BLOCKS} are read")

@@ -7,18 +7,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, fans, lines
+from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, fans, text_lines
 
 
 def read_obj(content: bytes, name: str) -> Soup:
-    """What an OBJ file says of vertices and faces; all else in it is passed over.
+    """Read vertices and faces of an OBJ file; all else in it is passed over.
 
     Raises:
         SurfaceError: a line is wrong, or there are too many of them.
     """
     content = content.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ") if b"\\" in content else content
     places, corners, counts = array("d"), array("q"), array("q")
-    for number, line in lines(content, name):
+    for number, line in text_lines(content, name):
         words = line.split()
         if not words or words[0] not in (b"v", b"f"):
             continue
@@ -55,7 +55,7 @@ _Rows = Iterator[tuple[int, list[bytes]]]
 
 
 def read_off(content: bytes, name: str) -> Soup:
-    """What an OFF file says of vertices and faces.
+    """Read vertices and faces of an OFF file.
 
     Raises:
         SurfaceError: counts, vertices or faces are wrong or missing.
@@ -63,7 +63,7 @@ def read_off(content: bytes, name: str) -> Soup:
     head = OFF_HEAD.match(content)
     if not head or content[head.end() :].lstrip(b" \t").lower().startswith(b"binary"):
         raise SurfaceError(f"{name}: does not begin like an OFF file of text: export the surface again, such as to STL")
-    rows = ((number, words) for number, line in lines(content[head.end() :], name) if (words := _words(line)))
+    rows = ((number, words) for number, line in text_lines(content[head.end() :], name) if (words := _words(line)))
     vertex_count, face_count = _counts(rows, name)
     check_count(name, "vertices", vertex_count, room=len(content) / 6, most=3 * MOST_TRIANGLES)
     check_count(name, "faces", face_count, room=len(content) / 8)
@@ -83,7 +83,7 @@ def _words(line: bytes) -> list[bytes]:
 
 
 def _counts(rows: _Rows, name: str) -> tuple[int, int]:
-    """Of vertices and faces, the first two numbers of the file."""
+    """Counts of vertices and of faces, the first two numbers of the file."""
     _, words = next(rows, (0, []))
     try:
         return int(words[0]), int(words[1])

@@ -23,7 +23,7 @@ class Page:
     scale: tuple[float, float]
 
     def places(self, ring: Ring) -> Ring:
-        """Where the points of a drawing lie [m]."""
+        """Places [m] of the points of a drawing."""
         return (ring - np.array(self.origin)) * np.array(self.scale)
 
     def check(self, kind: str, name: str) -> None:

@@ -40,7 +40,7 @@ class _Element:
 
 
 def read_ply(content: bytes, name: str) -> Soup:
-    """What a PLY file says of vertices and faces; colours, normals and all else are passed over.
+    """Read vertices and faces of a PLY file; colours, normals and all else are passed over.
 
     Raises:
         SurfaceError: its head is not understood, its counts do not fit its size, or it is cut short.
@@ -104,7 +104,7 @@ def _with(element: _Element, new: _Property) -> _Element:
 
 
 def _room(element: _Element, order: str, content: bytes, start: int) -> float:
-    """How many rows of a kind there are bytes for at most."""
+    """Largest number of rows of a kind that there are bytes for."""
     if order:
         least = sum(np.dtype(each.length_kind or each.kind).itemsize for each in element.properties)
     else:
@@ -140,7 +140,7 @@ def _binary(content: bytes, start: int, element: _Element, order: str, name: str
 
 
 def _first_lengths(content: bytes, start: int, element: _Element, order: str) -> list[int]:
-    """How many numbers each property has in the first row; nonsense where the file ends before."""
+    """Count the numbers of each property in the first row; nonsense where the file ends before."""
     lengths = []
     for each in element.properties:
         length = 1

@@ -40,7 +40,7 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
         OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
     """
     rings, open_lines = [], []
-    for line, closed in checked(lines, name):
+    for line, closed in checked_lines(lines, name):
         extent = float(np.ptp(line, axis=0).max())
         gap = float(np.linalg.norm(line[0] - line[-1]))
         closed = closed or gap <= _GAP * extent
@@ -50,16 +50,16 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
     largest = max((extent for extent, _ in rings), default=0.0)
     extent, line = max(open_lines, key=lambda pair: pair[0], default=(0.0, np.zeros((2, 2))))
     if extent > largest:
-        start, end = place(line[0]), place(line[-1])
+        start, end = point_text(line[0]), point_text(line[-1])
         gap = float(np.linalg.norm(line[0] - line[-1]))
         raise OutlineError(f"{name}: the outline is open between {start} and {end}, a gap of {gap:.4g}: close the path")
     if largest == 0.0:
         raise OutlineError(f"{name}: no closed shape: draw the outline of the body as one closed path")
-    left_out = (f"left out {counted(len(open_lines), 'open line')}, the largest at {place(line[0])}",)
+    left_out = (f"left out {counted(len(open_lines), 'open line')}, the largest at {point_text(line[0])}",)
     return [line for extent, line in rings if extent > 0.0], left_out if open_lines else ()
 
 
-def checked(lines: Iterable[tuple[Ring, bool]], name: str) -> Iterator[tuple[Ring, bool]]:
+def checked_lines(lines: Iterable[tuple[Ring, bool]], name: str) -> Iterator[tuple[Ring, bool]]:
     """The lines as they come, until there are too many points or one is not finite, which is an OutlineError."""
     count = 0
     for line, closed in lines:
@@ -82,7 +82,7 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
     for shape in shapes[1:]:
         if body.disjoint(shape):
             raise OutlineError(
-                f"{name}: a second closed shape lies outside the body at {place(shape.exterior.coords[0])}: "
+                f"{name}: a second closed shape lies outside the body at {point_text(shape.exterior.coords[0])}: "
                 "unite the shapes into one or delete it"
             )
         if any(shape.equals(other) for other in (body, *holes)):
@@ -90,13 +90,13 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
         inside = next((hole for hole in holes if hole.contains(shape)), None)
         if inside is not None:
             raise OutlineError(
-                f"{name}: a closed shape at {place(shape.exterior.coords[0])} lies inside a hole and so hangs on "
+                f"{name}: a closed shape at {point_text(shape.exterior.coords[0])} lies inside a hole and so hangs on "
                 "nothing: delete it, or the hole"
             )
         crossing = next((other for other in (body, *holes) if other.exterior.intersects(shape.exterior)), None)
         if crossing is not None:
             point = crossing.exterior.intersection(shape.exterior).representative_point()
-            where = place((point.x, point.y))
+            where = point_text((point.x, point.y))
             raise OutlineError(f"{name}: two closed shapes cross at {where}: unite them, or move a hole inside")
         holes.append(shape)
     return np.array(body.exterior.coords), [np.array(hole.exterior.coords) for hole in holes]
@@ -109,7 +109,7 @@ def _shapes(rings: list[Ring], name: str) -> list[Polygon]:
         polygon = Polygon(ring) if len(ring) >= 3 else None
         if polygon is not None and not polygon.exterior.is_simple:
             what, point = fault(polygon) or ("crosses itself", ring[0])
-            raise OutlineError(f"{name}: the outline {what} at {place(point)}: redraw it there")
+            raise OutlineError(f"{name}: the outline {what} at {point_text(point)}: redraw it there")
         if polygon is not None and polygon.area > 0.0:
             shapes.append(polygon)
     if not shapes:
@@ -119,7 +119,7 @@ def _shapes(rings: list[Ring], name: str) -> list[Polygon]:
     return sorted(shapes, key=lambda shape: shape.area, reverse=True)
 
 
-def placed(body: Ring, holes: list[Ring], page: Page, name: str) -> Outline:
+def outline_on_page(body: Ring, holes: list[Ring], page: Page, name: str) -> Outline:
     """The outline in metres.
 
     Args:
@@ -137,7 +137,7 @@ def placed(body: Ring, holes: list[Ring], page: Page, name: str) -> Outline:
         raise OutlineError(f"{name}: {error}") from error
 
 
-def place(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:
+def point_text(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:
     """A point of the drawing in words."""
     return f"({point[0]:.4g}, {point[1]:.4g})"
 
@@ -148,7 +148,7 @@ _JOINED = 1e-3
 _Ends = Int[np.ndarray, "lines 2"]
 
 
-def join(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
+def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
     """Join open lines at their ends, whichever way each runs.
 
     Ends that are a millionth of the drawing apart are one; a free end and the free end nearest to it are one when they
@@ -167,23 +167,22 @@ def join(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
     if not lines:
         return []
     extent = float(np.ptp(np.concatenate(lines), axis=0).max()) or 1.0
-    ends = _meet(np.array([[line[0], line[-1]] for line in lines]), extent)
-    kept = _once(lines, ends, extent)
+    ends = _numbers_of_ends(np.array([[line[0], line[-1]] for line in lines]), extent)
+    kept = _unrepeated(lines, ends, extent)
     lines, ends = [lines[index] for index in kept], ends[kept]
     dead = _dead_ends(ends)
     walks = _walks(ends, np.flatnonzero(~dead)) + _walks(ends, np.flatnonzero(dead))
     joined = []
     for walk in walks:
-        line, start, end = _line(lines, ends, walk)
+        line, start, end = _points_along(lines, ends, walk)
         if start != end and not dead[walk[0][0]]:
-            raise OutlineError(
-                f"{name}: lines branch at {place(line[0])} and {place(line[-1])}: leave only the outline and its holes"
-            )
+            first, last = point_text(line[0]), point_text(line[-1])
+            raise OutlineError(f"{name}: lines branch at {first} and {last}: leave only the outline and its holes")
         joined.append((line, start == end))
     return joined
 
 
-def _meet(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
+def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
     """A number for each end of each line, the same for those that meet."""
     flat = points.reshape(-1, 2)
     cells = np.concatenate(
@@ -204,7 +203,7 @@ def _meet(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
     return numbers.reshape(-1, 2)
 
 
-def _once(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray, " kept"]:
+def _unrepeated(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarray, " kept"]:
     """The lines that are no repetition of another and have a length."""
     seen, kept = set(), []
     for index, (line, (start, end)) in enumerate(zip(lines, ends.tolist(), strict=True)):
@@ -223,8 +222,8 @@ def _middle(line: Ring) -> Float[np.ndarray, " 2"]:
 
 
 def _dead_ends(ends: _Ends) -> np.ndarray:
-    """Which lines are on no way from a place back to itself: (lines,) of bool."""
-    at = _at(ends, np.arange(len(ends)))
+    """Find the lines that are on no way from a place back to itself: (lines,) of bool."""
+    at = _lines_at(ends, np.arange(len(ends)))
     degree = {here: len(lines) for here, lines in at.items()}
     dead = np.zeros(len(ends), dtype=bool)
     todo = [here for here, count in degree.items() if count == 1]
@@ -241,7 +240,7 @@ def _dead_ends(ends: _Ends) -> np.ndarray:
     return dead
 
 
-def _at(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> dict[int, list[int]]:
+def _lines_at(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> dict[int, list[int]]:
     """The chosen lines at each place, one that returns to it twice."""
     at: dict[int, list[int]] = {}
     for line in chosen.tolist():
@@ -252,7 +251,7 @@ def _at(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> dict[int, list[int]]:
 
 def _walks(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> list[list[tuple[int, bool]]]:
     """Ways through places where two of the chosen lines meet, each as lines and whether they are walked forward."""
-    at = _at(ends, chosen)
+    at = _lines_at(ends, chosen)
     used: set[int] = set()
     walks = []
     for start in sorted(at, key=lambda here: len(at[here]) == 2):  # branches and free ends first
@@ -270,7 +269,7 @@ def _walks(ends: _Ends, chosen: Int[np.ndarray, " _"]) -> list[list[tuple[int, b
     return walks
 
 
-def _line(lines: list[Ring], ends: _Ends, walk: list[tuple[int, bool]]) -> tuple[Ring, int, int]:
+def _points_along(lines: list[Ring], ends: _Ends, walk: list[tuple[int, bool]]) -> tuple[Ring, int, int]:
     """The points along a walk and the numbers of its two ends."""
     pieces = [lines[line] if forward else lines[line][::-1] for line, forward in walk]
     (first, ahead), (last, onward) = walk[0], walk[-1]

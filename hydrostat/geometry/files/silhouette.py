@@ -108,7 +108,7 @@ def _mean(sums: Vector, counts: np.ndarray) -> Vector:
 
 
 def _shaded(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np.ndarray, "rows columns"]:
-    """Which pixels are the ground times a number below one."""
+    """Find the pixels that are the ground times a number below one."""
     share = np.einsum("rcd,rcd->rc", pixels, ground) / np.maximum(np.einsum("rcd,rcd->rc", ground, ground), 1.0)
     off = np.linalg.norm(pixels - share[..., None] * ground, axis=2)
     return (off < tolerance) & (share < 1.0) & (share > _DARKEST_SHADOW)
@@ -215,7 +215,7 @@ def _parts(mask: _Mask, *, corners: bool) -> Int[np.ndarray, "rows columns"]:
 
 
 def _depth(mask: _Mask) -> Field:
-    """How far each pixel of a mask lies from what is outside it [pixels]."""
+    """Distance [pixels] of each pixel of a mask from what is outside it."""
     return np.asarray(distance_transform_edt(mask), dtype=float)
 
 
@@ -231,7 +231,7 @@ def _patches(mask: _Mask) -> tuple[np.ndarray, list[PixelPatch]]:
 
 
 def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
-    """Whether a body is drawn with lines, most of its inside left as ground."""
+    """Tell whether a body is drawn with lines, most of its inside left as ground."""
     rows, columns = np.nonzero(body)
     extent = max(np.ptp(rows), np.ptp(columns)) + 1.0
     box = slice(rows.min(), rows.max() + 1), slice(columns.min(), columns.max() + 1)
@@ -249,7 +249,7 @@ def _is_lines(drawn: _Mask, body: _Mask, name: str) -> bool:
 
 
 def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[PixelPatch, ...]]:
-    """Which of the gaps in a body are holes in it, and those that are ground but too small, or hold something."""
+    """Find the gaps in a body that are holes in it, and those that are ground but too small, or hold something."""
     labels = _parts(gaps, corners=False)
     areas = np.bincount(labels.ravel())
     bare = np.bincount(labels.ravel(), weights=ground.ravel()) > 0.5 * areas  # else a pale part of the body
@@ -265,7 +265,7 @@ def _holes(gaps: _Mask, body: _Mask, ground: _Mask) -> tuple[_Mask, tuple[PixelP
 
 
 def _specks(mask: _Mask, body: int, name: str) -> tuple[PixelPatch, ...]:
-    """What lies beside the body, if all of it is small."""
+    """Parts beside the body; refused unless all are small."""
     _, patches = _patches(mask)
     second = max(patches, key=lambda patch: patch.area, default=None)
     if second is not None and second.area > _SECOND * body:
@@ -285,7 +285,7 @@ def _signed(field: Field, main: _Mask, mask: _Mask) -> Field:
 
 
 def _is_stepped(field: Field, level: float, main: _Mask) -> bool:
-    """Whether the border of the body runs along pixels, with no half-tones to tell where within them."""
+    """Tell whether the border of the body runs along pixels, with no half-tones to tell where within them."""
     values = field[main & (_depth(main) < 3.0)]
     top = float(np.quantile(values, 0.9))
     return float((values < level + 0.5 * (top - level)).mean()) < 0.05

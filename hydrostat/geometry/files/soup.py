@@ -73,7 +73,7 @@ def check_text(content: bytes, name: str) -> None:
         )
 
 
-def lines(content: bytes, name: str) -> Iterator[tuple[int, bytes]]:
+def text_lines(content: bytes, name: str) -> Iterator[tuple[int, bytes]]:
     """Lines of a text file with their numbers, one after the other, so that no list of all is ever made.
 
     Raises:
@@ -116,7 +116,7 @@ def fans(
 
 
 def _folds(quads: Float[np.ndarray, "quads 4 3"]) -> np.ndarray:
-    """Whether the two halves of a quad, cut from its first corner to its third, look different ways."""
+    """Tell whether the two halves of a quad, cut from its first corner to its third, look different ways."""
     sides = quads[:, 1:] - quads[:, :1]
     with np.errstate(all="ignore"):
         return np.einsum("qd,qd->q", np.cross(sides[:, 0], sides[:, 1]), np.cross(sides[:, 1], sides[:, 2])) < 0.0

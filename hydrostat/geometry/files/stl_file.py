@@ -17,7 +17,7 @@ _PIECE = 4_000_000  # bytes of text taken apart at once
 
 
 def read_stl(content: bytes, name: str) -> Soup:
-    """What an STL file says; corners in the very same place become one vertex. The normals in it are not used.
+    """Read the triangles of an STL file; corners in the very same place become one vertex, its normals are not used.
 
     Raises:
         SurfaceError: it is cut short, its count does not fit its size, or a number is none.
@@ -27,13 +27,13 @@ def read_stl(content: bytes, name: str) -> Soup:
 
 
 def is_stl_text(content: bytes) -> bool:
-    """Whether an STL file is text; some binary ones begin with the word "solid" too."""
+    """Tell whether an STL file is text; some binary ones begin with the word "solid" too."""
     head = content[:2000].lstrip().lower()
     return head.startswith(b"solid") and not fits_binary_stl(content) and b"\0" not in head
 
 
 def fits_binary_stl(content: bytes) -> bool:
-    """Whether the count in the head fits the size of the file."""
+    """Tell whether the count in the head fits the size of the file."""
     count = int.from_bytes(content[_HEADER - 4 : _HEADER], "little")
     return len(content) > _HEADER and len(content) == _HEADER + _RECORD.itemsize * count
 

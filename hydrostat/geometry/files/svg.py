@@ -12,7 +12,7 @@ import numpy as np
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.page import Drawing, Page, page_about
-from hydrostat.geometry.files.rings import CHORD_ERROR, MOST_POINTS, body_and_holes, closed_rings, placed
+from hydrostat.geometry.files.rings import CHORD_ERROR, MOST_POINTS, body_and_holes, closed_rings, outline_on_page
 from hydrostat.geometry.outline import Ring
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ def _open(content: bytes, name: str) -> _SvgDocument:
     root = ElementTree.fromstring(content)
     if _tag(root) != "svg":
         raise OutlineError(f"{name}: not an SVG drawing, its first element is <{_tag(root)}>: save it as SVG")
-    _strip(root)
-    _count(root, name)
+    _strip_others(root)
+    _check_points(root, name)
     sheet = _sheet(root)
     unit = _normalise(root)
     return _SvgDocument(ElementTree.tostring(root), unit, sheet)
@@ -92,16 +92,16 @@ def _tag(element: ElementTree.Element) -> str:
     return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
 
 
-def _strip(element: ElementTree.Element) -> None:
+def _strip_others(element: ElementTree.Element) -> None:
     """Remove what is no shape, everywhere below an element."""
     for child in list(element):
         if _tag(child) in _NO_SHAPES:
             element.remove(child)
         else:
-            _strip(child)
+            _strip_others(child)
 
 
-def _count(root: ElementTree.Element, name: str) -> None:
+def _check_points(root: ElementTree.Element, name: str) -> None:
     """Refuse drawings with too many points, or that repeat themselves without end by way of `use`."""
     targets = {element.attrib["id"]: element for element in root.iter() if "id" in element.attrib}
     points = 0
@@ -184,19 +184,19 @@ def read_svg(content: bytes, name: str, size: float | None, page: Page | None) -
     """
     document = _open(content, name)
     across, down = document.unit or (1.0, 1.0)
-    kind = _kind(document)
+    kind = _kind_of_page(document)
     if page is not None:
         page.check(kind, name)
     elif size is None and document.unit is None:
         raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): give its size")
-    rings, notes = closed_rings(_lines(document, name), name)
+    rings, notes = closed_rings(_subpaths(document, name), name)
     body, holes = body_and_holes(rings, name)
     page = page or page_about(body, kind, (across, -down), size)
-    return Drawing(placed(body, holes, page, name), page, notes)
+    return Drawing(outline_on_page(body, holes, page, name), page, notes)
 
 
-def _kind(document: _SvgDocument) -> str:
-    """What two drawings must have in common, in words: some programs count from a corner of the page."""
+def _kind_of_page(document: _SvgDocument) -> str:
+    """Unit and page in words, which two drawings must have in common: some programs count from a corner of the page."""
     kind = "an SVG drawing without a physical size"
     if document.unit is not None:
         across, down = document.unit
@@ -207,7 +207,7 @@ def _kind(document: _SvgDocument) -> str:
     return f"{kind} on a page of {width:.6g} x {height:.6g} units from ({left:.6g}, {top:.6g})"
 
 
-def _lines(document: _SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
+def _subpaths(document: _SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
     """Every visible subpath of a drawing as points in its own units, and whether it closes itself."""
     from svgelements import SVG, Path, Shape
 
@@ -247,7 +247,7 @@ def _flatten(path: "Path") -> Ring:
 
 
 def _chords(segment: Any, tolerance: float) -> int:
-    """How many chords keep within `tolerance` of a bend: n^2 = max|second derivative| / (8 tolerance)."""
+    """Number of chords that keep within `tolerance` of a bend: n^2 = max|second derivative| / (8 tolerance)."""
     if type(segment).__name__ == "Arc":
         bend = max(segment.rx, segment.ry) * segment.sweep**2
     elif type(segment).__name__ == "QuadraticBezier":

@@ -36,7 +36,7 @@ class _Object:
 
 @dataclass
 class _Model:
-    """What all the XML of an archive says."""
+    """Objects of an archive, as all its XML declares them."""
 
     unit: str = "millimeter"
     objects: dict[_Key, _Object] = field(default_factory=dict)

@@ -19,7 +19,7 @@ _KINDS = {
 
 
 def read_vtk(content: bytes, name: str) -> Cells:
-    """What a legacy VTK file says of points, tetrahedra and triangles; all data on them is passed over.
+    """Read points, tetrahedra and triangles of a legacy VTK file; all data on them is passed over.
 
     Raises:
         InputError: it is no unstructured grid, or damaged.
@@ -106,7 +106,7 @@ def _kind(cursor: Cursor, word: bytes) -> str:
 
 
 def _cells(cursor: Cursor, words: list[bytes]) -> tuple[np.ndarray, np.ndarray]:
-    """Where the corners of each cell begin, and all corners one after the other."""
+    """Read where the corners of each cell begin, and all corners one after the other."""
     count, size = _count(cursor, words, 1), _count(cursor, words, 2)
     place = cursor.at
     line = (cursor.line() or b"").split()

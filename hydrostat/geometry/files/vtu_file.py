@@ -39,14 +39,14 @@ class _Array:
 
 @dataclass
 class _GridText:
-    """What the XML says: of the whole file, and the arrays of each piece by name."""
+    """Attributes of the whole file as its XML has them, and the arrays of each piece by name."""
 
     attributes: dict[str, str] = field(default_factory=dict)
     pieces: list[dict[str, _Array]] = field(default_factory=list)
 
 
 def read_vtu(content: bytes, name: str) -> Cells:
-    """What a VTU file says of points, tetrahedra and triangles; all data on them is passed over.
+    """Read points, tetrahedra and triangles of a VTU file; all data on them is passed over.
 
     Raises:
         InputError: it is no unstructured grid, packed in an unknown way, too large when unpacked, or damaged.
@@ -120,7 +120,7 @@ def _parse(content: bytes, name: str) -> _GridText:
 
 
 class _Reader:
-    """How the arrays of a file are written."""
+    """Reader of the arrays of a file, which knows how they are written."""
 
     def __init__(self, attributes: dict[str, str], appended: bytes, encoding: str, name: str) -> None:
         self.name, self.appended, self.encoding = name, appended, encoding

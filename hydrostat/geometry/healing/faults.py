@@ -1,4 +1,4 @@
-"""What is wrong with a surface: where it runs through itself, and all that was found, in words."""
+"""Faults of a surface: where it runs through itself, and all that was found, in words."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -73,7 +73,7 @@ def _candidates(surface: Surface) -> Iterator[Int[np.ndarray, "pairs 2"]]:
 
 
 def _apart_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
-    """Whether triangles without a common corner cross."""
+    """Tell whether triangles without a common corner cross."""
     cross = np.zeros(len(one), dtype=bool)
     one_heights, two_heights = _heights(one, two), _heights(two, one)
     maybe = np.flatnonzero(_straddles(one_heights, near) & _straddles(two_heights, near))
@@ -86,7 +86,7 @@ def _apart_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, 
 
 
 def _corner_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
-    """Whether triangles with a common first corner cross: the far side of one through the other."""
+    """Tell whether triangles with a common first corner cross: the far side of one through the other."""
     cross = np.zeros(len(one), dtype=bool)
     for corners, others in ((one, two), (two, one)):
         heights = _heights(corners, others)[:, 1:]
@@ -96,7 +96,7 @@ def _corner_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray,
 
 
 def _side_cross(one: _Corners, two: _Corners, near: float) -> Bool[np.ndarray, " pairs"]:
-    """Whether triangles with a common side, opposite their first corners, are folded flat on each other."""
+    """Tell whether triangles with a common side, opposite their first corners, are folded flat on each other."""
     side = one[:, 2] - one[:, 1]
     heights = [np.cross(side, corners[:, 0] - one[:, 1]) for corners in (one, two)]
     with np.errstate(all="ignore"):
@@ -115,14 +115,14 @@ def _heights(corners: _Corners, others: _Corners) -> Float[np.ndarray, "pairs 3"
 
 
 def _straddles(heights: Float[np.ndarray, "pairs some"], near: float) -> Bool[np.ndarray, " pairs"]:
-    """Whether some corners are above and some below."""
+    """Tell whether some corners are above and some below."""
     return (heights.max(axis=1, initial=-np.inf) > near) & (heights.min(axis=1, initial=np.inf) < -near)
 
 
 def _runs_through(
     ends: Float[np.ndarray, "pairs 2 3"], heights: Float[np.ndarray, "pairs 2"], corners: _Corners, near: float
 ) -> Bool[np.ndarray, " pairs"]:
-    """Whether the way between two ends, at their heights above a triangle's plane, runs through the triangle."""
+    """Tell whether the way between two ends, at their heights above a triangle's plane, runs through the triangle."""
     way = ends[:, 1] - ends[:, 0]
     ring = corners - ends[:, :1]
     turns = [np.einsum("pd,pd->p", way, np.cross(ring[:, k], ring[:, (k + 1) % 3])) for k in range(3)]
@@ -181,13 +181,13 @@ def pieces_of(shells: Shells) -> tuple[Piece, ...]:
 
 
 def sliver_count(surface: Surface) -> int:
-    """How many triangles are slivers."""
+    """Number of triangles that are slivers."""
     corners = surface.vertices[surface.triangles]
     longest = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
     return int((np.linalg.norm(surface.crosses, axis=1) < SLIVER * longest**2).sum())
 
 
-def told(
+def describe_faults(
     welded: Welded,
     surface: Surface,
     holes: Holes,
@@ -196,7 +196,7 @@ def told(
     shells: Shells,
     slivers: int,
 ) -> tuple[str, ...]:
-    """What was found in a surface, a line each.
+    """Describe what was found in a surface, a line each.
 
     Args:
         welded: how its vertices and triangles were joined.

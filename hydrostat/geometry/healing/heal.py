@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.healing.faults import Piece, crossing_pairs, pieces_of, sliver_count, told
-from hydrostat.geometry.healing.mend import Holes, Welded, holes_of, members, one_way, sides_of, weld, with_closed
+from hydrostat.geometry.healing.faults import Piece, crossing_pairs, describe_faults, pieces_of, sliver_count
+from hydrostat.geometry.healing.mend import Holes, Welded, holes_of, members_of, one_way, sides_of, weld, with_closed
 from hydrostat.geometry.healing.remake import Remade, deviation, remake
 from hydrostat.geometry.healing.shells import Role, Shells, shells_of
 from hydrostat.geometry.surface import Surface
@@ -91,7 +91,7 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     triangles, flipped = one_way(welded.surface.triangles)
     turned = Surface(welded.surface.vertices, triangles)
     holes = holes_of(turned)
-    small = _small(turned, holes, resolution)
+    small = _small_holes(turned, holes, resolution)
     filled = with_closed(turned, holes, small) if small.any() else turned
     flipped = np.concatenate([flipped, np.zeros(len(filled.triangles) - len(flipped), dtype=bool)])
     crossing = crossing_pairs(filled)
@@ -100,8 +100,8 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     keep = shells.of_role(Role.BODY, Role.CAVITY)[shells.label]
     kept = shells.surface.part(keep)
     removed = pieces_of(shells)
-    found = told(welded, turned, holes, int(flipped.sum()), crossing, shells, sliver_count(filled))
-    done = _done(welded, int(flipped.sum()), shells, int(small.sum()))
+    found = describe_faults(welded, turned, holes, int(flipped.sum()), crossing, shells, sliver_count(filled))
+    done = _describe_repairs(welded, int(flipped.sum()), shells, int(small.sum()))
     if _is_closed(kept) and not keep[crossing].any() and shells.of_role(Role.BODY).sum() == 1:
         patched = np.linalg.norm(filled.crosses, axis=1)[len(triangles) :].sum() / 2 / filled.area
         clean = not (done or removed)
@@ -119,7 +119,7 @@ def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
         )
 
 
-def _small(surface: Surface, holes: Holes, resolution: float) -> Bool[np.ndarray, " holes"]:
+def _small_holes(surface: Surface, holes: Holes, resolution: float) -> Bool[np.ndarray, " holes"]:
     """Holes that are closed by fans: simple, short, and small beside the part that they are in."""
     sides = sides_of(surface.triangles)
     label = sides.groups(sides.counts > 1)
@@ -132,7 +132,7 @@ def _small(surface: Surface, holes: Holes, resolution: float) -> Bool[np.ndarray
 
 
 def _is_closed(surface: Surface) -> bool:
-    """Whether every edge has two triangles that run along it in opposite ways, and every vertex one fan of them."""
+    """Tell whether every edge has two triangles that run along it in opposite ways, every vertex one fan of them."""
     import igl
 
     sides = sides_of(surface.triangles)
@@ -141,8 +141,8 @@ def _is_closed(surface: Surface) -> bool:
     )
 
 
-def _done(welded: Welded, flipped: int, shells: Shells, closed: int) -> tuple[str, ...]:
-    """What was done so far, in words."""
+def _describe_repairs(welded: Welded, flipped: int, shells: Shells, closed: int) -> tuple[str, ...]:
+    """Describe what was done so far, a line each."""
     counts = (
         (welded.flat + welded.repeated + welded.walls, "triangle", "without area or that stood there twice left out"),
         (flipped, "flipped triangle", "turned"),
@@ -168,7 +168,7 @@ def _made_anew(
             f"the surface has holes so large that {off.patched:.0%} of the body's surface would be guessed, at most "
             f"{_MOST_PATCHED:.0%} are: scan what is missing, or close the holes in the program it comes from"
         )
-    lost = _lost(kept, off.lost, made)
+    lost = _lost_pieces(kept, off.lost, made)
     done = (
         *done,
         f"made anew on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it",
@@ -189,8 +189,8 @@ def _made_anew(
     )
 
 
-def _lost(kept: Surface, lost: Int[np.ndarray, " lost"], made: Remade) -> tuple[Piece, ...]:
-    """What was too thin for the grid, a piece each; refused if it is much."""
+def _lost_pieces(kept: Surface, lost: Int[np.ndarray, " lost"], made: Remade) -> tuple[Piece, ...]:
+    """Pieces that were too thin for the grid; refused if they are much."""
     if not len(lost):
         return ()
     areas = np.linalg.norm(kept.crosses, axis=1)
@@ -204,4 +204,4 @@ def _lost(kept: Surface, lost: Int[np.ndarray, " lost"], made: Remade) -> tuple[
     sides = sides_of(kept.triangles[lost])
     label = sides.groups(sides.counts > 1)
     why = "open, or too thin for the grid it was healed with"
-    return tuple(Piece.of(kept, lost[numbers], why) for numbers in members(label))
+    return tuple(Piece.of(kept, lost[numbers], why) for numbers in members_of(label))

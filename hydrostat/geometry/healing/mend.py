@@ -27,12 +27,12 @@ class Sides:
 
     @cached_property
     def counts(self) -> Int[np.ndarray, " edges"]:
-        """How many triangles each edge has."""
+        """Number of triangles at each edge."""
         return np.bincount(self.of.ravel(), minlength=len(self.ends))
 
     @cached_property
     def turns(self) -> Int[np.ndarray, " edges"]:
-        """How often an edge is run along from its lower to its higher end, less how often the other way."""
+        """Times an edge is run along from its lower to its higher end, less the times the other way."""
         ways = np.where(self.triangles < np.roll(self.triangles, -1, axis=1), 1, -1)
         return np.bincount(self.of.ravel(), ways.ravel(), minlength=len(self.ends)).astype(np.int64)
 
@@ -59,8 +59,8 @@ class Sides:
         return np.unique(labels, return_inverse=True)[1].astype(np.int64)
 
 
-def members(label: Int[np.ndarray, " some"]) -> list[Int[np.ndarray, " _"]]:
-    """Which have each label, for labels from 0 on that all occur."""
+def members_of(label: Int[np.ndarray, " some"]) -> list[Int[np.ndarray, " _"]]:
+    """Numbers of what has each label, for labels from 0 on that all occur."""
     return np.split(np.argsort(label, kind="stable"), np.cumsum(np.bincount(label))[:-1])
 
 
@@ -102,12 +102,12 @@ def weld(surface: Surface) -> Welded:
         SurfaceError: no triangle is left.
     """
     used = np.unique(surface.triangles)
-    place = _merged(surface, used)
+    place = _first_in_place(surface, used)
     triangles = place[surface.triangles]
     one, two, three = triangles.T
     whole = (one != two) & (two != three) & (three != one)
     triangles = triangles[whole]
-    keep, walls = _kept(triangles)
+    keep, walls = _without_copies(triangles)
     if not keep.any():
         raise SurfaceError("the surface encloses nothing: none of its triangles has an area; export it again")
     left, triangles = np.unique(triangles[keep], return_inverse=True)
@@ -120,8 +120,8 @@ def weld(surface: Surface) -> Welded:
     )
 
 
-def _merged(surface: Surface, used: Int[np.ndarray, " used"]) -> Int[np.ndarray, " vertices"]:
-    """For each vertex the first of those in its place."""
+def _first_in_place(surface: Surface, used: Int[np.ndarray, " used"]) -> Int[np.ndarray, " vertices"]:
+    """Find for each vertex the first of those in its place."""
     places = surface.vertices[used] - surface.box[0]
     cell = 4 * NEAR * surface.size
     joins = [
@@ -140,8 +140,8 @@ def _same_cell(places: Float[np.ndarray, "points 3"]) -> Int[np.ndarray, "2 poin
     return np.stack([np.arange(len(places)), first[which.ravel()]])
 
 
-def _kept(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.ndarray, " triangles"], int]:
-    """Which triangles stay of those with the same three vertices, and how many go because they are walls.
+def _without_copies(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.ndarray, " triangles"], int]:
+    """Choose the triangles that stay of those with the same three vertices; count those that go as walls.
 
     Copies that look the same way leave one. A patch of copies that look both ways is a wall between two rooms where
     it meets more than one other triangle at an edge, and goes; else the surface was saved with both its sides, and

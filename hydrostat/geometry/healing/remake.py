@@ -9,7 +9,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.contour import MOST_GRID_POINTS, contour
 from hydrostat.geometry.healing.faults import Piece
-from hydrostat.geometry.healing.mend import members, sides_of
+from hydrostat.geometry.healing.mend import members_of, sides_of
 from hydrostat.geometry.surface import Solid, Surface, spread_points
 
 _ACCURACY = 1e-3  # of the spacing: how near crossings are to where they should be
@@ -47,7 +47,7 @@ def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolu
         SurfaceError: there is no such region, or it is several bodies.
     """
     field = WindingField(surface)
-    spacing = _spacing(surface, resolution)
+    spacing = _allowed_spacing(surface, resolution)
     box = surface.box + 2.0 * spacing * np.array([[-1.0], [1.0]])
     try:
         made = contour(field, box, spacing, settled=field.settled, accuracy=_ACCURACY)
@@ -75,7 +75,7 @@ class WindingField:
         return 0.5 - self.solid.winding(points)
 
     def settled(self, points: Points, reach: Vector) -> Bool[np.ndarray, " points"]:
-        """Whether the sign is the same all within a reach [m] of points: where no triangle is, and no rim is near.
+        """Tell whether the sign is the same all within a reach [m] of points: where no triangle is, and no rim is near.
 
         Away from the triangles the winding number has the gradient of the magnetic potential of a current along
         their open edges, by the law of Biot and Savart at most (length of the edges) / (4 pi distance^2).
@@ -91,7 +91,7 @@ class WindingField:
         return free & (rim > 0.0) & (np.abs(self(points)) > change + _SUM_ERROR)
 
 
-def _spacing(surface: Surface, resolution: float) -> float:
+def _allowed_spacing(surface: Surface, resolution: float) -> float:
     """The resolution, or the least spacing above it whose grid has not too many points."""
     extent = np.ptp(surface.box, axis=0)
     spacing = resolution
@@ -106,14 +106,14 @@ def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacin
     label = sides.groups(sides.counts > 1)
     inside = made.vertices[made.triangles[:, 0]] - made.box.mean(axis=0)
     volumes = np.bincount(label, np.einsum("td,td->t", inside, made.crosses) / 6)
-    numbers = members(label)
+    numbers = members_of(label)
     body = int(np.argmax(volumes))
     keep, removed, filled = np.zeros(len(volumes), dtype=bool), [], []
     keep[body] = True
     for part in np.flatnonzero(~keep).tolist():
         piece = made.part(numbers[part])
         if volumes[part] > _SMALL * volumes[body]:
-            raise SurfaceError(_several(made.part(numbers[body]), piece))
+            raise SurfaceError(_describe_second_body(made.part(numbers[body]), piece))
         if volumes[part] > 0.0:
             removed.append(Piece.of_box(piece.box, len(piece.triangles), "loose speck"))
         elif (np.abs(cavities - piece.box).max(axis=(1, 2)) < 2.0 * spacing).any():
@@ -124,8 +124,8 @@ def _one_body(made: Surface, cavities: Float[np.ndarray, "cavities 2 3"], spacin
     return Remade(surface, spacing, tuple(removed), tuple(piece.text for piece in filled))
 
 
-def _several(body: Surface, other: Surface) -> str:
-    """That there is a second body, and where."""
+def _describe_second_body(body: Surface, other: Surface) -> str:
+    """Describe the second body beside a first, and where they are."""
     places = [", ".join(f"{round(1e3 * x, 2) + 0.0:g}" for x in surface.box.mean(axis=0)) for surface in (body, other)]
     return (
         f"the surface is at least two bodies apart from each other, {1e3 * body.size:.3g} mm in size at "
@@ -151,7 +151,7 @@ class Deviation:
 
 
 def deviation(before: Surface, after: Surface, near: float) -> Deviation:
-    """How far a closed surface is from what it was made of.
+    """Measure how far a closed surface is from what it was made of.
 
     Args:
         before: as it was, with holes and overlaps.

@@ -17,7 +17,7 @@ _MOST_CONTAINERS = 100
 
 
 class Role(Enum):
-    """What a part is to the body; the value says it in a report."""
+    """Meaning of a part for the body; the value says it in a report."""
 
     BODY = "body"
     CAVITY = "cavity"
@@ -48,7 +48,7 @@ class Shells:
     roles: tuple[Role, ...]
 
     def of_role(self, *roles: Role) -> Bool[np.ndarray, " parts"]:
-        """Which parts have one of some roles."""
+        """Choose the parts that have one of some roles: (parts,) of bool."""
         return np.array([role in roles for role in self.roles])
 
 
@@ -71,8 +71,8 @@ def shells_of(
     triangles = surface.triangles
     sides = sides_of(triangles)
     label = sides.groups(sides.counts > 1)
-    boxes = _boxes(surface.vertices, triangles, label)
-    whole = _whole(sides, label)
+    boxes = _boxes_of_parts(surface.vertices, triangles, label)
+    whole = _whole_parts(sides, label)
     volume = _volumes(surface.vertices, sides, label)
     largest = int(np.argmax(np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)))
     clash = label[crossing]
@@ -89,7 +89,7 @@ def shells_of(
     return Shells(turned_surface, label, turned, whole, boxes, np.where(turned, -volume, volume), tuple(roles))
 
 
-def _boxes(vertices: np.ndarray, triangles: np.ndarray, label: np.ndarray) -> Float[np.ndarray, "parts 2 3"]:
+def _boxes_of_parts(vertices: np.ndarray, triangles: np.ndarray, label: np.ndarray) -> Float[np.ndarray, "parts 2 3"]:
     """Lowest and highest coordinates of each part."""
     order = np.argsort(label, kind="stable")
     starts = np.flatnonzero(np.diff(label[order], prepend=-1))
@@ -98,7 +98,7 @@ def _boxes(vertices: np.ndarray, triangles: np.ndarray, label: np.ndarray) -> Fl
     return np.stack([low, np.maximum.reduceat(corners.max(axis=1), starts)], axis=1)
 
 
-def _whole(sides: Sides, label: np.ndarray) -> Bool[np.ndarray, " parts"]:
+def _whole_parts(sides: Sides, label: np.ndarray) -> Bool[np.ndarray, " parts"]:
     """Parts of which every edge has two triangles that run along it in opposite ways."""
     bad = ((sides.counts != 2) | sides.twisted)[sides.of].any(axis=1)
     return np.bincount(label, bad) == 0
@@ -128,7 +128,7 @@ def _closed_roles(
 ) -> tuple[list[Role], Bool[np.ndarray, " parts"]]:
     """Roles of closed parts, those that cross others being body, and which parts are to be turned."""
     sign = np.where(volume < 0.0, -1, 1)
-    around = _around(surface, label, boxes, whole, whole & ~meets)
+    around = _containers_of(surface, label, boxes, whole, whole & ~meets)
     outer = np.array([whole[part] and not around[part] for part in range(len(boxes))])
     # a part within others is judged as it stands in the file, thus turned along with what is around it
     turned = outer & (sign < 0)
@@ -149,10 +149,10 @@ def _closed_roles(
     return roles, turned
 
 
-def _around(
+def _containers_of(
     surface: Surface, label: np.ndarray, boxes: np.ndarray, whole: np.ndarray, judged: np.ndarray
 ) -> list[list[int]]:
-    """For each part that is judged the closed ones that it lies in."""
+    """Find for each part that is judged the closed ones that it lies in."""
     import igl
 
     found: list[list[int]] = [[] for _ in boxes]

@@ -23,7 +23,7 @@ _REGULAR = (np.sqrt(2) / 12) ** (2 / 3) / 6
 
 
 @dataclass(frozen=True)
-class Stage:
+class ImproveStage:
     """Rounds of improvement under the same weights.
 
     Attributes:
@@ -39,7 +39,7 @@ class Stage:
     pull: float
 
 
-def improve(mesh: Mesh, solid: Solid, *, element_size: float, stages: tuple[Stage, ...]) -> Mesh:
+def improve(mesh: Mesh, solid: Solid, *, element_size: float, stages: tuple[ImproveStage, ...]) -> Mesh:
     """The mesh with its nodes moved; no element is ever turned over.
 
     Least of the sum, over tetrahedra, of shape^power and, over points of the outer faces, of their squared distance
@@ -63,7 +63,7 @@ def improve(mesh: Mesh, solid: Solid, *, element_size: float, stages: tuple[Stag
 
 
 def _stars(simplices: Elements, count: int) -> tuple[Int[np.ndarray, " _"], Int[np.ndarray, " _"]]:
-    """Where the list of each node begins, and the lists: corners (corner count x simplex + corner) at the node."""
+    """Begin of the list of each node, and the lists: corners (corner count x simplex + corner) at the node."""
     start = np.concatenate([[0], np.cumsum(np.bincount(simplices.ravel(), minlength=count))])
     return start, np.argsort(simplices.ravel(), kind="stable")
 
@@ -124,7 +124,7 @@ def _shape(x, elements, nodes, corner, others):
 @njit(**INNER)
 @no_type_check
 def _energy(x, node, nodes, elements, start, star, facets, begin, ring, normals, offsets, samples, power, pull, others):
-    """What the tetrahedra and outer faces at a node sum up to when it is at x."""
+    """Sum over the tetrahedra and outer faces at a node when it is at x."""
     total = 0.0
     for place in range(start[node], start[node + 1]):
         value = _shape(x, elements, nodes, star[place], others)[0]

@@ -77,7 +77,7 @@ def _parted(nodes: Nodes, elements: Elements) -> Mesh:
 
 
 def _crowded(mesh: Mesh) -> np.ndarray:
-    """Which elements to leave out for edges of the boundary between more than two facets: the smaller groups there."""
+    """Choose elements to leave out for edges of the boundary between more than two facets: the smaller groups there."""
     sides = np.sort(
         np.concatenate([mesh.boundary[:, [0, 1]], mesh.boundary[:, [1, 2]], mesh.boundary[:, [2, 0]]]), axis=1
     )
@@ -93,7 +93,7 @@ def _crowded(mesh: Mesh) -> np.ndarray:
 
 
 def _pinched(mesh: Mesh) -> np.ndarray:
-    """Which elements to leave out for nodes of the boundary with several fans of facets: those at the smaller fans."""
+    """Choose elements to leave out for nodes of the boundary with several fans of facets: those at the smaller fans."""
     fan = joined_groups(_joins(mesh.boundary), mesh.boundary.size)
     _, first, sizes = np.unique(fan, return_index=True, return_counts=True)
     owner = mesh.boundary.ravel()[first]

@@ -20,7 +20,7 @@ _DEEP = 0.1
 
 
 def stuff(solid: Solid, nodes: Nodes, elements: Elements, distances: Vector) -> tuple[Places, Tetrahedra]:
-    """What a solid takes of a lattice, whose nodes have these distances from it: nodes [m] and elements."""
+    """Cut a solid out of a lattice whose nodes have these distances from it: nodes [m] and elements."""
     return _cut(solid, *_snapped(solid, nodes, elements, distances))
 
 
@@ -34,7 +34,7 @@ def _snapped(
     edges, _ = edges_of(elements)
     sides = np.where(distances < 0, -1, 1)
     edges = edges[sides[edges[:, 0]] != sides[edges[:, 1]]]
-    shares = _crossings(solid, nodes[edges], distances[edges])
+    shares = _edge_crossings(solid, nodes[edges], distances[edges])
     ends = nodes[edges]
     cuts = ends[:, 0] + shares[:, None] * (ends[:, 1] - ends[:, 0])
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
@@ -51,7 +51,7 @@ def _snapped(
     return nodes, elements, sides, edges[left], cuts[left]
 
 
-def _crossings(
+def _edge_crossings(
     solid: Solid, ends: Float[np.ndarray, "edges 2 3"], distances: Float[np.ndarray, "edges 2"]
 ) -> Float[np.ndarray, " edges"]:
     """Share of each edge where it passes the surface, by the Illinois method, to a thousandth."""
@@ -95,7 +95,7 @@ def _cut(
     lower, upper, top = cut(a, d), cut(b, d), cut(c, d)
     parts += [np.column_stack(part) for part in ((a, b, c, top), (a, b, upper, top), (a, lower, upper, top))]
     filled, places = np.concatenate(parts), np.concatenate([nodes, cuts])
-    filled = filled[_different(filled)]
+    filled = filled[_four_corners(filled)]
     return places, turned_outward(places, filled)
 
 
@@ -109,13 +109,13 @@ def _wedge(nodes: Nodes, a: Numbers, ac: Numbers, ad: Numbers, b: Numbers, bc: N
 
 
 def _deep(solid: Solid, corners: Float[np.ndarray, "elements 4 3"]) -> Bool[np.ndarray, " elements"]:
-    """Which tetrahedra that have all corners on the surface are no slices of it: their middles lie well inside."""
+    """Find the tetrahedra with all corners on the surface that are no slices of it: their middles lie well inside."""
     lengths = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
     return solid.distances(corners.mean(axis=1)) < -_DEEP * lengths
 
 
-def _different(elements: Elements) -> Bool[np.ndarray, " elements"]:
-    """Which tetrahedra have four different corners."""
+def _four_corners(elements: Elements) -> Bool[np.ndarray, " elements"]:
+    """Find the tetrahedra that have four different corners."""
     ordered = np.sort(elements, axis=1)
     return (ordered[:, 1:] != ordered[:, :-1]).all(axis=1)
 
@@ -130,7 +130,7 @@ _OPEN = 0.05
 def find_bridges(
     solid: Solid, nodes: Nodes, elements: Elements, distances: Vector
 ) -> tuple[Bool[np.ndarray, " elements"], Places]:
-    """Which tetrahedra have an edge with both ends inside that passes outside, and where it does [m].
+    """Find the tetrahedra with an edge whose ends are inside and which passes outside, and where it does [m].
 
     Only edges longer than what their ends are deep can: no ball about an end reaches the surface. Without them the
     body has a dent there, which is better than fingers grown together, and finer elements then mend it.

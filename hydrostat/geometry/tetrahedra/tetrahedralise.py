@@ -9,7 +9,7 @@ from hydrostat.arrays import Elements, Nodes, Points, Vector
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Solid, Surface, covering_points
-from hydrostat.geometry.tetrahedra.improve import Stage, improve
+from hydrostat.geometry.tetrahedra.improve import ImproveStage, improve
 from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, PAIRS, Places, Tetrahedra, bisect, lattice, signed_volumes
 from hydrostat.geometry.tetrahedra.manifold import euler, manifold
 from hydrostat.geometry.tetrahedra.stuffing import find_bridges, stuff
@@ -20,7 +20,7 @@ CLOSE = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """How far apart a surface and the boundary of a mesh are.
+    """Distances between a surface and the boundary of a mesh.
 
     Attributes:
         places: points of both, those of the mesh first [m].
@@ -51,9 +51,9 @@ def fit(mesh: Mesh, solid: Solid, spacing: float) -> Fit:
 
 
 _STAGES = (
-    Stage(rounds=4, sweeps=3, power=1.0, pull=30.0),
-    Stage(rounds=6, sweeps=3, power=2.0, pull=300.0),
-    Stage(rounds=8, sweeps=3, power=4.0, pull=5000.0),
+    ImproveStage(rounds=4, sweeps=3, power=1.0, pull=30.0),
+    ImproveStage(rounds=6, sweeps=3, power=2.0, pull=300.0),
+    ImproveStage(rounds=8, sweeps=3, power=4.0, pull=5000.0),
 )
 """From free to firm: first the shapes, then the surface."""
 
@@ -92,31 +92,31 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
         SurfaceError: the body is much thinner than the elements; the message says where, and what to take.
     """
     solid = Solid(surface)
-    _check(surface, element_size)
+    _check_element_size(surface, element_size)
     cell = element_size / MEAN_EDGE
-    nodes, elements = _near(
+    nodes, elements = _trimmed(
         solid, *lattice(surface.box, cell, lambda middles: solid.distances(middles) < 2 * cell), cell
     )
     draft = _stuffed(solid, nodes, elements, element_size)
     if draft.whole < _WHOLE:
-        raise SurfaceError(f"much of the body is thinner than {_thin(surface, element_size)}")
+        raise SurfaceError(f"much of the body is thinner than {_advice(surface, element_size)}")
     for size in element_size / 2.0 ** (np.arange(_FINER) * _BISECTIONS / 3):
         if not len(draft.places):
             break
         for _ in range(_BISECTIONS):
-            nodes, elements = bisect(nodes, elements, _about(nodes, elements, draft.places, size))
+            nodes, elements = bisect(nodes, elements, _too_long_near(nodes, elements, draft.places, size))
         draft = _stuffed(solid, nodes, elements, element_size)
     if draft.lost > _CRUMB:
         x, y, z = 1e3 * draft.places[0]
         raise SurfaceError(
-            f"near ({x:.4g}, {y:.4g}, {z:.4g}) mm the body is thinner than {_thin(surface, element_size)}"
+            f"near ({x:.4g}, {y:.4g}, {z:.4g}) mm the body is thinner than {_advice(surface, element_size)}"
         )
     return draft.mesh
 
 
 @dataclass(frozen=True, eq=False)
-class _Draft:
-    """What a lattice makes of a solid.
+class _Filling:
+    """Mesh that a lattice makes of a solid, and what it lacks.
 
     Attributes:
         mesh: its largest part; improved if no other is of any size.
@@ -131,11 +131,11 @@ class _Draft:
     places: Points
 
 
-def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Draft:
+def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Filling:
     distances = solid.distances(nodes)
     inner = stuff(solid, nodes, elements, distances)
     if not len(inner[1]):
-        return _Draft(Mesh(np.zeros((0, 3)), inner[1]), 0.0, 0.0, np.zeros((0, 3)))
+        return _Filling(Mesh(np.zeros((0, 3)), inner[1]), 0.0, 0.0, np.zeros((0, 3)))
     (mesh, breaks), gaps = manifold(*inner), np.zeros((0, 3))
     if euler(mesh.boundary) != euler(solid.surface.triangles):
         bridging, gaps = find_bridges(solid, nodes, elements, distances)
@@ -145,20 +145,20 @@ def _stuffed(solid: Solid, nodes: Nodes, elements: Elements, element_size: float
     whole = float(signed_volumes(*inner).sum()) / solid.surface.volume
     lost = whole - float(mesh.volumes.sum()) / solid.surface.volume
     if lost > _CRUMB:
-        return _Draft(mesh, whole, lost, np.concatenate([breaks, gaps]))
+        return _Filling(mesh, whole, lost, np.concatenate([breaks, gaps]))
     mesh = improve(mesh, solid, element_size=element_size, stages=_STAGES)
     found = fit(mesh, solid, element_size / 3)
     far = found.places[found.distances > CLOSE * element_size]
-    return _Draft(mesh, whole, lost, np.concatenate([far, gaps, *([breaks] if len(far) else [])]))
+    return _Filling(mesh, whole, lost, np.concatenate([far, gaps, *([breaks] if len(far) else [])]))
 
 
-def _thin(surface: Surface, element_size: float) -> str:
+def _advice(surface: Surface, element_size: float) -> str:
     """The end of a complaint, with a size that a body as thick as this on average can be filled with."""
     size = min(2 * surface.volume / surface.area, _ADVICE * element_size)
     return f"elements of {1e3 * element_size:.4g} mm; take {1e3 * size:.2g} mm or less"
 
 
-def _check(surface: Surface, element_size: float) -> None:
+def _check_element_size(surface: Surface, element_size: float) -> None:
     """Refuse element sizes that make too few or too many elements."""
     if not 0.0 < element_size < np.inf:
         raise InputError(f"the element size must be positive, not {element_size} m")
@@ -174,7 +174,7 @@ def _check(surface: Surface, element_size: float) -> None:
         raise InputError(f"{size} would be about {count:.2g}, at most {_MOST} are made: take {least:.2g} mm or more")
 
 
-def _near(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:
+def _trimmed(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:
     """Those elements of which some node is inside or near, and the nodes they have."""
     used, kept = np.unique(elements, return_inverse=True)
     nodes, elements = nodes[used], kept.reshape(-1, 4)
@@ -183,8 +183,8 @@ def _near(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[
     return nodes[used], kept.reshape(-1, 4)
 
 
-def _about(nodes: Nodes, elements: Elements, places: Points, size: float) -> Bool[np.ndarray, " elements"]:
-    """Which elements about some places [m] have an edge longer than 0.6 of a size [m]."""
+def _too_long_near(nodes: Nodes, elements: Elements, places: Points, size: float) -> Bool[np.ndarray, " elements"]:
+    """Find the elements about some places [m] that have an edge longer than 0.6 of a size [m]."""
     from scipy.spatial import KDTree
 
     corners = nodes[elements]

@@ -1,4 +1,4 @@
-"""How far apart nodes should be, and the rings of an outline divided by that into the edges of a mesh."""
+"""Spacing of nodes, and the rings of an outline divided by it into the edges of a mesh."""
 
 from dataclasses import dataclass
 
@@ -63,7 +63,7 @@ class Samples:
     bends: Float[np.ndarray, " samples"]
 
 
-def sample(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Samples:
+def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Samples:
     """Sample rings; `corners` are the stations of the true corners, whose bend does not count."""
     parts = []
     for ring, (curve, sharp) in enumerate(zip(curves, corners, strict=True)):
@@ -81,8 +81,8 @@ def sample(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Samples:
     return Samples(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def widths(samples: Samples, curves: tuple[Curve, ...], polygon: Polygon) -> tuple[Vector, Vector]:
-    """How wide the body is at each sample, at most 1, and the same without pointed tips.
+def widths_at(samples: Samples, curves: tuple[Curve, ...], polygon: Polygon) -> tuple[Vector, Vector]:
+    """Width of the body at each sample, at most 1, and the same without pointed tips.
 
     Two samples span a width if they face each other through the body and the way between them along the outline is
     long compared with it, which it is not across a tip or a corner.
@@ -129,9 +129,9 @@ def divide(outline: Outline, element_size: float) -> Draft:
     """
     curves = tuple(Curve(ring / element_size) for ring in outline.rings)
     corners = tuple(_corners(curve) for curve in curves)
-    samples = sample(curves, corners)
+    samples = sample_rings(curves, corners)
     scaled = Outline(curves[0].corners, tuple(curve.corners for curve in curves[1:]))
-    width, neck = widths(samples, curves, scaled.polygon)
+    width, neck = widths_at(samples, curves, scaled.polygon)
     _refuse_thin(samples.places, neck, element_size)
     known = Spacing(samples.places, np.minimum(np.minimum(width, samples.bends), 1.0).clip(FLOOR))
     wanted = known(samples.places)
@@ -139,7 +139,7 @@ def divide(outline: Outline, element_size: float) -> Draft:
     for ring, (curve, sharp) in enumerate(zip(curves, corners, strict=True)):
         here = samples.rings == ring
         divisions.append(_divide_ring(curve, sharp, samples.stations[here], wanted[here]))
-    return _simple(tuple(_near(division) for division in divisions))
+    return _split_where_crossing(tuple(_split_where_far(division) for division in divisions))
 
 
 def _refuse_thin(places: Points, neck: Vector, element_size: float) -> None:
@@ -188,7 +188,7 @@ def _divide_ring(curve: Curve, sharp: Stations, stations: Vector, wanted: Vector
     return Division(curve, places[order], np.concatenate(fixed)[order])
 
 
-def _near(division: Division) -> Division:
+def _split_where_far(division: Division) -> Division:
     """Split edges that stray from the ring."""
     while True:
         far = np.flatnonzero(division.sagitta() > SAGITTA)
@@ -198,7 +198,7 @@ def _near(division: Division) -> Division:
             division = division.split(int(edge))
 
 
-def _simple(divisions: tuple[Division, ...]) -> Draft:
+def _split_where_crossing(divisions: tuple[Division, ...]) -> Draft:
     """Split edges that cross each other."""
     draft = Draft(divisions, np.zeros((0, 2)))
     for _ in range(20):

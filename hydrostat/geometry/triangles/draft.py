@@ -113,7 +113,7 @@ def _fill(points: Points, start: int, end: int, chain: list[int]) -> list[tuple[
 
 
 def _in_circle(triangle: Points, point: np.ndarray) -> bool:
-    """Whether a point lies inside the circle of a positively oriented triangle."""
+    """Tell whether a point lies inside the circle of a positively oriented triangle."""
     spans = triangle - point
     return bool(np.linalg.det(np.column_stack([spans, np.einsum("ij,ij->i", spans, spans)])) > 0.0)
 
@@ -150,7 +150,7 @@ class Division:
         return Division(self.curve, np.delete(self.stations, node), np.delete(self.fixed, node))
 
     def sagitta(self) -> Float[np.ndarray, " nodes"]:
-        """How far the ring strays from each edge."""
+        """Largest distance of the ring from each edge."""
         return np.array([self.curve.sagitta(start, end) for start, end in zip(self.stations, self.ends, strict=True)])
 
 

@@ -18,7 +18,7 @@ STRAY = 0.18
 _EQUILATERAL = 2.0 * np.sqrt(3.0)
 
 
-def spread(draft: Draft, spacing: Spacing, steps: int) -> Draft:
+def push_apart(draft: Draft, spacing: Spacing, steps: int) -> Draft:
     """Let neighbours that are too close push each other apart (DistMesh, Persson & Strang 2004)."""
     first_inside = int(draft.starts[-1])
     for _ in range(steps):
@@ -53,7 +53,7 @@ def smooth(draft: Draft, power: float, rounds: int, iterations: int = 40) -> Dra
 
 
 def sound(draft: Draft) -> bool:
-    """Whether nodes on the rings are in order and all sides are there, near to the outline."""
+    """Tell whether nodes on the rings are in order and all sides are there, near to the outline."""
     parts = draft.divisions
     ordered = all(bool((part.ends > part.stations).all()) for part in parts)
     near = max(float(part.sagitta().max()) for part in parts) < STRAY

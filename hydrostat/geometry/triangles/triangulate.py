@@ -10,7 +10,7 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.triangles.divide import Spacing, divide
 from hydrostat.geometry.triangles.draft import Draft
-from hydrostat.geometry.triangles.relax import repair, smooth, spread
+from hydrostat.geometry.triangles.relax import push_apart, repair, smooth
 
 _FEWEST, _MOST = 8, 200_000
 
@@ -29,22 +29,22 @@ def triangulate(outline: Outline, element_size: float) -> Mesh:
         InputError: so large that the body has too few elements, or so small that it has too many.
         OutlineError: the body is too thin somewhere; the message says where.
     """
-    _check(outline, element_size)
-    draft = _whole(divide(outline, element_size))
+    _check_element_size(outline, element_size)
+    draft = _with_all_sides(divide(outline, element_size))
     spacing = _inner_spacing(draft)
-    draft = _whole(Draft(draft.divisions, _seeds(draft, spacing)))
+    draft = _with_all_sides(Draft(draft.divisions, _seeds(draft, spacing)))
     for _ in range(6):
-        added = _gaps(draft, spacing)
+        added = _gap_centres(draft, spacing)
         if not len(added):
             break
-        draft = _whole(Draft(draft.divisions, np.concatenate([draft.interior, added])))
-    draft = _whole(spread(draft, spacing, steps=12))
+        draft = _with_all_sides(Draft(draft.divisions, np.concatenate([draft.interior, added])))
+    draft = _with_all_sides(push_apart(draft, spacing, steps=12))
     draft = smooth(draft, power=2.0, rounds=6)
     draft = repair(smooth(draft, power=8.0, rounds=4))
     return _mesh(draft, element_size)
 
 
-def _check(outline: Outline, element_size: float) -> None:
+def _check_element_size(outline: Outline, element_size: float) -> None:
     """Refuse element sizes that make too few or too many elements."""
     if not 0.0 < element_size < np.inf:
         raise InputError(f"the element size must be positive, not {element_size} m")
@@ -59,7 +59,7 @@ def _check(outline: Outline, element_size: float) -> None:
         raise InputError(f"{size} would be {count:.3g}, at most {_MOST} are made: take {least:.2g} mm or more")
 
 
-def _whole(draft: Draft) -> Draft:
+def _with_all_sides(draft: Draft) -> Draft:
     """Split sides of the outline until the triangles have them all."""
     for _ in range(30):
         if not draft.lost.size:
@@ -89,7 +89,7 @@ def _seeds(draft: Draft, spacing: Spacing) -> Points:
     return lattice[(wanted > 0.9) & (away > 0.65 * wanted)]
 
 
-def _gaps(draft: Draft, spacing: Spacing) -> Points:
+def _gap_centres(draft: Draft, spacing: Spacing) -> Points:
     """Circle centres of triangles much larger than wanted, the largest first, none too near to another."""
     centres, radii = _circles(draft)
     wanted = spacing(centres)
