@@ -1,0 +1,41 @@
+"""The layers that import-linter proves. Oracles: the figure in ARCHITECTURE.md, and the folders of the house."""
+
+import re
+import tomllib
+from pathlib import Path
+
+_TOP = Path(__file__).parents[1]
+_CONTRACTS = [
+    contract
+    for contract in tomllib.loads((_TOP / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    if contract["type"] == "layers"
+]
+
+
+def _rooms(contract: dict) -> list[set[str]]:
+    """Rooms of each layer, with their full names; without those that are yet to come."""
+    parent = contract["containers"][0]
+    lines = [{room.strip() for room in line.split("|")} for line in contract["layers"]]
+    return [{f"{parent}.{room}" for room in line if not room.startswith("(")} for line in lines]
+
+
+def _drawn(text: str) -> list[set[str]]:
+    """Rooms of each line of the figure, whose first words they are; what else is said there are remarks."""
+    figure = re.search(r"\n\n((?: {3,}\S.*\n)+)\n\| room", text)
+    assert figure
+    lines = [re.sub(r" {3,}never import.*| {3,}the one.*", "", line) for line in figure[1].splitlines()]
+    return [{f"hydrostat.{room.strip()}" for room in line.split("|")} for line in lines]
+
+
+def test_the_figure_shows_the_layers_that_are_proven() -> None:
+    text = (_TOP / "ARCHITECTURE.md").read_text()
+    assert _drawn(text) == _rooms(_CONTRACTS[0])
+    assert _drawn(text.replace("               geometry\n", "")) != _rooms(_CONTRACTS[0])
+
+
+def test_every_folder_stands_in_a_layer() -> None:
+    """Rooms within rooms, too: one that is new has to say what it may import."""
+    folders = [path.parent.relative_to(_TOP) for path in (_TOP / "hydrostat").rglob("__init__.py")]
+    named = set().union(*(line for contract in _CONTRACTS for line in _rooms(contract)))
+    assert {".".join(folder.parts) for folder in folders} - {"hydrostat"} - named == set()
+    assert _CONTRACTS[0]["exhaustive"]
