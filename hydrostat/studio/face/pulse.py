@@ -1,10 +1,10 @@
-"""`Pulse`: the thread that lets a session work, and hands what it shows to all screens."""
+"""`Pulse`: the threads that let a session work, and hand what it shows to all screens."""
 
 import logging
 import time
 from collections.abc import Callable
 from functools import partial
-from threading import Event, Thread
+from threading import Event, Lock, Thread
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.session import Session, Tone
@@ -16,31 +16,46 @@ SHORTEST = 1 / 60
 PATIENCE = 0.25
 """The session is looked at at least so often [s]."""
 
+LONG = 0.1
+"""A step that takes longer [s] does not keep the screens waiting: what changes meanwhile is shown beside it."""
+
 SEEN = (Topic.SHAPE, Topic.THINGS, Topic.ROBOT, Topic.STAGE)
 """What changes the picture."""
 
 
 class Pulse:
-    """Works while there is work, sleeps while there is none."""
+    """Works while there is work, sleeps while there is none.
+
+    A thread steps and shows. Where one step takes long, such as the first of a robot, for which kernels may have to be
+    compiled, a second thread shows what the pointer changes meanwhile.
+    """
 
     def __init__(self, session: Session, publish: Callable[[Shown], None]) -> None:
         """Let a session work; `publish` is called in the thread of the pulse."""
         self._session, self._publish = session, publish
         self._wake, self._ended = Event(), False
         self._stale = True
+        self._stepping: float | None = None  # since when
+        self._showing, self._end = Lock(), Event()
         self._leave = session.bell.listen(self._hear)
-        self._thread = Thread(target=self._run, name="studio", daemon=True)
+        self._threads = [
+            Thread(target=target, name=name, daemon=True)
+            for target, name in ((self._run, "studio"), (self._stand_in, "studio, while a step takes long"))
+        ]
 
     def start(self) -> None:
         """Begin."""
-        self._thread.start()
+        for thread in self._threads:
+            thread.start()
 
     def stop(self) -> None:
-        """End; returns when the thread has."""
+        """End; returns when the threads have."""
         self._ended = True
         self._leave()
+        self._end.set()
         self._wake.set()
-        self._thread.join(timeout=10.0)
+        for thread in self._threads:
+            thread.join(timeout=10.0)
 
     def refresh(self) -> None:
         """Hand over a picture even if nothing has changed, as a new screen needs one."""
@@ -54,15 +69,24 @@ class Pulse:
 
     def _run(self) -> None:
         while not self._ended:
-            begun = time.monotonic()
+            self._stepping = begun = time.monotonic()
             self._wake.clear()
             more = self._guarded(partial(self._session.step, begun))
+            self._stepping = None
             if self._stale or more:
                 self._stale = False
                 self._guarded(self._hand_over)
             self._pause(begun + SHORTEST)
             if not more and not self._stale:
                 self._wake.wait(PATIENCE)
+
+    def _stand_in(self) -> None:
+        """Show what has changed while one step takes long."""
+        while not self._end.wait(LONG):
+            since = self._stepping
+            if self._stale and since is not None and time.monotonic() - since > LONG:
+                self._stale = False
+                self._guarded(self._hand_over)
 
     def _pause(self, until: float) -> None:
         """Sleep until a time, or until a drag waits for its answer."""
@@ -73,9 +97,10 @@ class Pulse:
             self._wake.wait(left)
 
     def _hand_over(self) -> bool:
-        shown = self._session.shown()
-        if shown is not None:
-            self._publish(shown)
+        with self._showing:
+            shown = self._session.shown()
+            if shown is not None:
+                self._publish(shown)
         return False
 
     def _guarded(self, action: Callable[[], bool]) -> bool:

@@ -117,6 +117,7 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
         document = session.document
         name.set_text(("" if document.saved else "● ") + document.robot.name if document.is_open else "")
         undo.set_enabled(bool(document.undo_label))
+        undo.props(f"data-serial={document.serial}")  # whose state the buttons show
         redo.set_enabled(bool(document.redo_label))
         save.set_enabled(document.is_open)
         show_stage()

@@ -22,7 +22,7 @@ FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 
 RUN = "from hydrostat.cli.main import main; main()"
 
-PATIENCE = 60_000
+PATIENCE = 300_000
 """The most that a test waits for one thing [ms]: the machine may be busy, and compile."""
 
 Open = Callable[..., "Page"]

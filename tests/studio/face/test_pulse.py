@@ -74,6 +74,30 @@ def test_a_drag_that_waits_is_stepped_at_once(session: Session) -> None:
     assert session.waiting
 
 
+def test_what_changes_is_shown_while_a_step_takes_long(session: Session) -> None:
+    class Compiling(Busy):
+        def step(self, now: float) -> bool:
+            self.enough.set()
+            return not done.wait(60.0)
+
+    done, shown = Event(), list[Shown]()
+    stage = Compiling(session)
+    session.stages = dict.fromkeys(StageName, stage)
+    pulse = Pulse(session, shown.append)
+    pulse.start()
+    assert stage.enough.wait(60.0)
+    try:
+        for stamp in range(1, 4):
+            before = len(shown)
+            session.grab("a", Hit(key="body", world=(0.0, 0.0)), float(stamp))
+            while len(shown) == before and not done.is_set():
+                time.sleep(0.01)
+        assert session.answered == 0.0  # the step is not over: nothing of it is told as answered
+    finally:
+        done.set()
+        pulse.stop()
+
+
 def test_a_stage_that_stumbles_does_not_end_the_studio(session: Session, caplog: pytest.LogCaptureFixture) -> None:
     stage = session.current
     assert isinstance(stage, Busy)

@@ -38,7 +38,7 @@ class Desk:
 
     def wait(self, ready: Callable[[], bool]) -> None:
         with self._rung:
-            assert self._rung.wait_for(ready, timeout=60)
+            assert self._rung.wait_for(ready, timeout=300)
 
     def settle(self) -> None:
         self.wait(lambda: not self.starter.meshing)
