@@ -6,7 +6,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo studio test check lint fix bench pictures clean
+.PHONY: help demo studio test check lint lint-js fix bench pictures clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
@@ -33,6 +33,12 @@ lint: $(VENV)/check.installed
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/pyright --pythonpath $(BIN)/python
+	if command -v npm > /dev/null; then $(MAKE) --no-print-directory lint-js; else echo "no npm: JavaScript is not linted"; fi
+
+# The studio's JavaScript: its types by tsc, the rest by eslint.
+lint-js: node_modules/installed
+	node_modules/.bin/tsc
+	node_modules/.bin/eslint hydrostat/studio/face/static
 
 fix: $(VENV)/check.installed
 	$(BIN)/ruff check --fix .
@@ -45,7 +51,7 @@ pictures: $(VENV)/demo.installed
 	$(BIN)/python docs/pictures.py
 
 clean:
-	rm -rf build dist $(VENV)
+	rm -rf build dist node_modules $(VENV)
 
 $(VENV)/demo.installed: pyproject.toml constraints.txt
 	@echo "Installing hydrostat into $(VENV), this takes about a minute ..."
@@ -63,4 +69,8 @@ $(VENV)/test.installed: $(VENV)/demo.installed
 
 $(VENV)/check.installed: $(VENV)/test.installed
 	$(INSTALL) --editable ".[check]"
+	touch $@
+
+node_modules/installed: package.json
+	npm install --no-audit --no-fund --no-package-lock --silent
 	touch $@

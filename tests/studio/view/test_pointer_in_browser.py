@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from view_modules import needs_node, run
 
-from hydrostat.studio.face.messages import Pointer, Release, read_message
+from hydrostat.studio.face.messages import Pointer, LetGo, read_message
 
 SCRIPT = """
 const ears = {};
@@ -92,4 +92,4 @@ def test_pointer(tmp_path: Path) -> None:
     assert [message.kind for message in told["brush"]] == ["grab", "drag", "release"]
     for name in ("escape", "blur", "cancel"):
         assert [message.kind for message in told[name]] == ["grab", "drag", "release"]
-        assert isinstance(told[name][-1], Release)
+        assert isinstance(told[name][-1], LetGo)

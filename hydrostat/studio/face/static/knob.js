@@ -15,7 +15,7 @@ const arc = (from, to, radius) => {
   return `M${x1} ${y1} A${radius} ${radius} 0 ${(high - low) * SWEEP > 180 ? 1 : 0} 1 ${x2} ${y2}`;
 };
 
-export default {
+export default /** @type {Component} */ ({
   template: `
     <svg viewBox="0 0 64 64" role="slider" tabindex="0" :aria-label="label" :aria-valuemin="least" :aria-valuemax="most"
       :aria-valuenow="shown" :style="{ cursor: held === null ? 'grab' : 'grabbing', touchAction: 'none', outline: 'none' }"
@@ -155,4 +155,4 @@ export default {
     clearTimeout(this.timer);
     clearTimeout(this.linger);
   },
-};
+});

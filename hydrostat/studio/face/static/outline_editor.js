@@ -2,7 +2,7 @@
 const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 const NEAR = 11; // pixels within which a click means a corner
 
-export default {
+export default /** @type {Component} */ ({
   template: `
     <svg class="outline-editor" :class="{faulty: fault, drawing: open}" tabindex="0" aria-label="Outline"
          @pointerdown="down" @pointermove="move" @pointerup="up" @pointercancel="up" @dblclick="twice" @wheel.prevent="zoom"
@@ -329,7 +329,7 @@ export default {
       this.later = setTimeout(() => { this.later = null; this.$emit("change", copy(this.loops)); }, 80);
     },
   },
-};
+});
 
 function copy(loops) { return JSON.parse(JSON.stringify(loops)); }
 function same(a, b) { return !!a && !!b && a[0] === b[0] && a[1] === b[1]; }

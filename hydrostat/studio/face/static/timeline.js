@@ -9,7 +9,7 @@ const LINGER = 300; // so long after a drag the studio's answer may be under way
 const SNAP = 5; // px
 const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120];
 
-export default {
+export default /** @type {Component} */ ({
   template: `
     <svg :height="height" width="100%" tabindex="0" aria-label="Timeline" style="display: block; outline: none; --head: color-mix(in oklab, #c8243f, white var(--lift, 0%));
       touch-action: none; user-select: none; font-size: 13px" @pointerdown="grab" @pointermove="drag" @pointerup="letGo"
@@ -222,4 +222,4 @@ export default {
       event.preventDefault();
     },
   },
-};
+});

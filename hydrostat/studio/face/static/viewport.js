@@ -4,7 +4,7 @@ import { View } from "hydrostat-view";
 
 const FILL = "position:absolute;inset:0;width:100%;height:100%;display:block;pointer-events:none";
 
-export default {
+export default /** @type {Component} */ ({
   template: `
     <div ref="root" tabindex="-1" role="img" aria-label="The body"
          style="position:relative;width:100%;height:100%;overflow:hidden;touch-action:none;user-select:none;outline:none">
@@ -83,4 +83,4 @@ export default {
       return this.view_?.picture() ?? null;
     },
   },
-};
+});

@@ -19,11 +19,13 @@ export class Camera {
     this.reach = 0.3; // radius of all that is shown [m]
     [this.azimuth, this.elevation] = VIEWS.top;
     this.moved = false;
+    /** @type {{start: number, from: number[], to: number[]} | null} */
     this.turning = null;
     this.right = new THREE.Vector3();
     this.up = new THREE.Vector3();
     this.toward = new THREE.Vector3(); // from the target to the eye
     this.matrix = new THREE.Matrix4();
+    /** @type {THREE.OrthographicCamera | THREE.PerspectiveCamera} */
     this.now = this.orthographic;
     this.place();
   }
@@ -61,7 +63,7 @@ export class Camera {
     camera.lookAt(this.target);
     camera.near = parallel ? 0.01 * distance : Math.max(distance - 3 * this.reach, 0.02 * distance);
     camera.far = distance + 3 * this.reach;
-    if (parallel) {
+    if (camera instanceof THREE.OrthographicCamera) {
       camera.top = this.span / 2;
       camera.bottom = -this.span / 2;
       camera.right = (this.span / 2) * (this.width / this.height);

@@ -22,7 +22,11 @@ export class Cover {
     this.edges = edgesOf(faces);
     this.spots = new Float32Array(3 * count); // pixels and depth of each node
     this.front = new Int8Array(faces.length / 3); // 1: faces the camera, -1: does not
+    /** @type {number[][]} */
     this.cells = [];
+    this.nodes = new Float32Array();
+    /** @type {number[] | null} */
+    this.cut = null;
   }
 
   /** Look at the nodes anew. */

@@ -5,10 +5,15 @@ import { drawClouds, drawLines } from "./lines.js";
 import { mix, veil } from "./theme.js";
 
 export class Overlay {
-  /** @param {boolean} slow whether there is no graphics card: then the processor draws on its own, which is faster */
+  /**
+   * @param {HTMLCanvasElement} canvas to draw on
+   * @param {boolean} slow whether there is no graphics card: then the processor draws on its own, which is faster
+   */
   constructor(canvas, slow) {
     this.canvas = canvas;
     this.pen = canvas.getContext("2d", { willReadFrequently: slow });
+    this.width = this.height = 0;
+    this.ratio = 1;
   }
 
   resize(width, height, ratio) {

@@ -5,7 +5,14 @@ const KEPT = 2000;
 export class Probe {
   constructor(view) {
     this.view = view;
-    Object.assign(this, { connected: false, scenes: 0, frames: 0, painted: 0, stamp: 0, latencies: [], paints: [], errors: [] });
+    this.connected = false;
+    this.scenes = this.frames = this.painted = this.stamp = 0;
+    /** @type {number[]} */
+    this.latencies = [];
+    /** @type {number[]} */
+    this.paints = [];
+    /** @type {string[]} */
+    this.errors = [];
   }
 
   /** Dots with a key: [{key, x, y}], in pixels of the window. */

@@ -10,20 +10,53 @@ import { Surface } from "./surface.js";
 import { mix, theme } from "./theme.js";
 
 export class Shown {
-  /** @param palette colours by name, and `tension`, a row of them */
+  /**
+   * @param {Record<string, any>} palette colours by name, and `tension`, a row of them
+   * @param {boolean} dark whether the page is
+   */
   constructor(palette, dark) {
-    Object.assign(this, { palette, ink: palette.ink, theme: theme(dark) });
+    this.palette = palette;
+    this.ink = palette.ink;
+    this.theme = theme(dark);
     this.world = new THREE.Scene(); // what WebGL draws: a body in space
     this.camera = new Camera();
     this.ramp = ramp256(palette.tension);
     this.field = new Field(this.ramp);
     const none = new Float32Array();
-    Object.assign(this, { serial: -1, name: "", rest: none, nodes: none, faces: new Uint32Array(), values: null });
-    Object.assign(this, { surface: null, skin: null, cover: null });
-    Object.assign(this, { points: none, dots: [], lines: [], areas: [], ghosts: {}, clouds: {}, hover: "" });
+    this.serial = -1; // of the scene
+    this.name = "";
+    this.rest = this.nodes = this.points = none;
+    this.faces = new Uint32Array();
+    /** @type {Float32Array | null} */
+    this.values = null;
+    /** @type {Surface | null} */
+    this.surface = null;
+    /** @type {Skin | null} */
+    this.skin = null;
+    /** @type {Cover | null} */
+    this.cover = null;
+    /** @type {any[]} */
+    this.dots = [];
+    /** @type {any[]} */
+    this.lines = [];
+    /** @type {any[]} */
+    this.areas = [];
+    /** @type {Record<string, any>} */
+    this.ghosts = {};
+    /** @type {Record<string, any>} */
+    this.clouds = {};
+    this.hover = "";
     // how it is looked at: solid by default; a plane that cuts it; the edges of its mesh
-    Object.assign(this, { opacity: 1, section: null, cut: null, edges: false });
+    this.opacity = 1;
+    /** @type {{axis: string, share: number, side: number} | null} */
+    this.section = null;
+    /** @type {number[] | null} */
+    this.cut = null;
+    this.edges = false;
   }
+
+  /** Make ready to draw a body in space; who shows one on a screen does. */
+  openRenderer() {}
 
   /** Show another scene; what is the same in it is kept. Returns whether one has to look at it anew. */
   build(head, arrays) {

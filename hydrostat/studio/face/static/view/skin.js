@@ -49,7 +49,14 @@ function inset(ring, rings, distance) {
   return moved;
 }
 
-function isClear([x, y], ring, distance) {
+/**
+ * Whether a place is so far from a ring.
+ * @param {number[]} spot
+ * @param {number[][]} ring
+ * @param {number} distance
+ */
+function isClear(spot, ring, distance) {
+  const [x, y] = spot;
   for (let i = 0; i < ring.length; i++) {
     const a = ring[i], b = ring[i + 1 === ring.length ? 0 : i + 1];
     const u = b[0] - a[0], v = b[1] - a[1];

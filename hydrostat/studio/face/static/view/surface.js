@@ -75,7 +75,7 @@ function smooth(position, faces, normal) {
 
 function surface(rest, faces) {
   const geometry = new THREE.BufferGeometry();
-  for (const [name, columns] of [["position", 3], ["normal", 3], ["value", 1]]) {
+  for (const [name, columns] of Object.entries({ position: 3, normal: 3, value: 1 })) {
     const attribute = new THREE.BufferAttribute(new Float32Array((rest.length / 3) * columns), columns);
     geometry.setAttribute(name, attribute.setUsage(THREE.DynamicDrawUsage));
   }
@@ -138,7 +138,8 @@ export class Surface {
 
   /** Show only one side of a plane: [x, y, z, share]; null for all. */
   section(plane) {
-    this.uniforms.cut.value.set(...(plane ?? [0, 0, 0, 1]));
+    const [x, y, z, share] = plane ?? [0, 0, 0, 1];
+    this.uniforms.cut.value.set(x, y, z, share);
     const side = plane ? THREE.DoubleSide : THREE.FrontSide;
     for (const mesh of [this.before, this.body]) {
       if (mesh.material.side !== side) mesh.material.needsUpdate = true;

@@ -15,7 +15,10 @@ export function theme(dark) {
   return dark ? DARK : LIGHT;
 }
 
-/** Red, green and blue, 0 to 1, of a colour such as "#0b5fa5". */
+/**
+ * Red, green and blue, 0 to 1, of a colour such as "#0b5fa5".
+ * @returns {[number, number, number]}
+ */
 export function rgb(hex) {
   const number = parseInt(hex.slice(1), 16);
   return [(number >> 16) / 255, ((number >> 8) & 255) / 255, (number & 255) / 255];

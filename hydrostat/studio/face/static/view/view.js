@@ -16,14 +16,22 @@ const MARGIN = { flat: [84, 44, 44, 56], space: [84, 44, 44, 72] };
 
 export class View extends Shown {
   /**
-   * @param element that is filled
-   * @param canvases three, one over the other: for ghosts in space, for the body in space, for all else
-   * @param options {stream, dark, palette: colours by name and `tension`, a row of them, brush}
-   * @param tell (name, value) is told "connected" and "note"
+   * @param {HTMLElement} element that is filled
+   * @param {HTMLCanvasElement[]} canvases three, one over the other: for ghosts in space, for the body in space, for all else
+   * @param {{stream: string, dark: boolean, palette: Record<string, any>, brush: boolean}} options of the page; the
+   *   palette has colours by name and `tension`, a row of them
+   * @param {(name: string, value: any) => void} tell is told "connected", "failure" and "note"
    */
   constructor(element, canvases, options, tell) {
     super(options.palette, options.dark);
-    Object.assign(this, { element, tell, brush: options.brush, under: canvases[0], sheet: canvases[1] });
+    this.element = element;
+    this.tell = tell;
+    this.brush = options.brush;
+    this.under = canvases[0];
+    this.sheet = canvases[1];
+    this.underOf = null; // the ghosts that are drawn there,
+    this.underAs = ""; // and how they were seen
+    /** @type {THREE.WebGLRenderer | null} */
     this.renderer = null; // made for the first body in space: flat ones need no WebGL
     this.slow = hasNoCard();
     this.overlay = new Overlay(canvases[2], this.slow);
@@ -60,7 +68,7 @@ export class View extends Shown {
     try {
       return work();
     } catch (error) {
-      if (this.probe.errors.length < 100) this.probe.errors.push(String(error?.stack ?? error));
+      if (this.probe.errors.length < 100) this.probe.errors.push(String((error instanceof Error && error.stack) || error));
       console.error(error);
       return undefined;
     }
