@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from view_modules import needs_node, run
 
-from hydrostat.studio.face.messages import Pointer, LetGo, read_message
+from hydrostat.studio.face.messages import LetGo, Pointer, read_message
 
 SCRIPT = """
 const ears = {};
