@@ -1,11 +1,27 @@
-"""Small meshes and robots, made in code."""
+"""Small meshes and robots, made in code; robots of the gallery, read once."""
 
+import tomllib
+from functools import cache
 from itertools import permutations
+from typing import Any
 
 import numpy as np
 
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.robot import Body, Cable, Marker, Material, Mount, Pin, Robot, Source, Winch
+from hydrostat.robot import (
+    Body,
+    Cable,
+    Marker,
+    Material,
+    Mount,
+    Pin,
+    Robot,
+    Source,
+    Winch,
+    gallery_folder,
+    gallery_names,
+    load_robot,
+)
 
 FOAM = Material(young=30e3, poisson=0.3, density=40)
 
@@ -95,3 +111,15 @@ def box_robot() -> Robot:
         markers=(Marker(name="tip", at=(0.12, 0.02, 0.02)),),
         poses={},
     )
+
+
+@cache
+def gallery_texts() -> dict[str, dict[str, Any]]:
+    """What is written in robot.toml of each robot of the gallery; nothing is meshed."""
+    return {name: tomllib.loads((gallery_folder(name) / "robot.toml").read_text("utf-8")) for name in gallery_names()}
+
+
+@cache
+def gallery_robot(name: str) -> Robot:
+    """A robot of the gallery, meshed once in a process: robots do not change."""
+    return load_robot(gallery_folder(name))

@@ -41,11 +41,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def _kit(name: str) -> "Kit":
-    import hydrostat as hs
-    from hydrostat.fabrication import build_kit
-    from hydrostat.robot.gallery import gallery_folder
+    from builders import gallery_robot
 
-    return build_kit(hs.load_robot(gallery_folder(name)))
+    from hydrostat.fabrication import build_kit
+
+    return build_kit(gallery_robot(name))
 
 
 @pytest.fixture(scope="session")

@@ -4,11 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
 from hydrostat.control.timeline_table import LARGEST, read_timeline, timeline_table
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import read_profile
 
 KEYS = (
@@ -20,7 +21,7 @@ KEYS = (
 
 @pytest.fixture(scope="module")
 def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
+    return gallery_robot("starfish")
 
 
 @pytest.mark.parametrize("smooth", [False, True])

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 import hydrostat as hs
 from hydrostat.robot import Mount, Robot, find_risks, gallery_folder
@@ -23,7 +24,7 @@ KNOWN_RISK = re.compile(r"body: a limb has only [\d.]+ elements across")
 
 @cache
 def robot(name: str) -> Robot:
-    return hs.load_robot(gallery_folder(name))
+    return gallery_robot(name)
 
 
 def characteristic(triangles: np.ndarray) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from builders import strip_robot
+from builders import gallery_robot, strip_robot
 from robot_files import GOOD, SVG, edit, load
 from shapely import LineString, Point
 from test_risks_in_space import solid_robot
@@ -24,8 +24,6 @@ from hydrostat.robot import (
     Volume,
     Winch,
     find_risks,
-    gallery_folder,
-    load_robot,
 )
 
 
@@ -304,7 +302,7 @@ def test_risks_of_many_parts_are_one_line(good: Robot) -> None:
 )
 def test_gallery(name: str, words: tuple[str, ...]) -> None:
     """Oracle: the shortest cut through the drawing at the place of a thin limb; for the rest travel over length."""
-    robot = load_robot(gallery_folder(name))
+    robot = gallery_robot(name)
     risks = find_risks(robot)
     assert len(risks) == len(words)
     assert all(word in risk for word, risk in zip(words, risks, strict=True))

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from arches import arch
-from builders import strip_robot
+from builders import gallery_robot, strip_robot
 from test_buckling import column, hessian, mirrored, saddle  # pyright: ignore[reportMissingImports]
 
 from hydrostat.errors import InputError
-from hydrostat.robot import gallery_folder, load_robot
 from hydrostat.simulation import (
     Branch,
     BranchOptions,
@@ -287,7 +286,7 @@ def test_a_way_of_no_length_is_a_point(simulation: Simulation) -> None:
 @pytest.mark.usefixtures("unchecked")
 def test_small_snaps_of_one_limb_are_not_passed_over() -> None:
     """The starfish snaps by 1.6 mm of 280. A looser limit on the mean displacement saw it on the way there only."""
-    simulation = Simulation(load_robot(gallery_folder("starfish")))
+    simulation = Simulation(gallery_robot("starfish"))
     rest, full = simulation.solve({}), np.array([winch.travel for winch in simulation.robot.winches])
     there = follow_branch(simulation, rest, full, around_folds=True)
     back = follow_branch(simulation, there.end, {}, around_folds=True)

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from robustness import example_folders, fault, sweep  # pyright: ignore[reportMissingImports]
 
 import hydrostat as hs
-from hydrostat.robot import gallery_folder, load_robot
+from hydrostat.robot import load_robot
 
 
 @pytest.mark.usefixtures("unchecked")
@@ -26,7 +27,7 @@ def test_every_random_contraction_of_every_flat_example_converges(folder: Path) 
 @pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize("name", ["cupping_hand", "octopus_arm"])
 def test_random_contractions_of_a_body_in_space_converge(name: str) -> None:
-    assert sweep(load_robot(gallery_folder(name)), 8, seed=1).failures == []
+    assert sweep(gallery_robot(name), 8, seed=1).failures == []
 
 
 def test_the_judge_can_find_fault() -> None:

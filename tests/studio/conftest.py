@@ -1,8 +1,9 @@
 """The starfish, opened."""
 
 import pytest
+from builders import gallery_robot
 
-from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.work import Work
@@ -10,7 +11,7 @@ from hydrostat.studio.records.work import Work
 
 @pytest.fixture(scope="session")
 def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
+    return gallery_robot("starfish")
 
 
 @pytest.fixture

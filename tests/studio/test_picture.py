@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 from hydrostat.geometry.anchors import locate
-from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.robot import Robot
 from hydrostat.studio.view.packet import opened, packet
 from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.robot_things import robot_things, target_things
@@ -15,7 +16,7 @@ pytestmark = pytest.mark.filterwarnings("error")
 
 @pytest.fixture(scope="module", params=["starfish", "tongue"])
 def robot(request: pytest.FixtureRequest) -> Robot:
-    return load_robot(gallery_folder(request.param))
+    return gallery_robot(request.param)
 
 
 def test_a_packet_opens_to_what_was_put_in() -> None:

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 from hydrostat.errors import InputError
-from hydrostat.robot import gallery_folder, load_robot
+from hydrostat.robot import load_robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session, Tone
@@ -59,7 +60,7 @@ class Diary(Stage):
 
 @pytest.fixture(scope="module")
 def work() -> Work:
-    return Work(robot=load_robot(gallery_folder("starfish")))
+    return Work(robot=gallery_robot("starfish"))
 
 
 @pytest.fixture

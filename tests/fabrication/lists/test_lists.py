@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from shapely import transform
 from small_inputs import box, demand_of, given, square
 
@@ -14,8 +15,7 @@ from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
 from hydrostat.fabrication.lists.lists import make_lists
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.robot import Robot
-from hydrostat.robot.gallery import gallery_folder, gallery_names
-from hydrostat.robot.read import load_robot
+from hydrostat.robot.gallery import gallery_names
 
 
 def stitches(robot: Robot) -> tuple:
@@ -63,7 +63,7 @@ def test_the_same_bytes_twice() -> None:
 
 @pytest.mark.parametrize("name", gallery_names())
 def test_gallery_robots_have_sound_lists(name: str, unchecked: None) -> None:
-    robot = load_robot(gallery_folder(name))
+    robot = gallery_robot(name)
     flat = robot.body.mesh.dim == 2
     every = range(len(robot.cables))
     lists = make_lists(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
-from builders import mesh_body, strip_mesh
+from builders import gallery_robot, mesh_body, strip_mesh
 from manifold3d import Manifold
 from mould_robots import blob_body, foam_robot, slab_body
 
@@ -24,7 +24,7 @@ from hydrostat.fabrication.moulds.openings import Sprue, make_sprue
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.solids import body_solid
 from hydrostat.fabrication.solids.assembly import interferences
-from hydrostat.robot import MATERIALS, Pin, Robot, gallery_folder, load_robot
+from hydrostat.robot import MATERIALS, Pin, Robot
 
 PARTS = ("upper", "lower", "cavity", "sprue", "vents", "bolts", "slots", "keys")
 BIG = (1000.0, 1000.0, 1000.0)
@@ -44,7 +44,7 @@ def slab() -> Mould:
 
 @pytest.fixture(scope="module")
 def trunk() -> Mould:
-    return make_mould(load_robot(gallery_folder("trunk")), MouldOptions())
+    return make_mould(gallery_robot("trunk"), MouldOptions())
 
 
 def left_over(mould: Mould) -> float:

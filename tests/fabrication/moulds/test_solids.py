@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh
+from builders import gallery_robot, mesh_body, strip_mesh
 from manifold3d import Manifold
 from mould_robots import blob_body
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.solids import body_solid, closed_solid
 from hydrostat.fabrication.solids.printed import triangles_of
-from hydrostat.robot import gallery_folder, load_robot
 
 
 def test_ready_mesh_in_space_has_the_volume_of_its_tetrahedra() -> None:
@@ -27,7 +26,7 @@ def test_ready_flat_mesh_is_raised_by_its_thickness() -> None:
 
 
 def test_gallery_bodies_keep_their_volume() -> None:
-    flat, space = load_robot(gallery_folder("starfish")).body, load_robot(gallery_folder("trunk")).body
+    flat, space = gallery_robot("starfish").body, gallery_robot("trunk").body
     assert flat.outline is not None
     assert flat.thickness is not None
     assert space.healing is not None

@@ -7,19 +7,20 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from builders import gallery_robot, gallery_texts
 from plush_robots import SQUARE, drawn_body, plush_robot
 from shapely import Polygon, box, transform
-from winch_robots import gallery_robot, with_winches
+from winch_robots import with_winches
 
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.arrangement import LaidUnit, arranged
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
-from hydrostat.robot import Cable, Robot, Winch, gallery_names
+from hydrostat.robot import Cable, Robot, Winch
 
 N20, XL330, POLOLU_25D = MOTORS
-FLAT = [name for name in gallery_names() if gallery_robot(name).body.thickness is not None]
+FLAT = [name for name, text in gallery_texts().items() if "thickness" in text["body"]]
 
 
 def units_of(robot: Robot, motor: Motor = N20) -> tuple[WinchUnit, ...]:

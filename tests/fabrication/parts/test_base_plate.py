@@ -6,10 +6,10 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from builders import gallery_robot, gallery_texts
 from manifold3d import Manifold
 from overhang import overhang
 from shapely.geometry import Polygon
-from winch_robots import gallery_robot
 
 from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions
@@ -20,10 +20,9 @@ from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.fabrication.solids.construct import solid_of
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Mount, gallery_names
 
 BED = (220.0, 220.0, 250.0)
-OUTSIDE_ALL = [name for name in gallery_names() if gallery_robot(name).winches[0].mount is Mount.WORLD]
+OUTSIDE_ALL = [name for name, text in gallery_texts().items() if text["winch"][0].get("mount") == "world"]
 OUTSIDE = ["caging_gripper", "cupping_hand", "fish_tail", "octopus_arm", "tongue", "trunk"]
 
 

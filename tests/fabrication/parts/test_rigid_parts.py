@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from winch_robots import gallery_robot, given_demand
+from builders import gallery_robot
+from winch_robots import given_demand
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PartOptions

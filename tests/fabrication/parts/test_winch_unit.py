@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from manifold3d import Manifold
-from winch_robots import gallery_robot, with_winches
+from winch_robots import with_winches
 
 from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions

@@ -1,18 +1,11 @@
 """Robots and demands for tests of winches."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
 from hydrostat.fabrication.demand import Demand
-from hydrostat.robot import Robot, gallery_folder, load_robot
-
-
-@cache
-def gallery_robot(name: str) -> Robot:
-    """A robot of the gallery, read once."""
-    return load_robot(gallery_folder(name))
+from hydrostat.robot import Robot
 
 
 def given_demand(robot: Robot, torque: float = 0.03) -> Demand:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from patch_bodies import cushion, ellipsoid_body
 
-import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.pattern_checks import patch_checks
 from hydrostat.fabrication.kit_options import PatternOptions
@@ -14,12 +14,11 @@ from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.stitches import Side
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.robot import Robot
-from hydrostat.robot.gallery import gallery_folder
 
 
 @pytest.fixture(scope="module")
 def bear() -> Robot:
-    return hs.load_robot(gallery_folder("bear"))
+    return gallery_robot("bear")
 
 
 @pytest.fixture(scope="module")

@@ -3,17 +3,18 @@
 from dataclasses import replace
 
 import pytest
+from builders import gallery_robot
 
 from hydrostat.design import Constraints, RouteOptions, Zone
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.robot import Robot
 from hydrostat.studio.designing.run import asked_for, beginning, wished_constraints, wished_poses
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 
 @pytest.fixture(scope="module")
 def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
+    return gallery_robot("starfish")
 
 
 DISC, TRIANGLE = Zone(at=(0.0, 0.0), radius=0.02), Zone(outline=((0.0, 0.0), (0.04, 0.0), (0.02, 0.03)))

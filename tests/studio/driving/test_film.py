@@ -5,10 +5,11 @@ from threading import Event
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
@@ -23,7 +24,7 @@ SHORT = Timeline(keys=(Key(time=0.0, contractions={}), Key(time=0.4, contraction
 
 @pytest.fixture(scope="module")
 def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
+    return gallery_robot("starfish")
 
 
 class Told:

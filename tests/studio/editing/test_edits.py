@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
-from hydrostat.robot import Mount, Robot, gallery_folder, load_robot
+from hydrostat.robot import Mount, Robot
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.findings import in_words, look_over
@@ -24,17 +25,17 @@ pytestmark = pytest.mark.filterwarnings("error")
 
 @pytest.fixture(scope="module")
 def starfish() -> Robot:
-    return load_robot(gallery_folder("starfish"))
+    return gallery_robot("starfish")
 
 
 @pytest.fixture(scope="module")
 def tongue() -> Robot:
-    return load_robot(gallery_folder("tongue"))
+    return gallery_robot("tongue")
 
 
 @pytest.mark.parametrize("name", ["starfish", "tongue"])
 def test_every_key_names_a_part_with_a_place(name: str) -> None:
-    robot = load_robot(gallery_folder(name))
+    robot = gallery_robot(name)
     keys = keys_of(robot)
     parts = len(robot.pins) + len(robot.winches) + len(robot.cables) + len(robot.markers)
     assert len(set(keys)) == len(keys) == parts
@@ -80,7 +81,7 @@ def test_a_cable_that_begins_beside_its_winch_keeps_the_gap(starfish: Robot) -> 
 def test_a_box_moves_as_a_whole() -> None:
     robot = next(
         found for name in ("tongue", "trunk", "fish_tail", "octopus_arm")
-        if (found := load_robot(gallery_folder(name))).pins[0].box is not None
+        if (found := gallery_robot(name)).pins[0].box is not None
     )  # fmt: skip
     middle = place_of(robot, "pin:0")
     assert middle is not None
@@ -253,7 +254,7 @@ def test_a_mirrored_cable_has_a_twin_at_the_twin_winch(starfish: Robot) -> None:
 
 @pytest.mark.parametrize("name", ["starfish", "tongue"])
 def test_any_place_is_held_inside_the_body(name: str) -> None:
-    body = load_robot(gallery_folder(name)).body
+    body = gallery_robot(name).body
     rng = np.random.default_rng(3)
     for point in rng.uniform(-0.2, 0.2, (20, body.mesh.dim)):
         asked = tuple(point.tolist())

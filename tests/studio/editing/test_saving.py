@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from builders import gallery_robot
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -336,7 +337,7 @@ def test_names_that_the_file_does_not_allow_are_refused(robot: Robot, tmp_path: 
 
 def test_the_gallery_is_left_to_the_letter() -> None:
     text = (gallery_folder("starfish") / "robot.toml").read_text(encoding="utf-8")
-    assert merged_text(text, load_robot(gallery_folder("starfish"))) == text
+    assert merged_text(text, gallery_robot("starfish")) == text
 
 
 def test_a_document_knows_how_its_folder_was(robot: Robot, tmp_path: Path) -> None:

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from PIL import Image
 
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.fabrication import KitOptions
 from hydrostat.robot import Robot
-from hydrostat.robot.gallery import gallery_folder
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.exporting.exporter import Export, Exporter
@@ -49,7 +49,7 @@ class Told:
 
 @pytest.fixture(scope="module")
 def starfish() -> Robot:
-    return hs.load_robot(gallery_folder("starfish"))
+    return gallery_robot("starfish")
 
 
 @pytest.fixture(scope="module")

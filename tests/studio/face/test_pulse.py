@@ -4,8 +4,8 @@ import time
 from threading import Event
 
 import pytest
+from builders import gallery_robot
 
-from hydrostat.robot import gallery_folder, load_robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.pulse import SHORTEST, Pulse
 from hydrostat.studio.records.work import Work
@@ -45,7 +45,7 @@ class Busy(Stage):
 @pytest.fixture
 def session() -> Session:
     made = Session()
-    made.document.open(Work(robot=load_robot(gallery_folder("starfish"))))
+    made.document.open(Work(robot=gallery_robot("starfish")))
     made.stages = {name: Busy(made) for name in StageName}
     made.go(StageName.POSE)
     return made

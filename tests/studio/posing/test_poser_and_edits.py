@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, gallery_folder, load_robot, save_robot
+from hydrostat.robot import Robot, load_robot, save_robot
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.held import Held, Mode
@@ -168,7 +169,7 @@ def test_what_is_shown_is_of_one_robot(starfish: Robot, document: Document, monk
     """While one thread meets a new body, another one that draws sees the old one whole, or the new one whole."""
     from hydrostat.studio.posing import poser as module
 
-    tail = load_robot(gallery_folder("fish_tail"))
+    tail = gallery_robot("fish_tail")
     jobs = Jobs(document.bell)
     poser = Poser(document, jobs)
     poser.show_pose("wave")

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 from hydrostat.errors import InputError
-from hydrostat.robot import gallery_folder, load_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -189,7 +189,7 @@ def test_the_session_stays_as_it_was(tmp_path: Path) -> None:
     bell = Bell()
     document, jobs = Document(bell), Jobs(bell)
     starter = Starter(document, jobs, tmp_path)
-    document.open(Work(robot=load_robot(gallery_folder("letter_e"))))
+    document.open(Work(robot=gallery_robot("letter_e")))
     serial, robot = document.serial, document.robot
     rung = threading.Event()
     bell.listen(lambda topic: rung.set())

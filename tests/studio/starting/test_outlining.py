@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from shapely import LinearRing
 
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.outline_file import read_outline
-from hydrostat.robot import gallery_folder, load_robot, save_robot
+from hydrostat.robot import load_robot, save_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -38,7 +39,7 @@ SQUARE = (LoopCorner(-50, -30), LoopCorner(50, -30), LoopCorner(50, 30), LoopCor
 @pytest.mark.parametrize("name", FLAT)
 def test_few_corners_follow_the_outlines_of_the_gallery(name: str) -> None:
     """Oracle: Hausdorff distance to the outline; 0.5 % of the size, with a twentieth of its points."""
-    outline = load_robot(gallery_folder(name)).body.outline
+    outline = gallery_robot(name).body.outline
     assert outline is not None
     loops = fitted(outline)
     assert len(loops) == len(outline.rings)
@@ -113,7 +114,7 @@ def test_loops_go_to_the_screen_and_back() -> None:
 
 def starfish() -> Work:
     wishes = Wishes(zones=((Paint.KEEP_OUT, Zone(at=(0.01, 0.02), radius=0.005)),))
-    return Work(robot=load_robot(gallery_folder("starfish")), wishes=wishes)
+    return Work(robot=gallery_robot("starfish"), wishes=wishes)
 
 
 def test_an_unchanged_outline_keeps_all_parts_in_their_places(tmp_path: Path) -> None:
@@ -195,7 +196,7 @@ def test_a_slow_outline_loses_nothing(monkeypatch: pytest.MonkeyPatch, meanwhile
     document = Document(bell)
     starter = Starter(document, Jobs(bell))
     document.open(starfish())
-    other = Work(robot=load_robot(gallery_folder("fish_tail")))
+    other = Work(robot=gallery_robot("fish_tail"))
     starter.outline_open()
     begun = [meanwhile]
 
@@ -243,4 +244,4 @@ def test_cables_that_are_kept_keep_their_numbers_in_a_new_outline() -> None:
 def test_only_drawn_bodies_have_an_outline() -> None:
     """Oracle: InputError."""
     with pytest.raises(InputError, match="no outline"):
-        Outlining.of(load_robot(gallery_folder("trunk")))
+        Outlining.of(gallery_robot("trunk"))

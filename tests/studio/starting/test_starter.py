@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from builders import gallery_robot
 
 from hydrostat.errors import InputError
 from hydrostat.robot import gallery_folder, gallery_names, load_robot, save_robot
@@ -71,7 +72,7 @@ def test_pictures_are_of_the_robots_as_they_are() -> None:
     import numpy as np
     from PIL import Image
 
-    drawn = draw_picture(load_robot(gallery_folder("starfish")))
+    drawn = draw_picture(gallery_robot("starfish"))
 
     def pixels(content: bytes) -> np.ndarray:
         return np.asarray(Image.open(BytesIO(content)).convert("RGBA"), dtype=float)
@@ -84,14 +85,14 @@ def test_pictures_are_of_the_robots_as_they_are() -> None:
 def test_a_gallery_robot_is_opened_as_a_copy(desk: Desk) -> None:
     """Oracle: the robot read from its folder; there is no folder to save to."""
     desk.starter.open_gallery(gallery_folder("starfish"))
-    assert desk.document.robot == load_robot(gallery_folder("starfish"))
+    assert desk.document.robot == gallery_robot("starfish")
     assert desk.document.folder is None
     assert desk.document.saved
 
 
 def test_a_folder_is_opened_and_remembered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: what was saved; another studio later lists it first."""
-    robot = load_robot(gallery_folder("letter_e"))
+    robot = gallery_robot("letter_e")
     save_robot(robot, tmp_path / "shelf" / "mine")
     save_robot(robot, tmp_path / "shelf" / "other")
     monkeypatch.chdir(tmp_path / "shelf")
@@ -105,7 +106,7 @@ def test_a_folder_is_opened_and_remembered(tmp_path: Path, monkeypatch: pytest.M
 
 def test_robots_are_listed_once_and_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: three folders, one of which has a second way to it, two of which have one name."""
-    robot = load_robot(gallery_folder("letter_e"))
+    robot = gallery_robot("letter_e")
     for place in ("here/mine", "there/mine", "there/other"):
         save_robot(robot, tmp_path / place)
     (tmp_path / "here" / "also").symlink_to(tmp_path / "there" / "mine")
@@ -135,7 +136,7 @@ def test_suggestions_show_robots_first(tmp_path: Path) -> None:
     """Oracle: the folders that were made."""
     for name in ("aa", "ab", "zz"):
         (tmp_path / name).mkdir()
-    save_robot(load_robot(gallery_folder("letter_e")), tmp_path / "ac")
+    save_robot(gallery_robot("letter_e"), tmp_path / "ac")
     assert suggestions(str(tmp_path / "a")) == [str(tmp_path / name) for name in ("ac", "aa", "ab")]
     assert suggestions("/no/such/place/a") == []
     assert suggestions("a\0b") == []

@@ -4,10 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from view_modules import needs_node, run
 
-from hydrostat.robot import load_robot
-from hydrostat.robot.gallery import gallery_folder
 from hydrostat.studio.view.packet import opened, packet
 from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.robot_things import robot_things
@@ -51,7 +50,7 @@ def test_words_of_any_length_and_tables_of_any_size(tmp_path: Path, word: str) -
 
 @needs_node
 def test_frame_of_a_robot(tmp_path: Path) -> None:
-    robot = load_robot(gallery_folder("fish_tail"))
+    robot = gallery_robot("fish_tail")
     things = robot_things(robot)
     picture = Picture(robot, things, 3)
     check(tmp_path, picture.frame(robot.body.mesh.nodes, things, {"stamp": 12.5}))

@@ -5,10 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+from builders import gallery_robot
 from view_modules import needs_node, run
-
-from hydrostat.robot import load_robot
-from hydrostat.robot.gallery import gallery_folder
 
 SCRIPT = """
 import { readFileSync } from "node:fs";
@@ -30,7 +28,7 @@ def rings(found: list[list[float]]) -> list[np.ndarray]:
 
 @needs_node
 def test_rim_goes_through_its_nodes_and_the_seam_lies_inside(tmp_path: Path) -> None:
-    mesh = load_robot(gallery_folder("starfish")).body.mesh
+    mesh = gallery_robot("starfish").body.mesh
     rest = np.c_[mesh.nodes, np.zeros(len(mesh.nodes))]
     slope = np.array([[1.2, 0.3, 0.0], [-0.4, 0.9, 0.0], [0.0, 0.0, 1.0]])
     shift = np.array([0.01, -0.02, 0.0])
