@@ -3,20 +3,18 @@
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.animation import find_ffmpeg, save_gif, save_mp4
 from hydrostat.plot.branch_figure import draw_branches
-from hydrostat.plot.film import Film, Stop, film, pose_stops, winch_stops
+from hydrostat.plot.design_charts import draw_front, draw_growth
+from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, winch_stops
 from hydrostat.plot.frame import Frame
-from hydrostat.plot.growth_figure import draw_growth
 from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion
-from hydrostat.plot.pareto_figure import draw_front
 from hydrostat.plot.picture_file import inline_svg, save_png
 from hydrostat.plot.pose_figures import draw_portrait, draw_pose, draw_reached
 from hydrostat.plot.report import report_text, write_report
 from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
 from hydrostat.plot.scene import save_glb
 from hydrostat.plot.trajectory_figure import draw_trajectory
-from hydrostat.plot.trajectory_film import trajectory_frames
 
 __all__ = [
     "Film",

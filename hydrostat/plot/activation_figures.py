@@ -9,12 +9,11 @@ from matplotlib.figure import Figure
 
 from hydrostat.design import Activation
 from hydrostat.drawing.palette import LIGHT, WINCHES
+from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.places import Spread
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
-from hydrostat.plot.surface import Surface
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, Spread
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
@@ -112,7 +111,7 @@ def _flat(pane: Pane, ends: Float[np.ndarray, "lines 2 dim"]) -> Float[np.ndarra
     return pane.places(ends.reshape(-1, ends.shape[2])).reshape(-1, 2, 2)
 
 
-def _draw_markers(sheet: Sheet, robot: Robot, activation: Activation, panes: list[Pane], surface: Surface) -> None:
+def _draw_markers(sheet: Sheet, robot: Robot, activation: Activation, panes: list[Pane], surface: DrawnBody) -> None:
     from hydrostat.geometry.anchors import locate
 
     goals = target_places(activation.target)

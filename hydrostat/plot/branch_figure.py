@@ -9,14 +9,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing.palette import ERROR, GRID, INK, MUTED, WINCHES, mix
+from hydrostat.drawing.palette import ERROR, INK, WINCHES, mix
 from hydrostat.drawing.render import render
 from hydrostat.errors import InputError
+from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import FlatPane, Pane, fit_pixel
-from hydrostat.plot.places import Places, Spread
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Places, Sheet, Spread
 from hydrostat.robot import Robot
 from hydrostat.simulation import Branch, PathDependence, SolvedPose
 from hydrostat.units import counted
@@ -182,12 +182,7 @@ def _chart(figure: Figure, index: int, rows: int, columns: int, *, last: bool) -
     wide = (width - 0.2) / columns
     left, low = 0.55 + column * wide, 0.42 + (rows - 1 - row) * ROW
     axes = figure.add_axes((left / width, low / height, (wide - 0.6) / width, (ROW - EDGES) / height))
-    axes.grid(color=GRID, linewidth=0.8)
-    axes.set_axisbelow(True)
-    axes.set_facecolor("none")
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(MUTED)
-    axes.tick_params(colors=MUTED, labelsize=7)
+    plain_axes(axes, size=7)
     if last:
         axes.set_xlabel("share of the contractions [%]", color=INK, fontsize=8)
     return axes

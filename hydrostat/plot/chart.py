@@ -1,4 +1,4 @@
-"""`new_chart`: an empty chart in the look of the other pictures."""
+"""The look of charts: `new_chart` is an empty one, `plain_axes` one of several in a figure."""
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -10,6 +10,9 @@ from hydrostat.plot.sheet import WIDTH
 
 EDGES = (0.62, 0.2, 0.5, 0.16)
 """Left, right, lower and upper border [inch]."""
+
+DASHES = ("-", "--", ":", "-.")
+"""Lines of one colour, one after the other."""
 
 
 def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0) -> tuple[Figure, Axes]:
@@ -26,13 +29,18 @@ def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0
     left, right, lower, upper = EDGES
     box = (left / width, lower / height, (width - left - right) / width, (height - lower - upper) / height)
     axes = figure.add_axes(box)
+    plain_axes(axes)
+    axes.set_xlabel(across, color=INK, fontsize=8.5)
+    axes.set_ylabel(up, color=INK, fontsize=8.5)
+    axes.xaxis.set_major_locator(MaxNLocator(nbins=10, integer=True, min_n_ticks=1))
+    return figure, axes
+
+
+def plain_axes(axes: Axes, *, size: float = 8) -> None:
+    """Give axes the look of all charts: a pale grid, quiet numbers of a size [pt], no frame."""
     axes.set_facecolor("none")
     axes.grid(color=GRID, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(MUTED)
-    axes.tick_params(colors=MUTED, labelsize=8)
-    axes.set_xlabel(across, color=INK, fontsize=8.5)
-    axes.set_ylabel(up, color=INK, fontsize=8.5)
-    axes.xaxis.set_major_locator(MaxNLocator(nbins=10, integer=True, min_n_ticks=1))
-    return figure, axes
+    axes.tick_params(colors=MUTED, labelsize=size)

@@ -6,18 +6,17 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import UInt8
 from matplotlib.artist import Artist
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from hydrostat.drawing.palette import PAPER
+from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.hardware import draw_cables, draw_winches
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import SpacePane, fit_pixel
-from hydrostat.plot.picture_file import drawing
-from hydrostat.plot.places import Spread
-from hydrostat.plot.rigging import Rigging
-from hydrostat.plot.skin import Skin
+from hydrostat.plot.picture_file import figure_pixels
+from hydrostat.plot.sheet import Spread
+from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
@@ -43,9 +42,9 @@ class FramePictures:
             frames: all that will be drawn.
             width: of a picture [pixels].
         """
-        self._robot, self._rigging = robot, Rigging(robot)
+        self._robot, self._carried = robot, Attachments(robot)
         self._scale = TensionScale.of(np.concatenate([frame.tensions for frame in frames]))
-        points = _seen(robot, self._rigging, frames)
+        points = _seen(robot, self._carried, frames)
         self._sheet, panes = open_sheet(
             robot, [], [points], title=shorten(robot.name), subtitle=" ", width=INCHES, bar=True, ruled=False
         )
@@ -69,11 +68,7 @@ class FramePictures:
                 artist.remove()
         self._sheet.figure.texts[1].set_text(frame.words)
         self._draw(frame)
-        canvas = self._sheet.figure.canvas
-        assert isinstance(canvas, FigureCanvasAgg)
-        with drawing():
-            canvas.draw()
-        picture = np.asarray(canvas.buffer_rgba())[..., :3].copy()
+        picture = figure_pixels(self._sheet.figure)[..., :3].copy()
         self._last = frame, picture
         return picture
 
@@ -83,16 +78,16 @@ class FramePictures:
         return [*axes.lines, *axes.patches, *axes.images, *axes.texts]
 
     def _draw(self, frame: Frame) -> None:
-        sheet, pane, robot, rigging = self._sheet, self._pane, self._robot, self._rigging
+        sheet, pane, robot, carried = self._sheet, self._pane, self._robot, self._carried
         surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True)
         colours = [self._scale.colour(float(tension)) for tension in frame.tensions]
         draw_cables(
-            sheet, robot, [surface.run(points) for points in rigging.cables(frame.nodes)], colours=colours, width=2.6
+            sheet, robot, [surface.run(points) for points in carried.cables(frame.nodes)], colours=colours, width=2.6
         )
-        winches = rigging.winches(frame.nodes)
+        winches = carried.winches(frame.nodes)
         draw_winches(sheet, robot, pane.places(winches), surface.fades(winches), contractions=frame.contractions)
         names = [marker.name for marker in robot.markers]
-        markers = pane.named(dict(zip(names, rigging.markers(frame.nodes), strict=True)))
+        markers = pane.named(dict(zip(names, carried.markers(frame.nodes), strict=True)))
         if frame.target is not None:
             targets = pane.named(target_places(frame.target))
             draw_errors(sheet, markers, targets)
@@ -100,14 +95,11 @@ class FramePictures:
         draw_markers(sheet, markers)
 
 
-def _seen(robot: Robot, rigging: Rigging, frames: Sequence[Frame]) -> Spread:
+def _seen(robot: Robot, carried: Attachments, frames: Sequence[Frame]) -> Spread:
     """Points that every picture must hold [m]: body, cables and winches of all frames, and all targets."""
-    mesh = robot.body.mesh
-    skin = Skin.of(robot.body) if mesh.dim == 2 else None
-    parts: list[Spread] = []
-    for nodes in {id(frame.nodes): frame.nodes for frame in frames}.values():
-        outside = nodes[mesh.boundary_nodes] if skin is None else skin.shape(nodes)[0]
-        parts += [outside, *rigging.cables(nodes), rigging.winches(nodes)]
+    shapes = list({id(frame.nodes): frame.nodes for frame in frames}.values())
+    parts = outer_points(robot.body, shapes)
+    parts += [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
     parts += [target_points(frame.target) for frame in frames if frame.target is not None]
     return np.concatenate(parts)
 

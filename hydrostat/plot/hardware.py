@@ -4,27 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Vector
 from hydrostat.drawing.palette import DARK, FELT, LIGHT, mix, winch_colours
+from hydrostat.plot.drawn_body import DrawnCable
 from hydrostat.plot.labels import Labels, shorten
-from hydrostat.plot.places import Place, Places, Spread
-from hydrostat.plot.rigging import Rigging
-from hydrostat.plot.sheet import MILLIMETRES, Sheet
-from hydrostat.plot.surface import Run
+from hydrostat.plot.sheet import MILLIMETRES, Place, Places, Sheet
 from hydrostat.robot import Mount, Robot, Winch
 
 SHARES = np.linspace(0.3, 0.9, 13)
 """Shares of a cable's length where its number may stand."""
-
-
-def cable_points(robot: Robot, nodes: Nodes) -> list[Spread]:
-    """Where the points of each cable are [m] when the nodes are at `nodes` [m]."""
-    return Rigging(robot).cables(nodes)
-
-
-def winch_points(robot: Robot, nodes: Nodes) -> Points:
-    """Where each winch is [m] when the nodes are at `nodes` [m]."""
-    return Rigging(robot).winches(nodes)
 
 
 def spool_size(winch: Winch, scale: float) -> float:
@@ -40,7 +28,7 @@ def stopper_bar(run: Places, scale: float) -> Places:
 
 
 def draw_cables(
-    sheet: Sheet, robot: Robot, runs: list[Run], *, colours: Sequence[str] | None = None, width: float = 2.0
+    sheet: Sheet, robot: Robot, runs: list[DrawnCable], *, colours: Sequence[str] | None = None, width: float = 2.0
 ) -> None:
     """Cables along their runs: sheaths as pale pipes, a bead at each via point, a bar as the stopper.
 
@@ -172,7 +160,7 @@ def _draw_part(sheet: Sheet, part: Places, colour: str, width: float, fade: floa
         sheet.curve(part, color=colour, linewidth=width, zorder=9)
 
 
-def _draw_beads(sheet: Sheet, run: Run, colour: str) -> None:
+def _draw_beads(sheet: Sheet, run: DrawnCable, colour: str) -> None:
     fades = run.fades[1:-1]
     for fade in np.unique(fades):
         look = {"color": _faded(LIGHT, fade), "markeredgecolor": _faded(colour, fade)}
@@ -180,7 +168,7 @@ def _draw_beads(sheet: Sheet, run: Run, colour: str) -> None:
         sheet.dots(beads, 2.2 if fade else 3.0, markeredgewidth=0.6 if fade else 0.9, zorder=9.2 - 2 * fade, **look)
 
 
-def _draw_stopper(sheet: Sheet, run: Run, colour: str, width: float) -> None:
+def _draw_stopper(sheet: Sheet, run: DrawnCable, colour: str, width: float) -> None:
     bar, fade = stopper_bar(run.points, sheet.scale), float(run.fades[-1])
     sheet.curve(bar, color=_faded(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
     sheet.curve(bar, color=_faded(colour, fade), linewidth=width + 0.8, zorder=9.4)

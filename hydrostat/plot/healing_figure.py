@@ -15,8 +15,7 @@ from hydrostat.drawing.render import Render, render
 from hydrostat.geometry.healing.mend import sides_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.plot.pane import fit_pixel, lay_image
-from hydrostat.plot.places import Place
-from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, Sheet, new_sheet, round_step
+from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, Place, Sheet, new_sheet, round_step
 
 LINE, HEAD, LETTERS = 11.0, 28.0, 92
 """Height of a line of notes and of what stands above the views [pt], and letters of a line on a page of usual width."""

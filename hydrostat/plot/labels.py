@@ -4,8 +4,7 @@ import numpy as np
 import shapely
 
 from hydrostat.drawing.palette import INK, LIGHT
-from hydrostat.plot.places import Place, Places
-from hydrostat.plot.sheet import Sheet
+from hydrostat.plot.sheet import Place, Places, Sheet
 
 LONGEST = 26
 """Most letters of a name that a picture shows."""

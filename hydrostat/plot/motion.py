@@ -6,11 +6,11 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing.palette import FELT, FELT_LIGHT, LIGHT, SEAM, STITCH, mix, winch_colours
-from hydrostat.plot.hardware import cable_points, spool_size, stopper_bar, winch_points
-from hydrostat.plot.html import Html, tag
-from hydrostat.plot.places import Places
-from hydrostat.plot.sheet import MILLIMETRES, framed
-from hydrostat.plot.skin import Skin
+from hydrostat.drawing.svg import NAMESPACE, Html, path, shape, tag
+from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.hardware import spool_size, stopper_bar
+from hydrostat.plot.sheet import MILLIMETRES, Places, framed
+from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
@@ -56,10 +56,10 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float
     Raises:
         InputError: a body in space.
     """
-    skin = Skin.of(robot.body)
+    skin = FlatSkin.of(robot.body)
     seconds = step * (len(frames) - 1)
-    shapes = [_path(skin.shape(nodes)) for nodes in frames]
-    seams = [_path(skin.seam(nodes)) for nodes in frames]
+    shapes = [_outline(skin.shape(nodes)) for nodes in frames]
+    seams = [_outline(skin.seam(nodes)) for nodes in frames]
     parts = [
         _moving(shapes, seconds, fill=FELT, stroke=SEAM, stroke_width="1.3"),
         _moving(seams, seconds, fill=FELT_LIGHT, stroke=STITCH, stroke_width="1.1", stroke_dasharray="3 2.4"),
@@ -71,7 +71,7 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float
     return tag(
         "svg",
         *parts,
-        xmlns="http://www.w3.org/2000/svg",
+        xmlns=NAMESPACE,
         viewBox=" ".join(f"{value:.1f}" for value in box),
         class_="figure",
         role="img",
@@ -80,11 +80,11 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float
 
 
 def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    colours, runs = winch_colours(robot.winches), [cable_points(robot, nodes) for nodes in frames]
+    colours, runs = winch_colours(robot.winches), list(map(Attachments(robot).cables, frames))
     lines = []
     for index, cable in enumerate(robot.cables):
-        bars = [_path([stopper_bar(MILLIMETRES * run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
-        paths = [_path([run[index]], closed=False) for run in runs]
+        bars = [_outline([stopper_bar(MILLIMETRES * run[index], SCALE) / MILLIMETRES], closed=False) for run in runs]
+        paths = [_outline([run[index]], closed=False) for run in runs]
         for colour, width in ((LIGHT, 3.2), (colours[cable.winch], 1.7)):
             look = {"fill": "none", "stroke": colour, "stroke_linecap": "round"}
             lines.append(_moving(paths, seconds, stroke_width=f"{width}", **look))
@@ -93,12 +93,12 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
 
 
 def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    places = [MILLIMETRES * winch_points(robot, nodes) for nodes in frames]
+    places = [MILLIMETRES * place for place in map(Attachments(robot).winches, frames)]
     spools = []
     for index, (winch, colour) in enumerate(zip(robot.winches, winch_colours(robot.winches).values(), strict=True)):
         radius = spool_size(winch, SCALE) * SCALE / 2
         discs = [
-            tag("circle", r=f"{radius * share:.2f}", fill=fill)
+            shape("circle", r=f"{radius * share:.2f}", fill=fill)
             for share, fill in ((1.12, LIGHT), (1, colour), (0.58, mix(colour, LIGHT, 0.75)), (0.2, colour))
         ]
         way = [f"{place[index][0]:.2f} {-place[index][1]:.2f}" for place in places]
@@ -113,12 +113,9 @@ def _moving(paths: Sequence[str], seconds: float, **look: str) -> Html:
 
 def _animation(kind: str, attribute: str, values: Sequence[str], seconds: float, **more: str) -> Html:
     time = {"dur": f"{seconds:.2f}s", "repeatCount": "indefinite"}
-    return tag(kind, attributeName=attribute, values=";".join(values), **time, **more)
+    return shape(kind, attributeName=attribute, values=";".join(values), **time, **more)
 
 
-def _path(rings: Iterable[Places], *, closed: bool = True) -> str:
+def _outline(lines: Iterable[Places], *, closed: bool = True) -> str:
     """Path data of lines [m], in millimetres with y down."""
-    end = "Z" if closed else ""
-    return "".join(
-        "M" + "L".join(f"{x:.1f} {-y:.1f}" for x, y in MILLIMETRES * np.asarray(ring)) + end for ring in rings
-    )
+    return path((MILLIMETRES * np.asarray(line) * [1, -1] for line in lines), digits=1, closed=closed)

@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from hydrostat.drawing.palette import GRID, INK, MUTED, WINCHES, winch_colours
+from hydrostat.drawing.palette import INK, WINCHES, winch_colours
+from hydrostat.plot.chart import DASHES, plain_axes
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.robot import Robot
@@ -53,18 +54,14 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
 
 def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], colours: list[str]) -> None:
     """A line for each column; those that move most are named beside their ends, as many as there is place for."""
-    axes.grid(color=GRID, linewidth=0.8)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(MUTED)
-    axes.tick_params(colors=MUTED, labelsize=8)
+    plain_axes(axes)
     axes.yaxis.label.set_color(INK)
     dashes = {}
     for column, (name, colour) in enumerate(zip(names, colours, strict=True)):
         count = dashes.setdefault(colour, 0)
         dashes[colour] += 1
         line = values[:, column]
-        axes.plot(times, line, color=colour, linewidth=1.4, linestyle=_DASHES[count % len(_DASHES)], label=name)
+        axes.plot(times, line, color=colour, linewidth=1.4, linestyle=DASHES[count % len(DASHES)], label=name)
     if names:
         most = np.argsort(-np.ptp(values, axis=0), kind="stable")[:MOST_NAMES]
         handles, _ = axes.get_legend_handles_labels()
@@ -78,7 +75,3 @@ def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], 
             frameon=False,
             labelcolor=INK,
         )
-
-
-_DASHES = ("-", "--", ":", "-.")
-"""Lines of one colour one after the other."""

@@ -8,7 +8,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from jaxtyping import UInt8
 from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
@@ -63,6 +66,17 @@ def inline_svg(figure: Figure, *, name: str, label: str) -> str:
     head = f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" {box[0] if box else ""}'
     head += f' class="figure" role="img" aria-label="{html.escape(label)}">'
     return re.sub(r"<svg[^>]*>", lambda _: head, text, count=1).strip()
+
+
+def figure_pixels(figure: Figure, *, dpi: float | None = None) -> UInt8[np.ndarray, "_ _ 4"]:
+    """Red, green, blue and cover of each pixel of a figure, the top row first."""
+    if dpi is not None:
+        figure.set_dpi(dpi)
+    canvas = figure.canvas
+    assert isinstance(canvas, FigureCanvasAgg)
+    with drawing():
+        canvas.draw()
+    return np.asarray(canvas.buffer_rgba()).copy()
 
 
 @contextmanager

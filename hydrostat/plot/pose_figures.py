@@ -9,21 +9,19 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing.palette import ERROR, LIGHT
 from hydrostat.geometry.outline import Outline, Ring
 from hydrostat.ik import ReachedPose
+from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.hardware import (
     cable_dots,
-    cable_points,
     draw_cables,
     draw_numbers,
     draw_winches,
     name_winches,
-    winch_points,
 )
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.places import Places, Spread
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
-from hydrostat.plot.surface import Run, Surface
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Places, Sheet, Spread
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
@@ -116,7 +114,8 @@ def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, wi
         frame: points that the picture must hold [m], so that several share one frame; the body if left out.
         width: of the picture [inch].
     """
-    cables, winches = cable_points(robot, nodes), winch_points(robot, nodes)
+    carried = Attachments(robot)
+    cables, winches = carried.cables(nodes), carried.winches(nodes)
     beside = [*cables, winches] if nodes.shape[1] == 3 else []
     shapes, points = ([nodes], beside) if frame is None else ([], [frame])
     sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
@@ -137,7 +136,8 @@ def _in_pose(
     rings: Sequence[Ring] = (),
 ) -> tuple[Sheet, list[Pane], Labels]:
     """A sheet with ghost, posed body, cables by tension and winches, room for rings and for labels off targets [m]."""
-    rest, cables, winches = robot.body.mesh.nodes, cable_points(robot, pose.nodes), winch_points(robot, pose.nodes)
+    rest, carried = robot.body.mesh.nodes, Attachments(robot)
+    cables, winches = carried.cables(pose.nodes), carried.winches(pose.nodes)
     goals = np.array(list(targets.values())).reshape(-1, robot.body.mesh.dim)
     sheet, panes = open_sheet(
         robot,
@@ -150,7 +150,7 @@ def _in_pose(
     )
     scale = TensionScale.of(pose.tensions)
     colours = [scale.colour(float(tension)) for tension in pose.tensions]
-    drawn: list[tuple[Surface, list[Run]]] = []
+    drawn: list[tuple[DrawnBody, list[DrawnCable]]] = []
     for pane in panes:
         pane.draw_ghost(sheet)
         surface = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
@@ -166,7 +166,7 @@ def _in_pose(
     return sheet, panes, labels
 
 
-def _labels(sheet: Sheet, pane: Pane, surface: Surface, runs: list[Run], points: list[Vector]) -> Labels:
+def _labels(sheet: Sheet, pane: Pane, surface: DrawnBody, runs: list[DrawnCable], points: list[Vector]) -> Labels:
     """Labels that keep off cables, and off markers and targets at points [m]."""
     dots = cable_dots(sheet, [run.points for run in runs])
     places = pane.places(np.array(points)) if points else np.empty((0, 2))

@@ -3,13 +3,23 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from hydrostat.design.network import Network
+import numpy as np
+
+from hydrostat.arrays import Nodes
+from hydrostat.design.network import Network, TreeTrace
+from hydrostat.design.score_card import rest_error
 from hydrostat.errors import InputError
-from hydrostat.plot.html import Html, safe, tag
-from hydrostat.plot.report_hero import hero
-from hydrostat.plot.report_stages import stages
-from hydrostat.plot.report_style import STYLE
-from hydrostat.plot.report_tables import footer
+from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.motion import motion_frames, motion_svg
+from hydrostat.plot.picture_file import inline_svg
+from hydrostat.plot.pose_figures import draw_portrait
+from hydrostat.plot.report_chapters import chapters
+from hydrostat.plot.report_parts import Html, captioned, fact, page, tag
+from hydrostat.plot.report_tables import footer, millimetres
+from hydrostat.plot.sheet import MILLIMETRES, Spread
+from hydrostat.plot.skin import outer_points
+from hydrostat.robot import Robot
+from hydrostat.units import counted
 
 
 def write_report(
@@ -36,12 +46,84 @@ def report_text(network: Network, *, title: str | None = None, facts: Mapping[st
     if not network.reached:
         raise InputError("a report needs at least one pose that the network was tried on; this one has none")
     name = title or network.robot.name
-    head = tag(
-        "head",
-        Html('<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'),
-        Html('<meta name="color-scheme" content="light dark">'),
-        tag("title", f"{name} \N{MIDDLE DOT} hydrostat"),
-        tag("style", Html(STYLE)),
+    return page(name, _hero(network, name), *chapters(network), footer(network, facts or {}))
+
+
+PORTRAIT = 4.6
+"""Width of a portrait [inch]."""
+
+MOST_POSES = 5
+"""So many poses of a body in space have a portrait."""
+
+HOW = ", by its own winches, in simulation"
+
+
+def _hero(network: Network, title: str) -> Html:
+    """Headline, the errors, and portraits at rest and in poses."""
+    robot = network.robot
+    winches = counted(len(robot.winches), "winch")
+    cables = counted(len(robot.cables), "cable")
+    poses = counted(len(network.reached), "pose")
+    return tag(
+        "div",
+        tag("p", "hydrostat \N{MIDDLE DOT} design report", class_="eyebrow"),
+        tag("h1", title),
+        tag("p", f"A soft body, {winches} and {cables}, designed for {poses}. This page tells how they were found, "
+            "and how near the robot comes to what was asked."),
+        _path(network, f"with {winches} and {cables}"),
+        _portraits(network),
+        class_="hero",
+    )  # fmt: skip
+
+
+def _path(network: Network, words: str) -> Html:
+    """Error at rest, with all muscles, with the network."""
+    steps = [_error_fact(rest_error(network), "at rest, nothing pulls")]
+    activations = network.trace.activations if isinstance(network.trace, TreeTrace) else ()
+    if activations:
+        bound = float(np.sqrt(np.mean(np.array([activation.rms_error for activation in activations]) ** 2)))
+        fibres = len(activations[0].fibres)
+        steps.append(_error_fact(bound, f"if each of {fibres} muscle fibres could pull by itself"))
+    share = 100 * network.rms_error / network.robot.body.mesh.size
+    steps.append(_error_fact(network.rms_error, f"{words}: {share:.1f} % of the body's size", best=True))
+    return tag("ol", *steps, class_="path")
+
+
+def _error_fact(error: float, words: str, *, best: bool = False) -> Html:
+    """An error [m] as a large number."""
+    number = f"{MILLIMETRES * error:.1f}" if error >= 1e-3 else millimetres(error)
+    return fact(number, "mm rms", words, best=best)
+
+
+def _portraits(network: Network) -> Html:
+    robot = network.robot
+    rest = robot.body.mesh.nodes
+    poses = [reached.pose.nodes for reached in network.reached]
+    outer = outer_points(robot.body, [*poses, rest])
+    carried = Attachments(robot)
+    beside = [part for nodes in (*poses, rest) for part in (*carried.cables(nodes), carried.winches(nodes))]
+    frame = np.concatenate(outer if rest.shape[1] == 2 else [*outer, *beside])
+    still = _portrait(robot, rest, frame, "hero-rest", "At rest")
+    shown = network.reached[:1] if rest.shape[1] == 2 else network.reached[:MOST_POSES]
+    posed = [
+        _portrait(robot, reached.pose.nodes, frame, f"hero-pose-{index}", "In a pose")
+        for index, reached in enumerate(shown)
+    ]
+    names = [reached.wanted.name for reached in shown]
+    if rest.shape[1] == 3:
+        pictures = [captioned(picture, name, HOW) for picture, name in zip(posed, names, strict=True)]
+        kind = "grid" if len(pictures) == 1 else "grid small"
+        return tag("div", captioned(still, "At rest", ", as it is made"), *pictures, class_=kind)
+    frames = motion_frames(robot, [reached.pose.contractions for reached in network.reached])
+    moving = motion_svg(robot, frames, label="The robot moves from rest into each of its poses and back")
+    return tag(
+        "div",
+        captioned(still, "At rest", ", as it is sewn"),
+        captioned(posed[0], names[0], HOW, kind="still"),
+        captioned(moving, ", ".join(reached.wanted.name for reached in network.reached), HOW, kind="moving"),
+        class_="grid",
     )
-    main = tag("main", hero(network, name), *stages(network), footer(network, facts or {}))
-    return f'<!doctype html>\n<html lang="en">{head}<body>{safe(main)}</body></html>\n'
+
+
+def _portrait(robot: Robot, nodes: Nodes, frame: Spread, name: str, label: str) -> Html:
+    return Html(inline_svg(draw_portrait(robot, nodes, frame=frame, width=PORTRAIT), name=name, label=label))

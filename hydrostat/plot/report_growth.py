@@ -7,12 +7,10 @@ import numpy as np
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, size_of
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.score_card import rest_error
-from hydrostat.plot.growth_figure import draw_growth, stage_runs
-from hydrostat.plot.html import Html, tag
-from hydrostat.plot.numbers import millimetres
-from hydrostat.plot.pareto_figure import draw_front
-from hydrostat.plot.report_parts import Chapter, grid, picture
-from hydrostat.plot.stage_figure import draw_stage, stage_frame
+from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
+from hydrostat.plot.report_parts import Chapter, Html, grid, picture, tag
+from hydrostat.plot.report_tables import millimetres
+from hydrostat.plot.robot_figures import draw_stage, stage_frame
 from hydrostat.units import counted
 
 MOST_STAGES = 8

@@ -1,4 +1,4 @@
-"""The tables of the report: all its numbers, with their units."""
+"""The tables of the report: all its numbers, in millimetres, with a true minus sign and their units."""
 
 from collections.abc import Mapping
 
@@ -7,8 +7,7 @@ import numpy as np
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.drawing.palette import winch_colours
 from hydrostat.ik import ReachedPose
-from hydrostat.plot.html import Html, bar, swatch, table, tag
-from hydrostat.plot.numbers import number, place
+from hydrostat.plot.report_parts import Html, bar, swatch, table, tag
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.targets import rest_errors
 from hydrostat.plot.tension_scale import TensionScale
@@ -82,3 +81,66 @@ def _score(network: Network) -> dict[str, str]:
 def _body(robot: Robot) -> str:
     mesh = robot.body.mesh
     return f"{len(mesh.nodes)} nodes, {len(mesh.elements)} elements, {MILLIMETRES * mesh.size:.0f} mm"
+
+
+def body_table(robot: Robot) -> Html:
+    """Size, thickness and material."""
+    body, material = robot.body, robot.body.material
+    rows = [
+        ("size", f"{MILLIMETRES * body.mesh.size:.0f} mm"),
+        *([("thickness", f"{MILLIMETRES * body.thickness:.3g} mm")] if body.thickness else []),
+        ("material", material.name or "by its numbers"),
+        ("Young's modulus", f"{material.young / 1e3:.3g} kPa"),
+        ("Poisson's ratio", f"{material.poisson:g}"),
+        ("mesh", f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"),
+    ]
+    return table(("", ""), rows, numbers=(1,))
+
+
+def place_table(robot: Robot) -> Html:
+    """Where each marker is at rest."""
+    return table(("marker", "at [mm]"), [(marker.name, place(marker.at)) for marker in robot.markers], numbers=(1,))
+
+
+def winch_table(robot: Robot) -> Html:
+    """Place and limits of each winch."""
+    colours = winch_colours(robot.winches)
+    rows = [
+        ([swatch(colours[winch.name]), winch.name], place(winch.at), number(MILLIMETRES * winch.spool_radius, 1),
+         number(MILLIMETRES * winch.travel, 0), number(MILLIMETRES * winch.release, 0))
+        for winch in robot.winches
+    ]  # fmt: skip
+    heads = ("winch", "at [mm]", "spool radius [mm]", "takes in [mm]", "lets out [mm]")
+    return table(heads, rows, numbers=(1, 2, 3, 4))
+
+
+def cable_table(robot: Robot) -> Html:
+    """Length, via points and stopper of each cable; its spool's radius if that of one is not its winch's."""
+    colours, steps = winch_colours(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
+    rows = [
+        (str(count), [swatch(colours[cable.winch]), cable.winch], number(MILLIMETRES * cable.length, 1),
+         str(len(cable.points) - 2), place(cable.points[-1]), f"{cable.stiffness / 1e3:.3g}",
+         *([number(MILLIMETRES * (cable.spool_radius or robot.winch(cable.winch).spool_radius), 1)] if steps else []))
+        for count, cable in enumerate(robot.cables, 1)
+    ]  # fmt: skip
+    heads = ("cable", "winch", "length [mm]", "via points", "stopper [mm]", "stiffness [N/mm]",
+             *(["spool radius [mm]"] if steps else []))  # fmt: skip
+    return table(heads, rows, numbers=range(2, len(heads)))
+
+
+def place(point: object) -> str:
+    """Coordinates [m] in millimetres."""
+    return ", ".join(number(MILLIMETRES * float(value), 1) for value in np.asarray(point))
+
+
+def number(value: float, digits: int) -> str:
+    """A number with so many digits after the point."""
+    text = f"{value:.{digits}f}"
+    text = text.lstrip("-") if float(text) == 0 else text
+    return text.replace("-", "\N{MINUS SIGN}")
+
+
+def millimetres(error: float) -> str:
+    """An error [m] in millimetres: to a hundredth, below a tenth of a millimetre to two digits."""
+    value = MILLIMETRES * error
+    return f"{value:.2f}" if value >= 0.1 or value == 0 else f"{value:.2g}"

@@ -1,5 +1,6 @@
-"""Pictures of a robot at rest: its parts, its targets, its network."""
+"""Pictures of a robot at rest: its parts, its targets, its network, several networks of one body."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,21 +8,20 @@ from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
 from hydrostat.drawing.palette import winch_colours
+from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.hardware import (
     cable_dots,
-    cable_points,
     draw_cables,
     draw_numbers,
     draw_winches,
     name_winches,
-    winch_points,
 )
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.places import Places, Spread
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet
-from hydrostat.plot.surface import Run, Surface
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Places, Sheet, Spread
+from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import draw_arrows, draw_crosses, draw_markers, rest_markers, target_places, target_points
 from hydrostat.robot import Pose, Robot
 from hydrostat.units import counted
@@ -106,8 +106,8 @@ class _View:
     """One pane with the body at rest: where its cables run, where its winches are [mm] and how far these fade."""
 
     pane: Pane
-    surface: Surface
-    runs: list[Run]
+    surface: DrawnBody
+    runs: list[DrawnCable]
     winches: Places
     fades: Vector
 
@@ -124,7 +124,8 @@ def _at_rest(
 ) -> tuple[Sheet, list[_View]]:
     """A sheet with the body and its pins, and where `cables` run in each of its panes."""
     nodes = robot.body.mesh.nodes
-    lines, winches = cable_points(robot, nodes), winch_points(robot, nodes)
+    carried = Attachments(robot)
+    lines, winches = carried.cables(nodes), carried.winches(nodes)
     extra = [] if also is None else [also]
     fixed = np.array([winch.at for winch in robot.winches], dtype=float).reshape(-1, nodes.shape[1])
     sheet, panes = open_sheet(robot, [nodes], [*lines, fixed, *extra], title=title, subtitle=subtitle, width=width)
@@ -144,3 +145,37 @@ def _labels(sheet: Sheet, robot: Robot, view: _View) -> Labels:
     for marker in markers:
         labels.reserve(marker, 6)
     return labels
+
+
+SMALL = 2.7
+"""Width of such a picture [inch]."""
+
+
+def draw_stage(robot: Robot, *, like: Robot, frame: Spread, width: float = SMALL) -> Figure:
+    """A network on the rest shape, each cable in the colour of its winch, without words.
+
+    Args:
+        robot: with the network.
+        like: the robot from whose best side all of them are seen.
+        frame: points that the picture must hold [m], see `stage_frame`.
+        width: of the picture [inch].
+    """
+    nodes, carried = robot.body.mesh.nodes, Attachments(robot)
+    sheet, (pane, *_) = open_sheet(like, [], [frame], width=width, ruled=False)
+    surface = pane.draw_body(sheet, nodes, pins=True)
+    draw_cables(sheet, robot, [surface.run(points) for points in carried.cables(nodes)], width=1.8)
+    winches = carried.winches(nodes)
+    draw_winches(sheet, robot, pane.places(winches), surface.fades(winches))
+    draw_markers(sheet, pane.named(rest_markers(robot)), size=3.4)
+    return sheet.figure
+
+
+def stage_frame(robots: Iterable[Robot]) -> Spread:
+    """Points that hold the rest shape and all networks of robots of one body [m]."""
+    robots = list(robots)
+    body = robots[0].body
+    points = [point for robot in robots for cable in robot.cables for point in cable.points]
+    points += [winch.at for robot in robots for winch in robot.winches]
+    return np.concatenate(
+        [*outer_points(body, [body.mesh.nodes]), np.array(points, dtype=float).reshape(-1, body.mesh.dim)]
+    )

@@ -12,11 +12,11 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.drawing.camera import Spots, upright
 from hydrostat.drawing.palette import DARK, FELT, LIGHT, channels, winch_colours
 from hydrostat.errors import InputError
+from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.glb import Glb, Shape
 from hydrostat.plot.open_sheet import way_up
-from hydrostat.plot.places import Spread
-from hydrostat.plot.rigging import Rigging
+from hydrostat.plot.sheet import Spread
 from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
 from hydrostat.plot.targets import target_points
 from hydrostat.plot.tension_scale import TensionScale
@@ -148,8 +148,8 @@ def _body(film: _Film) -> Shape:
 
 def _cables(film: _Film) -> Shape:
     """A tube for each cable, in the colours of tension."""
-    rigging, size = Rigging(film.robot), film.robot.body.mesh.size
-    runs = [[_in_space(points) for points in rigging.cables(nodes)] for nodes in film.nodes]
+    carried, size = Attachments(film.robot), film.robot.body.mesh.size
+    runs = [[_in_space(points) for points in carried.cables(nodes)] for nodes in film.nodes]
     scale = TensionScale.of(np.concatenate([key.tensions for key in film.keys]))
     solids, colours = [], []
     for index in range(len(film.robot.cables)):
@@ -163,23 +163,23 @@ def _cables(film: _Film) -> Shape:
 
 def _add_hardware(glb: Glb, film: _Film) -> None:
     """Spools, and balls for markers and for the ends of cables, which the body carries without turning them."""
-    robot, rigging, size = film.robot, Rigging(film.robot), film.robot.body.mesh.size
+    robot, carried, size = film.robot, Attachments(film.robot), film.robot.body.mesh.size
     ways = {winch.name: np.array([1.0, 0.0, 0.0]) for winch in robot.winches}
     for cable in reversed(robot.cables):
         ends = _in_space(np.array(cable.points[:2], dtype=float))
         ways[cable.winch] = ends[1] - ends[0]
-    colours, winches = winch_colours(robot.winches), _carried(film, rigging.winches)
+    colours, winches = winch_colours(robot.winches), _carried(film, carried.winches)
     for index, winch in enumerate(robot.winches):
         radius = min(max(robot.largest_spool(winch), SPOOL[0] * size), SPOOL[1] * size)
         shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colours[winch.name])
         glb.add_copies(shape, winches[:, [index]], [shape.name])
     if robot.cables:
-        ends = _carried(film, lambda nodes: np.array([points[-1] for points in rigging.cables(nodes)]))
+        ends = _carried(film, lambda nodes: np.array([points[-1] for points in carried.cables(nodes)]))
         names = [f"stopper {number}" for number in range(1, len(robot.cables) + 1)]
         glb.add_copies(_shape("stopper", sphere(2.2 * CABLE * size), DARK), ends, names)
     if robot.markers:
         names = [f"marker {marker.name}" for marker in robot.markers]
-        glb.add_copies(_shape("marker", sphere(MARKER * size), LIGHT), _carried(film, rigging.markers), names)
+        glb.add_copies(_shape("marker", sphere(MARKER * size), LIGHT), _carried(film, carried.markers), names)
 
 
 def _carried(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "_ _ 3"]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -11,7 +12,16 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
 from hydrostat.drawing.palette import GRID, INK, MUTED
-from hydrostat.plot.places import Place, Places
+
+Place = Float[np.ndarray, " 2"]
+"""One place, in millimetres unless its function says otherwise."""
+
+Places = Float[np.ndarray, "_ 2"]
+"""Places, one row each, in millimetres unless their function says otherwise."""
+
+Spread = Float[np.ndarray, "_ dim"]
+"""Points or nodes of a robot [m], any number of them in one call."""
+
 
 MILLIMETRES = 1e3
 """Pictures are drawn in millimetres."""

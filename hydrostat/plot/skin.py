@@ -1,5 +1,6 @@
-"""`Skin`: the smooth boundary of a flat body, stuck to its mesh so that it follows every pose."""
+"""`FlatSkin`: the smooth boundary of a flat body, stuck to its mesh so that it follows every pose."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Self
@@ -12,7 +13,7 @@ from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.plot.places import Places
+from hydrostat.plot.sheet import Places, Spread
 from hydrostat.robot import Body
 
 RING_POINTS = 320
@@ -20,7 +21,7 @@ RING_POINTS = 320
 
 
 @dataclass(frozen=True, eq=False)
-class Skin:
+class FlatSkin:
     """Rings of points on and inside the boundary of a body.
 
     Attributes:
@@ -61,6 +62,14 @@ class Skin:
     def _at(self, nodes: Nodes, rings: tuple[slice, ...]) -> list[Places]:
         positions = self.anchors.positions(nodes)
         return [_soften(positions[ring]) for ring in rings]
+
+
+def outer_points(body: Body, shapes: Sequence[Nodes]) -> list[Spread]:
+    """Points all along the boundary of a body, for each of its shapes: its nodes [m]; of a flat one on its skin."""
+    if body.mesh.dim == 3:
+        return [nodes[body.mesh.boundary_nodes] for nodes in shapes]
+    skin = FlatSkin.of(body)
+    return [skin.shape(nodes)[0] for nodes in shapes]
 
 
 def _shape(body: Body) -> Polygon | MultiPolygon:

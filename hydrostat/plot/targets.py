@@ -7,8 +7,7 @@ from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing.palette import DARK, ERROR, LIGHT
-from hydrostat.plot.places import Place
-from hydrostat.plot.sheet import Sheet
+from hydrostat.plot.sheet import Place, Sheet
 from hydrostat.robot import Pose, Robot
 
 

@@ -8,12 +8,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing.palette import ERROR, GHOST, GRID, INK, MUTED, WINCHES, winch_colours
+from hydrostat.drawing.palette import ERROR, GHOST, INK, MUTED, WINCHES, winch_colours
 from hydrostat.ik import KeyPose, Trajectory
-from hydrostat.plot.hardware import cable_points, winch_points
+from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.chart import DASHES, plain_axes
 from hydrostat.plot.labels import shorten
-from hydrostat.plot.picture_file import drawing
-from hydrostat.plot.places import Spread
+from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.pose_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.robot import Robot
@@ -30,9 +30,6 @@ TALLEST = 1.7
 
 CHART = 1.45
 """Height of a chart [inch]."""
-
-DASHES = ("-", "--", ":", "-.")
-"""Lines of the first winches, and of those after them that have the same colours."""
 
 
 def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None = None, width: float = WIDTH) -> Figure:
@@ -74,25 +71,12 @@ def _told_apart(shown: list[tuple[str, float, SolvedPose]]) -> list[tuple[str, f
 
 
 def _portraits(robot: Robot, poses: list[SolvedPose]) -> list[np.ndarray]:
-    """Pictures of poses, all in one frame."""
-    parts: list[Spread] = []
-    for pose in poses:
-        parts += [pose.nodes, *cable_points(robot, pose.nodes), winch_points(robot, pose.nodes)]
-    frame = np.concatenate(parts)
-    images = []
-    with drawing():
-        for pose in poses:
-            figure = draw_portrait(robot, pose.nodes, frame=frame, width=PORTRAIT)
-            figure.set_dpi(220)
-            canvas = figure.canvas
-            assert isinstance(canvas, FigureCanvasAgg)
-            canvas.draw()
-            images.append(np.asarray(canvas.buffer_rgba()).copy())
-    return _cropped(images)
-
-
-def _cropped(images: list[np.ndarray]) -> list[np.ndarray]:
-    """Without the border that is empty in all."""
+    """Pictures of poses, all in one frame, without the border that is empty in all."""
+    carried, shapes = Attachments(robot), [pose.nodes for pose in poses]
+    beside = [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
+    frame = np.concatenate([*shapes, *beside])
+    figures = [draw_portrait(robot, nodes, frame=frame, width=PORTRAIT) for nodes in shapes]
+    images = [figure_pixels(figure, dpi=220) for figure in figures]
     drawn = np.any([image[..., 3] > 0 for image in images], axis=0)
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
     return [image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] for image in images]
@@ -149,12 +133,8 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
 
 
 def _chart(axes: Axes, label: str, *, last: bool) -> None:
-    axes.set_facecolor("none")
-    axes.grid(color=GRID, linewidth=0.8)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(MUTED)
-    axes.tick_params(colors=MUTED, labelsize=7.5, labelbottom=last)
+    plain_axes(axes, size=7.5)
+    axes.tick_params(labelbottom=last)
     axes.set_ylabel(label, color=INK, fontsize=8)
     # Numbers far from 1 would be so wide that the label leaves the picture.
     axes.ticklabel_format(axis="y", scilimits=(-1, 4), useOffset=False)

@@ -13,7 +13,7 @@ from builders import strip_robot
 import hydrostat as hs
 from hydrostat.cli.pose import _warn
 from hydrostat.geometry.files.outline_file import read_drawing
-from hydrostat.plot.skin import Skin
+from hydrostat.plot.skin import FlatSkin
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -29,7 +29,7 @@ def drawing(starfish: Path, tmp_path: Path) -> Path:
     body = robot.body
     page = read_drawing(body.content, name=body.file, size=body.size).page
     nodes = hs.Simulation(robot).solve(HIDDEN).nodes
-    ring = Skin.of(body).shape(nodes)[0] / np.array(page.scale) + np.array(page.origin)
+    ring = FlatSkin.of(body).shape(nodes)[0] / np.array(page.scale) + np.array(page.origin)
     path = "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in ring) + "Z"
     file = tmp_path / "bent.svg"
     file.write_text(re.sub(r' d="[^"]*"', f' d="{path}"', body.content.decode(), count=1, flags=re.DOTALL))

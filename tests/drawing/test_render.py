@@ -12,7 +12,7 @@ from hydrostat.drawing.palette import FELT
 from hydrostat.drawing.render import render
 from hydrostat.drawing.shades import sky_shares
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.plot.surface import Surface
+from hydrostat.plot.drawn_body import DrawnBody
 
 SIDES = (0.1, 0.05, 0.03)
 EYES = ([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.5, -0.8, 0.4], [-0.3, 0.2, 0.9], [0.1, 1.0, -0.2])
@@ -139,7 +139,7 @@ def test_a_run_is_cut_where_it_enters_the_body() -> None:
     """Oracle: a straight cable from 40 mm before the box to 40 mm inside it is covered beyond the corner x = 0."""
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
     image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
-    surface = Surface(image.rings(), (camera, np.array([7.0, 3.0]), image, 100.0))
+    surface = DrawnBody(image.rings(), (camera, np.array([7.0, 3.0]), image, 100.0))
     run = surface.run(np.array([[-0.04, 0.01, 0.015], [0.04, 0.01, 0.015]]))
     (free, none), (covered, fade) = run.parts
     assert none == 0
@@ -153,7 +153,7 @@ def test_a_run_is_cut_where_it_enters_the_body() -> None:
 def test_deeper_things_fade_more() -> None:
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
     image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
-    surface = Surface(image.rings(), (camera, np.zeros(2), image, 100.0))
+    surface = DrawnBody(image.rings(), (camera, np.zeros(2), image, 100.0))
     fades = surface.fades(np.array([[0.05, y, 0.015] for y in (-0.01, 0.005, 0.02, 0.045)]))
     assert (np.diff(fades) > 0).all()
 

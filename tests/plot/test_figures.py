@@ -13,7 +13,7 @@ from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_robot, hostil
 from hydrostat import plot
 from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, triangulate
-from hydrostat.plot.skin import Skin
+from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Mount
 
 FIGURES = (
@@ -103,7 +103,7 @@ def test_a_winch_in_the_world() -> None:
 
 def test_skin_is_of_flat_bodies_only() -> None:
     with pytest.raises(InputError, match="space"):
-        Skin.of(box_robot().body)
+        FlatSkin.of(box_robot().body)
 
 
 def test_skin_follows_the_drawing_and_an_affine_motion() -> None:
@@ -115,7 +115,7 @@ def test_skin_follows_the_drawing_and_an_affine_motion() -> None:
     body = strip_robot().body
     body = replace(body, mesh=triangulate(drawing, 0.03), outline=drawing)
     shear = np.array([[1.2, 0.3], [0.0, 0.9]])
-    skin = Skin.of(body)
+    skin = FlatSkin.of(body)
     ring = skin.shape(body.mesh.nodes)[0]
     np.testing.assert_allclose(np.linalg.norm(ring, axis=1), 0.1, atol=1e-4)
     np.testing.assert_allclose(skin.shape(body.mesh.nodes @ shear)[0], ring @ shear, atol=1e-12)

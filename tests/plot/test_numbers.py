@@ -2,7 +2,7 @@
 
 import pytest
 
-from hydrostat.plot.numbers import millimetres
+from hydrostat.plot.report_tables import millimetres
 
 
 @pytest.mark.parametrize(

@@ -160,14 +160,14 @@ def test_another_program_finds_the_volume_of_the_body(kind: str, tmp_path: Path)
 
 def test_winches_and_markers_are_carried_and_targets_come_and_go(tmp_path: Path) -> None:
     """Oracle: the marker of each frame by its element's weights; the target's place, and the frames it is shown in."""
-    from hydrostat.plot.rigging import Rigging
+    from hydrostat.plot.attachments import Attachments
 
     robot, made = space_film()
     read = scene("space", tmp_path)
     times, places = read.channel("marker tip", "translation")
     for time, place in zip(times, places, strict=True):
         nodes = made.frames[round(float(time) / made.step)].nodes
-        assert place == pytest.approx(Rigging(robot).markers(nodes)[0], abs=1e-6)
+        assert place == pytest.approx(Attachments(robot).markers(nodes)[0], abs=1e-6)
     name = "target nod: tip"
     assert read.document["nodes"][read.node(name)]["translation"] == pytest.approx([0.11, 0.03, 0.03])
     times, sizes = read.channel(name, "scale")

@@ -10,7 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.patterns.marks import winch_marks
 from hydrostat.fabrication.patterns.shape import Circle
 from hydrostat.plot import winch_stops
-from hydrostat.plot.robot_tables import cable_table
+from hydrostat.plot.report_tables import cable_table
 from hydrostat.robot import Robot, find_risks
 
 

@@ -4,11 +4,16 @@ import numpy as np
 
 from hydrostat.ik import ReachedPose
 from hydrostat.plot import draw_network, draw_reached, draw_rest, draw_target
-from hydrostat.plot.html import Html, safe, table, tag
-from hydrostat.plot.report_parts import NARROW, Chapter, grid, picture, section
-from hydrostat.plot.report_style import STYLE
-from hydrostat.plot.report_tables import contraction_table, marker_table, tension_table
-from hydrostat.plot.robot_tables import body_table, cable_table, place_table, winch_table
+from hydrostat.plot.report_parts import NARROW, Chapter, Html, fact, grid, page, picture, section, table, tag
+from hydrostat.plot.report_tables import (
+    body_table,
+    cable_table,
+    contraction_table,
+    marker_table,
+    place_table,
+    tension_table,
+    winch_table,
+)
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Robot, find_risks, robot_hash
 from hydrostat.studio.exporting.download import Download, file_name
@@ -29,17 +34,9 @@ def make_report(report: Report, robot: Robot) -> Download:
 def robot_report(solved: SolvedPoses) -> str:
     """The page as text; it needs no other file and no network."""
     robot = solved.robot
-    head = tag(
-        "head",
-        Html('<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'),
-        Html('<meta name="color-scheme" content="light dark">'),
-        tag("title", f"{robot.name} \N{MIDDLE DOT} hydrostat"),
-        tag("style", Html(STYLE)),
-    )
     chapters = [_body(robot), *_targets(robot), *_network(robot), *_reached(solved)]
     sections = [section(number, chapter) for number, chapter in enumerate(chapters, start=1)]
-    main = tag("main", _hero(solved), *sections, _footer(robot))
-    return f'<!doctype html>\n<html lang="en">{head}<body>{safe(main)}</body></html>\n'
+    return page(robot.name, _hero(solved), *sections, _footer(robot))
 
 
 def _hero(solved: SolvedPoses) -> Html:
@@ -53,8 +50,8 @@ def _hero(solved: SolvedPoses) -> Html:
         errors = np.concatenate([list(reached.errors.values()) for reached in solved.reached])
         error, tension = _rms(errors), max(float(np.max(reached.pose.tensions)) for reached in solved.reached)
         share = f"{100 * error / robot.body.mesh.size:.1f} % of the body's size"
-        steps.append(_step(f"{MILLIMETRES * error:.1f}", "mm rms", f"of all markers in all poses: {share}", best=True))
-        steps.append(_step(f"{tension:.1f}", "N", "the largest tension of a cable in these poses"))
+        steps.append(fact(f"{MILLIMETRES * error:.1f}", "mm rms", f"of all markers in all poses: {share}", best=True))
+        steps.append(fact(f"{tension:.1f}", "N", "the largest tension of a cable in these poses"))
     return tag(
         "div",
         tag("p", "hydrostat \N{MIDDLE DOT} robot report", class_="eyebrow"),
@@ -63,11 +60,6 @@ def _hero(solved: SolvedPoses) -> Html:
         tag("ol", *steps, class_="path") if steps else "",
         class_="hero",
     )
-
-
-def _step(number: str, unit: str, words: str, *, best: bool = False) -> Html:
-    shown = tag("b", number, tag("small", unit))
-    return tag("li", shown, tag("span", words), **({"class_": "best"} if best else {}))
 
 
 def _body(robot: Robot) -> Chapter:

@@ -2,14 +2,20 @@
 
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.ik import ReachedPose
-from hydrostat.plot.html import Html, tag
+from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.pose_figures import draw_reached
 from hydrostat.plot.report_growth import alternative_chapters, growth_chapters
-from hydrostat.plot.report_muscles import muscle_chapters
-from hydrostat.plot.report_parts import NARROW, Chapter, grid, picture, section
-from hydrostat.plot.report_tables import contraction_table, marker_table, tension_table
+from hydrostat.plot.report_parts import NARROW, Chapter, Html, grid, picture, section, tag
+from hydrostat.plot.report_tables import (
+    body_table,
+    cable_table,
+    contraction_table,
+    marker_table,
+    place_table,
+    tension_table,
+    winch_table,
+)
 from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
-from hydrostat.plot.robot_tables import body_table, cable_table, place_table, winch_table
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Robot, Source
 from hydrostat.units import counted
@@ -21,13 +27,13 @@ _HEADS = {
 }
 
 
-def stages(network: Network) -> list[Html]:
+def chapters(network: Network) -> list[Html]:
     """All chapters, numbered in their order: what was asked, how the network came about, what it reaches."""
     trace = network.trace
     way = muscle_chapters(network, trace) if isinstance(trace, TreeTrace) else growth_chapters(network, trace)
-    chapters = [_body(network.robot), _targets(network), *way, _network(network), _reached(network)]
-    chapters += alternative_chapters(network)
-    return [section(number, chapter) for number, chapter in enumerate(chapters, start=1)]
+    told = [_body(network.robot), _targets(network), *way, _network(network), _reached(network)]
+    told += alternative_chapters(network)
+    return [section(number, chapter) for number, chapter in enumerate(told, start=1)]
 
 
 def _body(robot: Robot) -> Chapter:
@@ -87,4 +93,37 @@ def _reached_pose(robot: Robot, reached: ReachedPose, index: int) -> Html:
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
     return tag(
         "div", picture(figure, f"reached-{index}", reached.wanted.name, note), tag("div", *numbers), class_="pose"
+    )
+
+
+def muscle_chapters(network: Network, trace: TreeTrace) -> list[Chapter]:
+    """What muscles would do, and the routes that grew from them; nothing where there were no muscles."""
+    return [_activations(network, trace), _routes(network, trace)] if trace.activations else []
+
+
+def _activations(network: Network, trace: TreeTrace) -> Chapter:
+    words = (
+        "A tongue or an octopus arm moves by muscle alone. Suppose that the body were full of muscle fibres, each free "
+        "to pull as it likes: these are the tensions that bring it into the pose. The wider and darker a fibre, the "
+        "more it pulls; a red line is what is left between marker and target."
+    )
+    pictures = []
+    for index, activation in enumerate(trace.activations):
+        figure = draw_activation(network.robot, activation, title="", width=NARROW)
+        note = f": {MILLIMETRES * activation.rms_error:.2f} mm rms with free muscles"
+        pictures.append(picture(figure, f"activation-{index}", activation.target.name, note))
+    return Chapter("What muscles would do", words, [grid(*pictures)])
+
+
+def _routes(network: Network, trace: TreeTrace) -> Chapter:
+    words = "Nobody can sew in hundreds of muscles. The strongest are kept, and neighbours are joined into routes."
+    pictures = []
+    for index, (activation, kept) in enumerate(zip(trace.activations, trace.candidates, strict=True)):
+        figure = draw_candidates(network.robot, activation, kept, title="", width=NARROW)
+        note = f": the strongest {len(kept)} of {counted(len(activation.fibres), 'fibre')}"
+        pictures.append(picture(figure, f"candidates-{index}", f"Candidates for {activation.target.name}", note))
+    figure = draw_trees(network.robot, trace.trees, title="", width=NARROW)
+    note = f": {counted(len(trace.trees), 'route')} that join neighbouring candidates"
+    return Chapter(
+        "From muscles to routes", words, [grid(*pictures, picture(figure, "trees", "Trees", note), kind="small")]
     )

@@ -1,4 +1,4 @@
-"""`Surface`: a drawn body, and what of cables, winches and markers lies behind it."""
+"""`DrawnBody`: a drawn body, and what of cables, winches and markers lies behind it."""
 
 from dataclasses import dataclass
 
@@ -7,8 +7,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing.camera import Camera
 from hydrostat.drawing.render import Render
-from hydrostat.plot.places import Place, Places, Spread
-from hydrostat.plot.sheet import MILLIMETRES
+from hydrostat.plot.sheet import MILLIMETRES, Place, Places, Spread
 
 STEP = 1.0
 """Length of the pieces into which a run is cut to see which of them are covered, in pixels."""
@@ -18,7 +17,7 @@ LEVELS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class DrawnCable:
     """A cable on a picture.
 
     Attributes:
@@ -33,7 +32,7 @@ class Run:
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class DrawnBody:
     """The drawn body.
 
     Attributes:
@@ -54,11 +53,11 @@ class Surface:
         levels = np.ceil(LEVELS * (1 - np.exp(-3 * depths / thickness))) / LEVELS
         return np.where(depths > max(0.02 * thickness, image.buffer.pixel), 0.26 + 0.42 * levels, 0.0)
 
-    def run(self, points: Points) -> Run:
+    def run(self, points: Points) -> DrawnCable:
         """A cable through points [m]."""
         if self.sight is None:
             places = MILLIMETRES * points
-            return Run(places, [(places, 0.0)], np.zeros(len(points)))
+            return DrawnCable(places, [(places, 0.0)], np.zeros(len(points)))
         camera, shift, image, _ = self.sight
         fine = _divided(points, STEP * image.buffer.pixel / MILLIMETRES)
         places, fades = camera.see(MILLIMETRES * fine)[:, :2] + shift, self.fades(fine)
@@ -66,7 +65,7 @@ class Surface:
         starts, ends = [0, *cuts], [*cuts, len(fades)]
         parts = [(places[start : end + 1], float(fades[start])) for start, end in zip(starts, ends, strict=True)]
         whole = camera.see(MILLIMETRES * points)[:, :2] + shift
-        return Run(whole, [part for part in parts if len(part[0]) > 1], self.fades(points))
+        return DrawnCable(whole, [part for part in parts if len(part[0]) > 1], self.fades(points))
 
 
 def _divided(points: Points, step: float) -> Spread:

@@ -1,4 +1,4 @@
-"""`Rigging`: where cables, winches and markers are in any pose, found in the mesh once."""
+"""`Attachments`: where cables, winches and markers are in any pose, found in the mesh once."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from jaxtyping import Bool
 
 from hydrostat.arrays import Nodes, Points
 from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.plot.places import Spread
+from hydrostat.plot.sheet import Spread
 from hydrostat.robot import Mount, Robot
 from hydrostat.robot.point import Point
 
 
 @dataclass(frozen=True, eq=False)
-class Rigging:
+class Attachments:
     """What a robot's body carries.
 
     Attributes:
