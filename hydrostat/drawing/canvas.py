@@ -31,7 +31,7 @@ FONT = "Libertinus Serif"
 
 @dataclass(frozen=True)
 class CanvasFrame:
-    """Where true places come to lie on a canvas.
+    """Scale and place of a drawing on a canvas.
 
     Attributes:
         scale: millimetres of paper for one of the thing.
@@ -45,7 +45,7 @@ class CanvasFrame:
 
     @classmethod
     def fit(cls, box: Float[np.ndarray, "2 2"], room: Box) -> Self:
-        """As large as there is room for, in its middle; `box`: lowest and highest place of the thing."""
+        """Fit a thing into a room, as large as may be, in its middle; `box`: lowest and highest place of the thing."""
         left, top, right, bottom = room
         wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
         scale = min((right - left) / wide, (bottom - top) / high)
@@ -53,11 +53,11 @@ class CanvasFrame:
         return cls(scale, (left + right) / 2 - scale * middle_x, (top + bottom) / 2 + scale * middle_y)
 
     def on(self, place: Sequence[float] | np.ndarray) -> Spot:
-        """Where a place lies on the canvas [mm]."""
+        """Place on the canvas [mm] of a place of the thing."""
         return self.left + self.scale * float(place[0]), self.base - self.scale * float(place[1])
 
     def way(self, places: Iterable[Sequence[float] | np.ndarray]) -> list[Spot]:
-        """Where places lie on the canvas [mm]."""
+        """Places on the canvas [mm] of places of the thing."""
         return [self.on(place) for place in places]
 
 
@@ -111,6 +111,11 @@ class Canvas:
         if drawn:
             self._parts.append(shape("path", d=drawn, fill=_ink(grey), fill_rule="evenodd"))
 
+    def box(self, box: Box, *, grey: float) -> None:
+        """A filled rectangle."""
+        left, top, right, bottom = box
+        self.fill([[(left, top), (right, top), (right, bottom), (left, bottom)]], grey=grey)
+
     def disc(self, at: Spot, radius: float, *, grey: float = 1.0, edge: float = THIN) -> None:
         """A round spot with a black edge of some width [mm]; 0 for none."""
         x, y, r = (number(value, 2) for value in (*at, radius))
@@ -132,7 +137,7 @@ class Canvas:
         if halo:
             wide, high = text_size(words, size)
             left = at[0] - wide * {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
-            self.fill([_rectangle((left - 0.3, at[1] - high / 2, left + wide + 0.3, at[1] + high / 2))], grey=1.0)
+            self.box((left - 0.3, at[1] - high / 2, left + wide + 0.3, at[1] + high / 2), grey=1.0)
         x, y, height = (number(value, 2) for value in (at[0], at[1] + 0.32 * size * POINT, size * POINT))
         face = {"font_size": height, "font_weight": "bold" if bold else None}
         self._parts.append(tag("text", words, x=x, y=y, text_anchor=anchor, **face, fill=_ink(grey)))
@@ -172,13 +177,8 @@ def text_size(words: str, size: float) -> tuple[float, float]:
 
 
 def balloon_radius(words: str, size: float = 9.0) -> float:
-    """Of the circle round words [mm]."""
+    """Radius of the circle round words [mm]."""
     return max(0.62 * size * POINT, 0.56 * text_size(words, size)[0] + 0.35)
-
-
-def _rectangle(box: Box) -> list[Spot]:
-    left, top, right, bottom = box
-    return [(left, top), (right, top), (right, bottom), (left, bottom)]
 
 
 def _ink(grey: float) -> str:

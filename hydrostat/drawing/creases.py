@@ -67,7 +67,7 @@ class Facets:
         return self.vertices[sides.ends[chosen]]
 
     def rims(self, near: Float[np.ndarray, " 3"]) -> Segments:
-        """Where round sides turn away from an eye in the direction `near` (Hertzmann and Zorin, 2000)."""
+        """Lines where round sides turn away from an eye in the direction `near` (Hertzmann and Zorin, 2000)."""
         facing = self.corners @ near
         seen = facing >= 0
         turning = np.flatnonzero(seen.any(axis=1) & ~seen.all(axis=1))

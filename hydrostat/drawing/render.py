@@ -62,7 +62,6 @@ def render(
     pale: float = 0.0,
     lines: float = 0.0,
     point: float = 1.0,
-    shaded: bool = True,
 ) -> Render:
     """Draw the boundary of a body.
 
@@ -75,21 +74,10 @@ def render(
         pale: fades the felt behind what lies on it, 0 to 1.
         lines: how strongly the edges of the mesh are drawn, 0 to 1.
         point: millimetres that a point (1/72 inch) shows, which sizes lines.
-        shaded: without, only cover and depth are right, sooner.
     """
-    fine = pixel / FINER
-    # On a lattice of its own, so that pixels and hatching of what rests stay while other parts move.
-    steps = np.floor(spots[facets].min(axis=(0, 1))[:2] / pixel) - 2
-    width, height = (int(np.ceil(side / pixel)) + 5 for side in np.ptp(spots[facets], axis=(0, 1))[:2])
-    corners = spots[facets]
-    values = _corner_values(corners, facets, held, fine if lines else 0.0) if shaded else np.empty((*facets.shape, 0))
-    samples = DepthBuffer.within(
-        corners, values, steps * pixel + fine / 2, fine, (FINER * height, FINER * width), inside=False
-    )
+    fine, corners = pixel / FINER, spots[facets]
+    samples, steps = _samples(corners, _corner_values(corners, facets, held, fine if lines else 0.0), pixel)
     buffer = samples.coarser(FINER)
-    if not shaded:
-        cover = np.isfinite(samples.depth).reshape(height, FINER, width, FINER).mean(axis=(1, 3))
-        return Render(np.stack([cover] * 4, axis=2), buffer)
     size = float(np.ptp(corners, axis=(0, 1)).max())
     sky = _smooth(sky_shares(buffer.depth / pixel, _unit(buffer.shown[..., :3]), 0.11 * size / pixel))
     sky_way = (0.0, 1.0, 0.0) if up is None else up
@@ -97,6 +85,27 @@ def render(
     inks = np.array([_shares(mix(DARK, SEAM, 0.25)), _shares(MESH), _shares(mix(SEAM, "#ffffff", pale))])
     shares = np.array([1.0, 0.5 * lines, 0.9])
     return Render(paint(samples.depth / fine, samples.shown, sky, look, _table(pale), inks, shares), buffer)
+
+
+def silhouette(spots: Spots, facets: Int[np.ndarray, "facets 3"], *, pixel: float) -> Render:
+    """What `render` gives, sooner: cover and depth are right, colours are not."""
+    samples, _ = _samples(spots[facets], np.empty((*facets.shape, 0)), pixel)
+    rows, columns = (count // FINER for count in samples.depth.shape)
+    cover = np.isfinite(samples.depth).reshape(rows, FINER, columns, FINER).mean(axis=(1, 3))
+    return Render(np.stack([cover] * 4, axis=2), samples.coarser(FINER))
+
+
+def _samples(
+    corners: Float[np.ndarray, "facets 3 3"], values: np.ndarray, pixel: float
+) -> tuple[DepthBuffer, Float[np.ndarray, " 2"]]:
+    """Samples within pixels of a size [mm], with values known at the corners [mm] of facets; column and row they begin.
+
+    They lie on a lattice of its own, so that pixels and hatching of what rests stay while other parts move.
+    """
+    steps = np.floor(corners.min(axis=(0, 1))[:2] / pixel) - 2
+    width, height = (FINER * (int(np.ceil(side / pixel)) + 5) for side in np.ptp(corners, axis=(0, 1))[:2])
+    fine = pixel / FINER
+    return DepthBuffer.within(corners, values, steps * pixel + fine / 2, fine, (height, width), inside=False), steps
 
 
 def _corner_values(

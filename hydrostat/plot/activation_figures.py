@@ -13,7 +13,7 @@ from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Sheet, Spread
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
@@ -98,7 +98,7 @@ def draw_trees(robot: Robot, trees: Iterable[Spread], *, title: str | None = Non
     return sheet.figure
 
 
-def _pale_sheet(robot: Robot, title: str, subtitle: str, width: float, *, bar: bool) -> tuple[Sheet, list[Pane]]:
+def _pale_sheet(robot: Robot, title: str, subtitle: str, width: float, *, bar: bool) -> tuple[PictureSheet, list[Pane]]:
     nodes = robot.body.mesh.nodes
     sheet, panes = open_sheet(robot, [nodes], title=title, subtitle=subtitle, width=width, bar=bar)
     for pane in panes:
@@ -111,7 +111,9 @@ def _flat(pane: Pane, ends: Float[np.ndarray, "lines 2 dim"]) -> Float[np.ndarra
     return pane.places(ends.reshape(-1, ends.shape[2])).reshape(-1, 2, 2)
 
 
-def _draw_markers(sheet: Sheet, robot: Robot, activation: Activation, panes: list[Pane], surface: DrawnBody) -> None:
+def _draw_markers(
+    sheet: PictureSheet, robot: Robot, activation: Activation, panes: list[Pane], surface: DrawnBody
+) -> None:
     from hydrostat.geometry.anchors import locate
 
     goals = target_places(activation.target)

@@ -112,7 +112,7 @@ def save_mp4(
 
 
 def find_ffmpeg() -> str:
-    """Where the program ffmpeg is.
+    """Find the program ffmpeg; returns its path.
 
     Raises:
         InputError: it is not there.

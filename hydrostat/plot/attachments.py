@@ -1,7 +1,5 @@
 """`Attachments`: where cables, winches and markers are in any pose, found in the mesh once."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -11,74 +9,45 @@ from hydrostat.arrays import Nodes, Points
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.plot.sheet import Spread
 from hydrostat.robot import Mount, Robot
-from hydrostat.robot.point import Point
 
 
-@dataclass(frozen=True, eq=False)
 class Attachments:
     """What a robot's body carries.
 
-    Attributes:
+    Args:
         robot: whose cables, winches and markers they are.
     """
 
-    robot: Robot
+    def __init__(self, robot: Robot) -> None:
+        outside = {winch.name for winch in robot.winches if winch.mount is Mount.WORLD}
+        cables, winches, markers = robot.cables, robot.winches, robot.markers
+        self._mesh = robot.body.mesh
+        self._ends = np.cumsum([*(len(cable.points) for cable in cables), len(winches)])
+        points = [*(at for cable in cables for at in cable.points), *(part.at for part in (*winches, *markers))]
+        self._rest = np.array(points, dtype=float).reshape(-1, self._mesh.dim)
+        first = [place == 0 and cable.winch in outside for cable in cables for place in range(len(cable.points))]
+        fixed = [*first, *(winch.name in outside for winch in winches), *(False for _ in markers)]
+        self._moving: Bool[np.ndarray, " points"] = ~np.array(fixed, dtype=bool)
 
     def cables(self, nodes: Nodes) -> list[Spread]:
-        """Where the points of each cable are [m] when the nodes are at `nodes` [m]."""
-        ends = np.cumsum([len(cable.points) for cable in self.robot.cables])
-        return np.split(self._cables.at(nodes), ends[:-1]) if self.robot.cables else []
+        """Points of each cable [m] when the nodes are at `nodes` [m]."""
+        return self._parts(nodes)[:-2]
 
     def winches(self, nodes: Nodes) -> Points:
-        """Where each winch is [m] when the nodes are at `nodes` [m]."""
-        return self._winches.at(nodes)
+        """Places of the winches [m] when the nodes are at `nodes` [m]."""
+        return self._parts(nodes)[-2]
 
     def markers(self, nodes: Nodes) -> Points:
-        """Where each marker is [m] when the nodes are at `nodes` [m]."""
-        return self._markers.at(nodes)
+        """Places of the markers [m] when the nodes are at `nodes` [m]."""
+        return self._parts(nodes)[-1]
 
     @cached_property
-    def _cables(self) -> "_Stuck":
-        cables = self.robot.cables
-        fixed = [
-            place == 0 and self.robot.winch(cable.winch).mount is Mount.WORLD
-            for cable in cables
-            for place in range(len(cable.points))
-        ]
-        return _Stuck.of(self.robot, [point for cable in cables for point in cable.points], fixed)
+    def _anchors(self) -> Anchors:
+        """Anchors of the points that move with the body."""
+        return locate(self._mesh, self._rest[self._moving])
 
-    @cached_property
-    def _winches(self) -> "_Stuck":
-        winches = self.robot.winches
-        return _Stuck.of(self.robot, [part.at for part in winches], [part.mount is Mount.WORLD for part in winches])
-
-    @cached_property
-    def _markers(self) -> "_Stuck":
-        markers = self.robot.markers
-        return _Stuck.of(self.robot, [marker.at for marker in markers], [False] * len(markers))
-
-
-@dataclass(frozen=True, eq=False)
-class _Stuck:
-    """Points that the body takes with it, but for those that are fixed in space.
-
-    Attributes:
-        rest: where they are at rest [m].
-        moving: which of them the body takes with it.
-        anchors: of those.
-    """
-
-    rest: Points
-    moving: Bool[np.ndarray, " points"]
-    anchors: Anchors
-
-    @classmethod
-    def of(cls, robot: Robot, points: Sequence[Point], fixed: Sequence[bool]) -> "_Stuck":
-        rest = np.array(points, dtype=float).reshape(len(points), robot.body.mesh.dim)
-        moving = ~np.array(fixed, dtype=bool)
-        return cls(rest, moving, locate(robot.body.mesh, rest[moving]))
-
-    def at(self, nodes: Nodes) -> Points:
-        places = self.rest.copy()
-        places[self.moving] = self.anchors.positions(nodes)
-        return places
+    def _parts(self, nodes: Nodes) -> list[Spread]:
+        """Points of each cable, then of the winches, then of the markers [m]."""
+        places = self._rest.copy()
+        places[self._moving] = self._anchors.positions(nodes)
+        return np.split(places, self._ends)

@@ -8,15 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Vector
 from hydrostat.drawing.palette import ERROR, INK, WINCHES, mix
-from hydrostat.drawing.render import render
 from hydrostat.errors import InputError
 from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.pane import FlatPane, Pane, fit_pixel
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Places, Sheet, Spread
+from hydrostat.plot.pane import Pane
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
 from hydrostat.robot import Robot
 from hydrostat.simulation import Branch, PathDependence, SolvedPose
 from hydrostat.units import counted
@@ -62,7 +61,7 @@ def draw_branches(
     rest, poses = robot.body.mesh.nodes, [one.pose for one in found.poses]
     head = shorten(robot.name) if title is None else title
     sheet, panes = open_sheet(
-        robot, [rest, *(pose.nodes for pose in poses)], title=head, subtitle=_told(found), width=width
+        robot, [rest, *(pose.nodes for pose in poses)], title=head, subtitle=_found_text(found), width=width
     )
     tracked = _tracked(robot, found, branches)
     for pane in panes:
@@ -82,7 +81,7 @@ def draw_branches(
     return sheet.figure
 
 
-def _told(found: PathDependence) -> str:
+def _found_text(found: PathDependence) -> str:
     if not found.poses:
         return "no stable pose found"
     if found.unique:
@@ -118,14 +117,14 @@ def _colour(index: int) -> str:
     return WINCHES[index % len(WINCHES)]
 
 
-def _draw_poses(sheet: Sheet, pane: Pane, poses: Sequence[SolvedPose]) -> None:
+def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose]) -> None:
     """The rest shape, the pose of least energy as a body, the others as outlines."""
     pane.draw_ghost(sheet)
     for index, pose in reversed(list(enumerate(poses))):
         if index == 0:
             pane.draw_body(sheet, pose.nodes, pale=0.35)
         if len(poses) > 1:
-            rings = _outline(sheet, pane, pose.nodes)
+            rings = pane.outline(sheet, pose.nodes)
             colour = _colour(index)
             fill = "none" if index == 0 else mix(colour, "#ffffff", 0.75)
             sheet.area(
@@ -136,21 +135,11 @@ def _draw_poses(sheet: Sheet, pane: Pane, poses: Sequence[SolvedPose]) -> None:
             )
 
 
-def _outline(sheet: Sheet, pane: Pane, nodes: Nodes) -> list[Places]:
-    """Rings around a body [mm]."""
-    if isinstance(pane, FlatPane):
-        return [MILLIMETRES * ring for ring in pane.skin.shape(nodes)]
-    spots = pane.camera.see(MILLIMETRES * nodes)
-    pixel = fit_pixel(sheet, np.ptp(spots[:, :2], axis=0))
-    image = render(spots, pane.robot.body.mesh.boundary, pixel=pixel, shaded=False)
-    return [ring + pane.shift for ring in image.rings()]
-
-
-def _name_poses(sheet: Sheet, pane: Pane, poses: Sequence[SolvedPose], name: str) -> None:
+def _name_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose], name: str) -> None:
     """A numbered flag on each pose, at the marker that differs most."""
     points: Spread = np.array([pose.markers[name] if name else _farthest(poses, pose) for pose in poses])
     places = pane.places(points)
-    labels = Labels(sheet, rings=_outline(sheet, pane, poses[0].nodes), avoid=places)
+    labels = Labels(sheet, rings=pane.outline(sheet, poses[0].nodes), avoid=places)
     for index, (place, pose) in enumerate(zip(places, poses, strict=True)):
         sheet.dots(place[None], 5, color=_colour(index), markeredgecolor="white", markeredgewidth=0.8, zorder=12)
         labels.flag(place, f"{index + 1}: {pose.energy:.4g} J", _colour(index))

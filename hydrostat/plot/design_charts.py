@@ -81,7 +81,7 @@ def _draw_level(axes: Axes, error: float, words: str, colour: str, lift: int) ->
 
 
 def _scale(axes: Axes, errors: np.ndarray) -> None:
-    """From 0, unless errors [mm] differ too much for that."""
+    """Scale an axis from 0, unless errors [mm] differ too much for that."""
     most = float(errors.max(initial=0.0))
     if most > 0 and 0 < errors.min() < most / _WIDE:
         axes.set_yscale("log")

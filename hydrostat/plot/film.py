@@ -28,7 +28,7 @@ LEAST_LEFT = 0.7
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Stop:
-    """Where a film goes.
+    """A place where a film goes.
 
     Attributes:
         name: of the pose, or what is done.
@@ -137,7 +137,7 @@ class _Shot:
             goal = begin.contractions + share * (end.contractions - begin.contractions)
             self._take(goal, end, words)
         self.frames += [replace(self.frames[-1], words=end.words)] * still
-        self._told()
+        self._tell_progress()
 
     def _take(self, goal: Vector, end: Stop, words: str) -> None:
         pose = self._simulation.solve(goal, start=self._last, strict=False)
@@ -146,9 +146,9 @@ class _Shot:
         else:
             self.missing.append(len(self.frames))
         self.frames.append(Frame.of(self._last, target=end.target, words=words))
-        self._told()
+        self._tell_progress()
 
-    def _told(self) -> None:
+    def _tell_progress(self) -> None:
         if self._tell is not None:
             self._tell("solving", len(self.frames), self._count)
 

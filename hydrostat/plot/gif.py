@@ -103,7 +103,7 @@ def _packed(shown: Indices) -> bytes:
 
 
 def _after_blocks(whole: bytes, start: int) -> int:
-    """Where a chain of blocks that begins at `start` has ended."""
+    """Place behind a chain of blocks that begins at `start`."""
     while whole[start]:
         start += whole[start] + 1
     return start + 1

@@ -16,7 +16,7 @@ VERTICES, INDICES = 34962, 34963
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Shape:
+class GlbPart:
     """A thing of triangles that changes its shape.
 
     Attributes:
@@ -66,7 +66,7 @@ class Glb:
             "bufferViews": [],
         }
 
-    def add(self, shape: Shape) -> None:
+    def add(self, shape: GlbPart) -> None:
         """Put a shape into the scene."""
         node = self._node({"name": shape.name, "mesh": self._mesh(shape)})
         if len(shape.places) > 1:
@@ -75,7 +75,7 @@ class Glb:
 
     def add_copies(
         self,
-        shape: Shape,
+        shape: GlbPart,
         places: Float[np.ndarray, "some copies 3"],
         names: Sequence[str],
         seen: Bool[np.ndarray, "frames copies"] | None = None,
@@ -99,7 +99,7 @@ class Glb:
         nodes.append(node)
         return len(nodes) - 1
 
-    def _mesh(self, shape: Shape) -> int:
+    def _mesh(self, shape: GlbPart) -> int:
         attributes = {
             "POSITION": self._array(shape.places[0], bounds=True),
             "NORMAL": self._array(shape.normals[0]),
@@ -152,7 +152,7 @@ class Glb:
         sizes = [np.uint32(size).tobytes() for size in (2, length, len(words), len(self._bytes))]
         return b"".join([b"glTF", *sizes[:2], sizes[2], b"JSON", words, sizes[3], b"BIN\0", bytes(self._bytes)])
 
-    def _target(self, shape: Shape, key: int) -> dict[str, int]:
+    def _target(self, shape: GlbPart, key: int) -> dict[str, int]:
         """What a key adds to the mesh."""
         base = shape.places[0].astype(np.float32)
         target = {
@@ -163,7 +163,7 @@ class Glb:
             target["COLOR_0"] = self._array(shape.colours[key] - shape.colours[0].astype(np.float32))
         return target
 
-    def _material(self, shape: Shape) -> int:
+    def _material(self, shape: GlbPart) -> int:
         look = {"baseColorFactor": [1.0, 1.0, 1.0, shape.opacity], "metallicFactor": 0.0, "roughnessFactor": 0.85}
         material: dict[str, Any] = {"name": shape.name, "pbrMetallicRoughness": look}
         if shape.opacity < 1:

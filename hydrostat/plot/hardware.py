@@ -8,7 +8,7 @@ from hydrostat.arrays import Vector
 from hydrostat.drawing.palette import DARK, FELT, LIGHT, mix, winch_colours
 from hydrostat.plot.drawn_body import DrawnCable
 from hydrostat.plot.labels import Labels, shorten
-from hydrostat.plot.sheet import MILLIMETRES, Place, Places, Sheet
+from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places
 from hydrostat.robot import Mount, Robot, Winch
 
 SHARES = np.linspace(0.3, 0.9, 13)
@@ -28,7 +28,12 @@ def stopper_bar(run: Places, scale: float) -> Places:
 
 
 def draw_cables(
-    sheet: Sheet, robot: Robot, runs: list[DrawnCable], *, colours: Sequence[str] | None = None, width: float = 2.0
+    sheet: PictureSheet,
+    robot: Robot,
+    runs: list[DrawnCable],
+    *,
+    colours: Sequence[str] | None = None,
+    width: float = 2.0,
 ) -> None:
     """Cables along their runs: sheaths as pale pipes, a bead at each via point, a bar as the stopper.
 
@@ -53,7 +58,7 @@ def draw_cables(
 
 
 def draw_winches(
-    sheet: Sheet, robot: Robot, centres: Places, fades: Vector, *, contractions: Vector | None = None
+    sheet: PictureSheet, robot: Robot, centres: Places, fades: Vector, *, contractions: Vector | None = None
 ) -> None:
     """A spool for each winch at its centre [mm], faded where the body covers it; a hand tells how far it has turned.
 
@@ -77,7 +82,7 @@ def name_winches(labels: Labels, robot: Robot, centres: Places, notes: Sequence[
         labels.flag(centre, shorten(winch.name) + note, colours[winch.name])
 
 
-def draw_numbers(sheet: Sheet, runs: list[Places], colours: Sequence[str], labels: Labels) -> list[Place]:
+def draw_numbers(sheet: PictureSheet, runs: list[Places], colours: Sequence[str], labels: Labels) -> list[Place]:
     """The number of each cable, from 1, as a bead on it; returns where the beads are."""
     beads = _beads(runs, 13 * sheet.scale)
     for number, (at, colour) in enumerate(zip(beads, colours, strict=True), start=1):
@@ -90,7 +95,7 @@ def draw_numbers(sheet: Sheet, runs: list[Places], colours: Sequence[str], label
     return beads
 
 
-def cable_dots(sheet: Sheet, runs: list[Places]) -> Places:
+def cable_dots(sheet: PictureSheet, runs: list[Places]) -> Places:
     """Points all along the cables, so close that no label between them can cover a cable."""
     dots = [
         _along(run, share) for run in runs for share in np.linspace(0, 1, 2 + int(_length(run) / (6 * sheet.scale)))
@@ -122,7 +127,7 @@ def _along(run: Places, share: float) -> Place:
     return np.array([np.interp(share * places[-1], places, run[:, side]) for side in range(2)])
 
 
-def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str, fade: float) -> None:
+def _draw_spool(sheet: PictureSheet, winch: Winch, centre: Place, colour: str, fade: float) -> None:
     """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath markers."""
     size, light, colour = spool_size(winch, sheet.scale), _faded(LIGHT, fade), _faded(colour, fade)
     order = 19.0 if fade == 0 else 9.5
@@ -136,21 +141,21 @@ def _draw_spool(sheet: Sheet, winch: Winch, centre: Place, colour: str, fade: fl
     sheet.dots(centre[None], 0.2 * size, color=colour, markeredgecolor="none", zorder=order + 1.2)
 
 
-def _draw_hand(sheet: Sheet, winch: Winch, centre: Place, turn: float, colour: str, order: float) -> None:
+def _draw_hand(sheet: PictureSheet, winch: Winch, centre: Place, turn: float, colour: str, order: float) -> None:
     """A hand on a spool, upright at rest, that goes round to the right by `turn` [rad]."""
     reach = 0.44 * spool_size(winch, sheet.scale) * sheet.scale
     end = centre + reach * np.array([np.sin(turn), np.cos(turn)])
     sheet.curve(np.array([centre, end]), color=colour, linewidth=1.2, zorder=order)
 
 
-def _draw_sheath(sheet: Sheet, pipe: Places, colour: str, width: float, fade: float) -> None:
+def _draw_sheath(sheet: PictureSheet, pipe: Places, colour: str, width: float, fade: float) -> None:
     """A pale pipe around a piece of a cable, beneath all cables where the body covers it."""
     wall, order = _faded(colour, fade), 6.0 if fade > 0 else 8.2
     sheet.curve(pipe, color=mix(wall, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order)
     sheet.curve(pipe, color=mix(wall, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1)
 
 
-def _draw_part(sheet: Sheet, part: Places, colour: str, width: float, fade: float) -> None:
+def _draw_part(sheet: PictureSheet, part: Places, colour: str, width: float, fade: float) -> None:
     """A piece of a cable: with a pale border where it lies in front, thinner where the body covers it."""
     if fade > 0:
         sheet.curve(part, color=_faded(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
@@ -160,7 +165,7 @@ def _draw_part(sheet: Sheet, part: Places, colour: str, width: float, fade: floa
         sheet.curve(part, color=colour, linewidth=width, zorder=9)
 
 
-def _draw_beads(sheet: Sheet, run: DrawnCable, colour: str) -> None:
+def _draw_beads(sheet: PictureSheet, run: DrawnCable, colour: str) -> None:
     fades = run.fades[1:-1]
     for fade in np.unique(fades):
         look = {"color": _faded(LIGHT, fade), "markeredgecolor": _faded(colour, fade)}
@@ -168,7 +173,7 @@ def _draw_beads(sheet: Sheet, run: DrawnCable, colour: str) -> None:
         sheet.dots(beads, 2.2 if fade else 3.0, markeredgewidth=0.6 if fade else 0.9, zorder=9.2 - 2 * fade, **look)
 
 
-def _draw_stopper(sheet: Sheet, run: DrawnCable, colour: str, width: float) -> None:
+def _draw_stopper(sheet: PictureSheet, run: DrawnCable, colour: str, width: float) -> None:
     bar, fade = stopper_bar(run.points, sheet.scale), float(run.fades[-1])
     sheet.curve(bar, color=_faded(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
     sheet.curve(bar, color=_faded(colour, fade), linewidth=width + 0.8, zorder=9.4)

@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 
 from hydrostat.arrays import Points
 from hydrostat.drawing.camera import Camera, Spots, three_quarter
-from hydrostat.drawing.palette import ERROR, INK, LIGHT, MUTED, SEAM, channels
+from hydrostat.drawing.palette import ERROR, INK, LIGHT, MUTED, channels
 from hydrostat.drawing.render import Render, render
 from hydrostat.geometry.healing.mend import sides_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.plot.pane import fit_pixel, lay_image
-from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, Place, Sheet, new_sheet, round_step
+from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
 
 LINE, HEAD, LETTERS = 11.0, 28.0, 92
 """Height of a line of notes and of what stands above the views [pt], and letters of a line on a page of usual width."""
@@ -59,20 +59,20 @@ def draw_healing(
     layout = _lay_out(np.concatenate([spots, healed, rings])[:, :2], lines, width)
     sheet = new_sheet(layout.corners, title=title, width=width, ruled=False, room=0.0)
     image = _both_sides(spots, first.triangles, _pixel(sheet, spots), camera)
-    _show(sheet, image, layout.shifts[0])
+    lay_image(sheet, image, layout.shifts[0])
     _draw_edges(sheet, image, spots[edges], layout.shifts[0])
     rings = _apart(rings[:, :2] + layout.shifts[0], 10 * sheet.scale)
     sheet.dots(rings, 13, color="none", markeredgecolor=LIGHT, markeredgewidth=3.2, zorder=20)
     sheet.dots(rings, 13, color="none", markeredgecolor=ERROR, markeredgewidth=1.6, zorder=20.1)
     image = render(healed, second.triangles, pixel=_pixel(sheet, healed), up=camera.sky)
-    _show(sheet, image, layout.shifts[1])
+    lay_image(sheet, image, layout.shifts[1])
     _write(sheet, layout, (before, after), lines)
     return sheet.figure
 
 
 @dataclass(frozen=True, eq=False)
-class _Layout:
-    """Where views lie on a sheet.
+class _PairLayout:
+    """Places of views on a sheet.
 
     Attributes:
         corners: opposite corners of the sheet [mm].
@@ -89,7 +89,7 @@ class _Layout:
     point: float
 
 
-def _lay_out(view: Float[np.ndarray, "_ 2"], lines: Sequence[str], width: float) -> _Layout:
+def _lay_out(view: Float[np.ndarray, "_ 2"], lines: Sequence[str], width: float) -> _PairLayout:
     """Two views side by side, words above them, a scale and lines below."""
     paper = 72 * (width - 0.1)
     low, side = view.min(axis=0), np.ptp(view, axis=0)
@@ -100,7 +100,7 @@ def _lay_out(view: Float[np.ndarray, "_ 2"], lines: Sequence[str], width: float)
     shifts = tuple(foot - low + np.array([number * column, 0.0]) for number in range(2))
     tops = tuple(np.array([(number + 0.5) * column, foot[1] + side[1] + 6 * point]) for number in range(2))
     corners = np.array([[0.0, 0.0], [2 * column, foot[1] + side[1] + HEAD * point]])
-    return _Layout(corners, (shifts[0], shifts[1]), (tops[0], tops[1]), np.array([border * point, foot[1]]), point)
+    return _PairLayout(corners, (shifts[0], shifts[1]), (tops[0], tops[1]), np.array([border * point, foot[1]]), point)
 
 
 def _lines(note: str, width: float) -> list[str]:
@@ -108,7 +108,7 @@ def _lines(note: str, width: float) -> list[str]:
 
 
 def _fitted(lines: list[str], width: float) -> list[str]:
-    """So many lines as leave place for the views; the last says how many more there are."""
+    """Lines, as many as leave place for the views; the last says how many more there are."""
     most = max(int((0.55 * TALLEST * 72 * (width - 0.1) - 26 - HEAD) / LINE), 1)
     more = len(lines) - most + 1
     return lines if more <= 1 else [*lines[: most - 1], f"... and {more} lines more"]
@@ -152,25 +152,18 @@ def _both_sides(spots: Spots, triangles: Int[np.ndarray, "triangles 3"], pixel: 
     return Render(colours, replace(outside.buffer, depth=depth))
 
 
-def _pixel(sheet: Sheet, spots: Spots) -> float:
+def _pixel(sheet: PictureSheet, spots: Spots) -> float:
     return fit_pixel(sheet, np.ptp(spots[:, :2], axis=0))
 
 
-def _show(sheet: Sheet, image: Render, shift: Place) -> None:
-    lay_image(sheet, image, shift)
-    rings = [ring + shift for ring in image.rings()]
-    if rings:
-        sheet.area(rings, facecolor="none", edgecolor=SEAM, linewidth=0.9, joinstyle="round", zorder=3.1)
-
-
-def _draw_edges(sheet: Sheet, image: Render, ends: Float[np.ndarray, "edges 2 3"], shift: Place) -> None:
+def _draw_edges(sheet: PictureSheet, image: Render, ends: Float[np.ndarray, "edges 2 3"], shift: Place) -> None:
     """Edges as red lines; those behind the surface are left out."""
     if len(ends):
         hidden = image.covers(ends.mean(axis=1)) > 4 * image.buffer.pixel
         sheet.segments(ends[~hidden][..., :2] + shift, color=ERROR, linewidth=1.3, zorder=10)
 
 
-def _write(sheet: Sheet, layout: _Layout, surfaces: tuple[Surface, Surface], lines: Sequence[str]) -> None:
+def _write(sheet: PictureSheet, layout: _PairLayout, surfaces: tuple[Surface, Surface], lines: Sequence[str]) -> None:
     for words, surface, top in zip(("as it came", "healed"), surfaces, layout.tops, strict=True):
         count = f"{len(surface.triangles):,} triangles".replace(",", "\N{NARROW NO-BREAK SPACE}")
         sheet.text((top[0], top[1] + 11 * layout.point), words, fontsize=9, color=INK, weight="bold", ha="center")

@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 
 from hydrostat.drawing.palette import INK, LIGHT
-from hydrostat.plot.sheet import Place, Places, Sheet
+from hydrostat.plot.sheet import PictureSheet, Place, Places
 
 LONGEST = 26
 """Most letters of a name that a picture shows."""
@@ -19,7 +19,7 @@ RAYS = 16
 class Labels:
     """Finds a free place for one label after another: off the body, off other labels and off things to be seen."""
 
-    def __init__(self, sheet: Sheet, *, rings: list[Places], avoid: Places) -> None:
+    def __init__(self, sheet: PictureSheet, *, rings: list[Places], avoid: Places) -> None:
         """Labels on a sheet.
 
         Args:

@@ -9,7 +9,7 @@ from hydrostat.arrays import Vector
 from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter
 from hydrostat.drawing.palette import GRID, INK, MUTED
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
-from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, Place, Sheet, Spread, new_sheet, round_step
+from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 
@@ -34,7 +34,7 @@ def open_sheet(
     width: float = WIDTH,
     bar: bool = False,
     ruled: bool = True,
-) -> tuple[Sheet, list[Pane]]:
+) -> tuple[PictureSheet, list[Pane]]:
     """A sheet that shows a robot, and its panes.
 
     A flat body has one pane; a body in space has a three-quarter view and, beside or below it, a view along the axis
@@ -102,8 +102,8 @@ def way_up(robot: Robot) -> Vector:
 
 
 @dataclass(frozen=True, eq=False)
-class _Layout:
-    """Where views lie on a sheet.
+class _ViewLayout:
+    """Places of views on a sheet.
 
     Attributes:
         whole: size of the sheet [mm].
@@ -116,7 +116,7 @@ class _Layout:
     corner: Place
 
 
-def _lay_out(sides: Sequence[Place], paper: float) -> _Layout:
+def _lay_out(sides: Sequence[Place], paper: float) -> _ViewLayout:
     """Views of these sizes [mm] on paper of a width [pt], all to one scale.
 
     Side by side or one below the other, whichever shows the body larger; side by side if that makes little difference.
@@ -124,7 +124,7 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _Layout:
     if len(sides) == 1:
         scale = max(sides[0][0] / (paper - 2 * BARE), sides[0][1] / (TALLEST * paper - 2 * BARE))
         whole = np.array([paper * scale, sides[0][1] + 2 * BARE * scale])
-        return _Layout(whole, [(whole - sides[0]) / 2], np.zeros(2))
+        return _ViewLayout(whole, [(whole - sides[0]) / 2], np.zeros(2))
     borders = [_around(ROOM), _around(RULES)]
     scales = []
     for beside in (True, False):
@@ -147,7 +147,7 @@ def _lay_out(sides: Sequence[Place], paper: float) -> _Layout:
     for box, border, whole_side, side in zip(boxes, (ROOM, RULES), (first, second), sides, strict=True):
         free = whole_side - side - _around(border) * scale
         lows.append(box + np.array([border[0], border[2]]) * scale + free / 2)
-    return _Layout(whole, lows, boxes[0])
+    return _ViewLayout(whole, lows, boxes[0])
 
 
 def _around(border: tuple[float, float, float, float]) -> Place:
@@ -171,7 +171,7 @@ SIDES = np.array([112.0, 38.0])
 """Room that compass and bar take [pt]."""
 
 
-def draw_compass(sheet: Sheet, camera: Camera, low: Place) -> None:
+def draw_compass(sheet: PictureSheet, camera: Camera, low: Place) -> None:
     """x, y and z as arrows, and beside them a bar of round length; `low` is the lower left corner of both [mm]."""
     point = sheet.scale
     ways = camera.axes[:2].T * ARM * point
@@ -190,7 +190,7 @@ def draw_compass(sheet: Sheet, camera: Camera, low: Place) -> None:
     sheet.text((words[0], words[1]), f"{length:g} mm", fontsize=7, color=INK, ha="center", va="bottom", zorder=12)
 
 
-def draw_rules(sheet: Sheet, camera: Camera, low: Place, high: Place, origin: Place) -> None:
+def draw_rules(sheet: PictureSheet, camera: Camera, low: Place, high: Place, origin: Place) -> None:
     """Grid lines at round millimetres behind a view along an axis, numbered on its left and lower side.
 
     Args:

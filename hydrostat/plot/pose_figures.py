@@ -21,7 +21,7 @@ from hydrostat.plot.hardware import (
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Places, Sheet, Spread
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Places, Spread
 from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
@@ -98,7 +98,7 @@ def _reached_note(reached: ReachedPose, names: list[str]) -> str:
     return ", ".join(parts) or str(reached.reason)
 
 
-def _draw_wanted(sheet: Sheet, ring: Places) -> None:
+def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:
     """A ring of the shape that is wanted [mm], dashed."""
     closed = np.concatenate([ring, ring[:1]])
     sheet.curve(closed, color=LIGHT, linewidth=2.6, zorder=14)
@@ -134,7 +134,7 @@ def _in_pose(
     *,
     targets: Mapping[str, Vector],
     rings: Sequence[Ring] = (),
-) -> tuple[Sheet, list[Pane], Labels]:
+) -> tuple[PictureSheet, list[Pane], Labels]:
     """A sheet with ghost, posed body, cables by tension and winches, room for rings and for labels off targets [m]."""
     rest, carried = robot.body.mesh.nodes, Attachments(robot)
     cables, winches = carried.cables(pose.nodes), carried.winches(pose.nodes)
@@ -166,7 +166,9 @@ def _in_pose(
     return sheet, panes, labels
 
 
-def _labels(sheet: Sheet, pane: Pane, surface: DrawnBody, runs: list[DrawnCable], points: list[Vector]) -> Labels:
+def _labels(
+    sheet: PictureSheet, pane: Pane, surface: DrawnBody, runs: list[DrawnCable], points: list[Vector]
+) -> Labels:
     """Labels that keep off cables, and off markers and targets at points [m]."""
     dots = cable_dots(sheet, [run.points for run in runs])
     places = pane.places(np.array(points)) if points else np.empty((0, 2))
@@ -177,7 +179,7 @@ def _labels(sheet: Sheet, pane: Pane, surface: DrawnBody, runs: list[DrawnCable]
 
 
 def _tell_tensions(
-    sheet: Sheet, robot: Robot, pose: SolvedPose, runs: list[Places], winches: Places, labels: Labels
+    sheet: PictureSheet, robot: Robot, pose: SolvedPose, runs: list[Places], winches: Places, labels: Labels
 ) -> None:
     """Each cable's number and newtons, each winch's contraction."""
     scale = TensionScale.of(pose.tensions)

@@ -41,7 +41,7 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
             draw_stage(stage.robot, like=network.robot, frame=frame),
             f"stage-{index}",
             f"{index + 1}. {_sentence(stage.words)}",
-            f": {_told(stage.error)}",
+            f": {_rms_text(stage.error)}",
         )
         for index, stage in zip(shown, stages, strict=True)
     ]
@@ -91,9 +91,9 @@ def certificate_words(error: float, certificate: Certificate | None) -> str:
     if certificate is None:
         return "The search was stopped before it could tell what one more cable would gain."
     gain = (
-        f"would promise {_told(certificate.further)} instead of {_told(error)}"
+        f"would promise {_rms_text(certificate.further)} instead of {_rms_text(error)}"
         if certificate.further < error
-        else f"promises nothing beyond {_told(error)}"
+        else f"promises nothing beyond {_rms_text(error)}"
     )
     return (
         f"One more cable with a winch of its own, along the best path found by pricing "
@@ -119,11 +119,11 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        pictures.append(picture(figure, f"alternative-{index}", head, f": {_told(other.rms_error)}"))
+        pictures.append(picture(figure, f"alternative-{index}", head, f": {_rms_text(other.rms_error)}"))
     return grid(*pictures, kind="tiny")
 
 
-def _told(error: float) -> str:
+def _rms_text(error: float) -> str:
     return f"{millimetres(error)} mm rms"
 
 

@@ -98,7 +98,7 @@ def body_table(robot: Robot) -> Html:
 
 
 def place_table(robot: Robot) -> Html:
-    """Where each marker is at rest."""
+    """The places of the markers at rest."""
     return table(("marker", "at [mm]"), [(marker.name, place(marker.at)) for marker in robot.markers], numbers=(1,))
 
 

@@ -20,7 +20,7 @@ from hydrostat.plot.hardware import (
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, Places, Sheet, Spread
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Places, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import draw_arrows, draw_crosses, draw_markers, rest_markers, target_places, target_points
 from hydrostat.robot import Pose, Robot
@@ -79,7 +79,7 @@ def draw_target(robot: Robot, pose: Pose, *, title: str | None = None, width: fl
 
 
 def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
-    """Where the winches sit and where the cables run, numbered as in the tables.
+    """Draw the winches where they sit and the cables where they run, numbered as in the tables.
 
     Args:
         robot: to draw.
@@ -121,7 +121,7 @@ def _at_rest(
     mesh: bool = False,
     cables: bool = False,
     also: Spread | None = None,
-) -> tuple[Sheet, list[_View]]:
+) -> tuple[PictureSheet, list[_View]]:
     """A sheet with the body and its pins, and where `cables` run in each of its panes."""
     nodes = robot.body.mesh.nodes
     carried = Attachments(robot)
@@ -137,7 +137,7 @@ def _at_rest(
     return sheet, views
 
 
-def _labels(sheet: Sheet, robot: Robot, view: _View) -> Labels:
+def _labels(sheet: PictureSheet, robot: Robot, view: _View) -> Labels:
     """Labels that keep off cables and markers."""
     markers = np.array(list(view.pane.named(rest_markers(robot)).values())).reshape(-1, 2)
     dots = cable_dots(sheet, [run.points for run in view.runs])

@@ -14,7 +14,7 @@ from hydrostat.drawing.palette import DARK, FELT, LIGHT, channels, winch_colours
 from hydrostat.errors import InputError
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.frame import Frame, check_frames
-from hydrostat.plot.glb import Glb, Shape
+from hydrostat.plot.glb import Glb, GlbPart
 from hydrostat.plot.open_sheet import way_up
 from hydrostat.plot.sheet import Spread
 from hydrostat.plot.solids import Solid, cross, joined, skin, slab, sphere, spool, tube
@@ -140,13 +140,13 @@ def _turn(robot: Robot) -> tuple[float, float, float, float]:
     return float(x), float(y), float(z), float(w)
 
 
-def _body(film: _Film) -> Shape:
+def _body(film: _Film) -> GlbPart:
     body = film.robot.body
     solid = skin(body.mesh, film.nodes) if body.mesh.dim == 3 else slab(body.mesh, film.nodes, body.thickness or 0.0)
     return _shape("body", solid, FELT, opacity=OPACITY if film.robot.cables else 1.0)
 
 
-def _cables(film: _Film) -> Shape:
+def _cables(film: _Film) -> GlbPart:
     """A tube for each cable, in the colours of tension."""
     carried, size = Attachments(film.robot), film.robot.body.mesh.size
     runs = [[_in_space(points) for points in carried.cables(nodes)] for nodes in film.nodes]
@@ -158,7 +158,7 @@ def _cables(film: _Film) -> Shape:
         colours.append(np.repeat(shades[:, None], solids[-1][1].shape[1], axis=1))
     triangles, places, normals = joined(solids)
     every = np.concatenate(colours, axis=1)
-    return Shape(name="cables", triangles=triangles, places=places, normals=normals, colours=every)
+    return GlbPart(name="cables", triangles=triangles, places=places, normals=normals, colours=every)
 
 
 def _add_hardware(glb: Glb, film: _Film) -> None:
@@ -183,7 +183,7 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
 
 
 def _carried(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "_ _ 3"]:
-    """Where points are in every key [m]."""
+    """Places of points in every key [m]."""
     return np.stack([_in_space(places(nodes)) for nodes in film.nodes])
 
 
@@ -198,10 +198,10 @@ def _add_targets(glb: Glb, robot: Robot, targets: Sequence[Pose | None]) -> None
         glb.add_copies(shape, places[None], names, np.array(seen))
 
 
-def _shape(name: str, solid: Solid, colour: str, *, opacity: float = 1.0) -> Shape:
+def _shape(name: str, solid: Solid, colour: str, *, opacity: float = 1.0) -> GlbPart:
     triangles, places, normals = solid
     told = np.tile(_linear(colour), (1, places.shape[1], 1))
-    return Shape(name=name, triangles=triangles, places=places, normals=normals, colours=told, opacity=opacity)
+    return GlbPart(name=name, triangles=triangles, places=places, normals=normals, colours=told, opacity=opacity)
 
 
 def _in_space(points: Spread) -> Spots:

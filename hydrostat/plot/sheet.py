@@ -1,4 +1,4 @@
-"""`Sheet`: an empty picture with a millimetre grid."""
+"""`PictureSheet`: an empty picture with a millimetre grid."""
 
 from dataclasses import dataclass
 
@@ -37,7 +37,7 @@ TALLEST = 1.15
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class PictureSheet:
     """A picture to draw on, in millimetres, all sides to the same scale.
 
     Attributes:
@@ -90,7 +90,7 @@ def new_sheet(
     ruled: bool = True,
     bar: bool = False,
     room: float = 0.09,
-) -> Sheet:
+) -> PictureSheet:
     """An empty sheet that shows all of the points.
 
     Args:
@@ -112,7 +112,7 @@ def new_sheet(
     FigureCanvasAgg(figure)
     size = figure.get_size_inches()
     axes = figure.add_axes((left / size[0], bottom / size[1], inches / size[0], height / size[1]))
-    sheet = Sheet(figure, axes, low, high, wide / (inches * 72))
+    sheet = PictureSheet(figure, axes, low, high, wide / (inches * 72))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), facecolor="none", autoscale_on=False)
     _rule(sheet) if ruled else axes.set_axis_off()
     if title:
@@ -129,7 +129,7 @@ def framed(points: Places, room: float) -> tuple[Place, Place]:
     return low - more, high + more
 
 
-def _rule(sheet: Sheet) -> None:
+def _rule(sheet: PictureSheet) -> None:
     """Thin grid lines at round millimetres, numbered along the left and lower sides."""
     step = round_step(float((sheet.high - sheet.low).max()))
     axes = sheet.axes
@@ -147,7 +147,7 @@ def _rule(sheet: Sheet) -> None:
     )  # fmt: skip
 
 
-def _span(sheet: Sheet, side: int) -> tuple[float, float]:
+def _span(sheet: PictureSheet, side: int) -> tuple[float, float]:
     return float(sheet.low[side]), float(sheet.high[side])
 
 

@@ -10,7 +10,7 @@ from hydrostat.drawing.render import CREASE
 from hydrostat.geometry.mesh import Mesh
 
 Places = Float[np.ndarray, "_ _ 3"]
-"""Where points are in every key [m]."""
+"""Places of points in every key [m]."""
 
 Triangles = Int[np.ndarray, "_ 3"]
 Solid = tuple[Triangles, Places, Places]

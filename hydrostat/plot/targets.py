@@ -7,7 +7,7 @@ from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing.palette import DARK, ERROR, LIGHT
-from hydrostat.plot.sheet import Place, Sheet
+from hydrostat.plot.sheet import PictureSheet, Place
 from hydrostat.robot import Pose, Robot
 
 
@@ -16,14 +16,14 @@ def rest_markers(robot: Robot) -> dict[str, Vector]:
     return {marker.name: np.array(marker.at) for marker in robot.markers}
 
 
-def draw_markers(sheet: Sheet, places: Mapping[str, Place], *, size: float = 6.0) -> None:
+def draw_markers(sheet: PictureSheet, places: Mapping[str, Place], *, size: float = 6.0) -> None:
     """A white dot with a dark rim for each marker [mm]."""
     if places:
         points = np.array(list(places.values()))
         sheet.dots(points, size, color=LIGHT, markeredgecolor=DARK, markeredgewidth=1.3, zorder=16)
 
 
-def draw_crosses(sheet: Sheet, targets: Mapping[str, Place]) -> None:
+def draw_crosses(sheet: PictureSheet, targets: Mapping[str, Place]) -> None:
     """A cross at each target [mm]."""
     cross = 3.2 * sheet.scale * np.array([[(-1, -1), (1, 1)], [(-1, 1), (1, -1)]])
     for target in targets.values():
@@ -32,7 +32,7 @@ def draw_crosses(sheet: Sheet, targets: Mapping[str, Place]) -> None:
         sheet.segments(strokes, color=DARK, linewidth=1.5, zorder=17.1)
 
 
-def draw_arrows(sheet: Sheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
+def draw_arrows(sheet: PictureSheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
     """An arrow from each marker [mm] to its target [mm], a little short of both."""
     for name, end in targets.items():
         start = places[name]
@@ -46,7 +46,7 @@ def draw_arrows(sheet: Sheet, places: Mapping[str, Place], targets: Mapping[str,
                 sheet.axes.add_patch(arrow)
 
 
-def draw_errors(sheet: Sheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
+def draw_errors(sheet: PictureSheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
     """A thin red line from each marker [mm] to its target [mm]."""
     ends = np.array([[places[name], target] for name, target in targets.items()])
     sheet.segments(ends, color=LIGHT, linewidth=2.6, zorder=15)

@@ -8,7 +8,7 @@ from matplotlib.colors import LinearSegmentedColormap, to_hex
 
 from hydrostat.arrays import Vector
 from hydrostat.drawing.palette import INK, MUTED, TENSION
-from hydrostat.plot.sheet import Sheet
+from hydrostat.plot.sheet import PictureSheet
 
 LEVELS = 16
 """Lines are drawn in so many steps of tension; the eye tells no more."""
@@ -34,7 +34,7 @@ class TensionScale:
         """Colour of a tension [N], as #rrggbb."""
         return to_hex(_colours()(min(max(tension / self.most, 0.0), 1.0)))
 
-    def draw_lines(self, sheet: Sheet, ends: np.ndarray, tensions: Vector, *, widest: float = 4.2) -> None:
+    def draw_lines(self, sheet: PictureSheet, ends: np.ndarray, tensions: Vector, *, widest: float = 4.2) -> None:
         """Lines [mm], (lines, 2, 2), the stronger the wider, darker and further in front; slack ones as hair lines."""
         levels = np.clip(np.ceil(tensions / self.most * LEVELS), 0, LEVELS).astype(int)
         sheet.segments(ends[levels == 0], color=self.colour(0), linewidth=0.3, alpha=0.5, zorder=6)
@@ -47,7 +47,7 @@ class TensionScale:
                 zorder=6 + share,
             )
 
-    def draw_bar(self, sheet: Sheet, *, of: str = "tension") -> None:
+    def draw_bar(self, sheet: PictureSheet, *, of: str = "tension") -> None:
         """A small bar in the upper right corner that tells what the colours mean."""
         figure = sheet.figure
         width, height = figure.get_size_inches()

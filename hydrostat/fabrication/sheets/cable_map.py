@@ -48,7 +48,7 @@ _MANY = 6
 
 
 def winch_mark(index: int) -> str:
-    """By which a winch is known on the sheet: W1, W2, ... as single letters are notches of the pattern."""
+    """Mark of a winch on the sheet: W1, W2, ... as single letters are notches of the pattern."""
     return f"W{index + 1}"
 
 

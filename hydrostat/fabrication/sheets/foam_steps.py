@@ -8,7 +8,7 @@ from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables
 
 
 def skin_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
-    """From a body of foam to a robot."""
+    """Steps from a body of foam to a robot."""
     cables = len(given.robot.cables)
     return (
         *(_cable_steps(given) if cables else ()),

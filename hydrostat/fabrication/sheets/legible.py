@@ -51,7 +51,7 @@ class Legible:
         return f"the fonts of these pages lack letters: {'; '.join(told)}" if told else ""
 
     def words(self, words: str) -> str:
-        """With a mark in place of a name that cannot be printed, and a question mark for every other such letter."""
+        """Words with marks for names that cannot be printed, and a question mark for every other such letter."""
         for name, mark in self._marks.items():
             words = words.replace(name, mark)
         return legible(words)
@@ -66,7 +66,7 @@ class Legible:
 
 
 def legible(words: str) -> str:
-    """With a question mark for every letter that cannot be printed."""
+    """Words with a question mark for every letter that cannot be printed."""
     lost = lacking(words)
     return "".join(_MISSING if letter in lost else letter for letter in words)
 
@@ -77,7 +77,7 @@ def lacking(words: str) -> frozenset[str]:
 
 
 def typeset(words: str) -> str:
-    """With the signs of a printed page: °C, raised figures."""
+    """Words with the signs of a printed page: °C, raised figures."""
     for plain, sign in _SIGNS:
         words = re.sub(plain, sign, words)
     return _POWER.sub(_power, words)
@@ -143,6 +143,6 @@ def sentence(words: str) -> str:
 
 
 def shortened(text: str, most: int) -> str:
-    """On one line, and of at most so many letters: the end of longer ones is an ellipsis."""
+    """Text on one line, and of at most so many letters: the end of longer ones is an ellipsis."""
     line = " ".join(text.split())
     return line if len(line) <= most else line[: most - 1].rstrip() + "…"

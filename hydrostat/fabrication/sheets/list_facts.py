@@ -58,14 +58,14 @@ def _amount(cells: Mapping[str, Cell]) -> str:
 
 
 def _dollars(cost: Cell) -> str:
-    """In full dollars."""
+    """A cost in full dollars."""
     if not isinstance(cost, float | int):
         return ""
     return "<1" if 0 < cost < 0.5 else f"{cost:.0f}"
 
 
 def costs_of(given: SheetInput) -> tuple[float, ...]:
-    """Of all that is used up, and of all in whole packs [USD]; none if the bill does not say, one if it says one."""
+    """Costs of all that is used up, and of all in whole packs [USD]; only those that the bill says."""
     bill = given.tables.get("bill_of_materials")
     title = _cost_title(bill) if bill is not None else ""
     if bill is None or not title:
@@ -91,7 +91,7 @@ def cost_text(given: SheetInput) -> tuple[str, ...]:
 
 
 def _cost_title(bill: Table) -> str:
-    """Under which title the bill says what a thing costs; empty if it does not."""
+    """Title under which the bill says what a thing costs; empty if it does not."""
     known = [column.title for column in bill.columns]
     return next((title for title in ("used up", "cost") if title in known), "")
 
@@ -127,12 +127,12 @@ def piece_facts(given: SheetInput) -> list[Facts]:
         for placed in assembly.pieces if assembly else ():
             entry = pieces.setdefault(numbers[placed.name], {"title": _called(placed), "count": 0, "files": ""})
             if placed.printed and placed.title in kinds:
-                entry |= _told(kinds.pop(placed.title))
+                entry |= _count_and_files(kinds.pop(placed.title))
             elif not entry["files"]:
                 entry["count"] += unit
                 entry["title"] += "" if placed.printed or entry["title"].endswith(_BOUGHT) else _BOUGHT
     drawn = [{"number": str(number), **entry} for number, entry in pieces.items()]
-    rest = [{"number": "", "title": kind, **_told(parts)} for kind, parts in kinds.items()]
+    rest = [{"number": "", "title": kind, **_count_and_files(parts)} for kind, parts in kinds.items()]
     return [{**entry, "count": str(entry["count"])} for entry in (*drawn, *rest)]
 
 
@@ -151,7 +151,7 @@ def winch_files(given: SheetInput, winch: str) -> list[str]:
     return found
 
 
-def _told(parts: list[Printed]) -> Facts:
+def _count_and_files(parts: list[Printed]) -> Facts:
     """How many of a kind, and from which files."""
     files = [part.name + (f" × {part.count}" if len(parts) > 1 and part.count > 1 else "") for part in parts]
     return {"count": sum(part.count for part in parts), "files": shortened(", ".join(files), 90)}

@@ -61,13 +61,13 @@ def cures(mould: Mould | None) -> tuple[tuple[str, str], ...]:
 
 
 def body_mass(mould: Mould) -> float:
-    """Of the body alone, without sprue, vents and what is spare [g]."""
+    """Mass of the body alone, without sprue, vents and what is spare [g]."""
     mix = mould.casting.body
     return mix.density * mould.volumes.get("cavity", mix.volume)
 
 
 def mould_steps(given: SheetInput, mould: Mould) -> tuple[AssemblyStep, ...]:
-    """From the files of the mould to a body of foam."""
+    """Steps from the files of the mould to a body of foam."""
     printed = mould.kind is MouldKind.PRINTED
     mix, foams = mould.casting.body, rises(mould)
     return (

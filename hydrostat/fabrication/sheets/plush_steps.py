@@ -15,7 +15,7 @@ from hydrostat.units import counted
 
 
 def plush_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
-    """From the folder of files to a robot that is sewn up."""
+    """Steps from the folder of files to a robot that is sewn up."""
     cables = len(given.robot.cables)
     return (
         *_prints(given),

@@ -43,8 +43,7 @@ def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float
             canvas.text((x + step / 2, front - 10.4), "…", size=8.5, bold=True)
     end = way[-1]
     canvas.line([way], width=THICK)
-    canvas.fill([[(end[0] - 0.2, end[1] - 1.5), (end[0] + 1.6, end[1] - 1.5), (end[0] + 1.6, end[1] + 1.5),
-                  (end[0] - 0.2, end[1] + 1.5)]], grey=0.0)  # fmt: skip
+    canvas.box((end[0] - 0.2, end[1] - 1.5, end[0] + 1.6, end[1] + 1.5), grey=0.0)
     for x, stitch in zip(across, chosen, strict=True):
         words = "stopper" if stitch is stitches[-1] else str(stitch.number)
         canvas.text((x, front - 7.0), words, size=8.5, bold=True)
@@ -69,7 +68,7 @@ def skin_scheme(*, sewn: bool, drawn: bool, tubes: bool, width: float) -> Canvas
     """
     top = 9.5 if sewn else 7.0
     canvas = Canvas(width, top + (20.0 if drawn else 9.0))
-    canvas.fill([[(0, top), (width - 12, top), (width - 12, canvas.height - 1), (0, canvas.height - 1)]], grey=0.9)
+    canvas.box((0, top, width - 12, canvas.height - 1), grey=0.9)
     _put_cloth(canvas, top, [], width - 12.0)
     if sewn:
         _put_sewn(canvas, top, tubes=tubes, width=width - 12.0)
@@ -85,8 +84,7 @@ def _put_sewn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:
     line, tube_end, stopper = top - 1.9, 0.4 * width if tubes else 0.0, width - 8.0
     _put_tube(canvas, [(0, line), (tube_end, line)])
     canvas.line([[(0, line), (stopper, line)]], width=THICK)
-    canvas.fill([[(stopper, line - 1.6), (stopper + 1.8, line - 1.6), (stopper + 1.8, line + 1.6),
-                  (stopper, line + 1.6)]], grey=0.0)  # fmt: skip
+    canvas.box((stopper, line - 1.6, stopper + 1.8, line + 1.6), grey=0.0)
     ends = [tube_end - at for at in (2.0, 4.0, 22.0, 24.0)] if tubes else []
     for x in (*ends, *(tube_end + 9.0 + 9.0 * k for k in range(int((stopper - tube_end - 10) / 9) + 1))):
         canvas.line([[(x - 0.5, top + _CLOTH + 0.7), (x - 0.5, line - 1.5), (x + 0.5, line - 1.5),
@@ -104,8 +102,7 @@ def _put_drawn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None
     _put_tube(canvas, [(0, deep), (tube_end, deep)])
     end: Spot = (out, top - 1.6)
     canvas.line([[(0, deep), (tube_end, deep), *bends, (out, top + _CLOTH), end]], width=THICK)
-    canvas.fill([[(out - 1.6, top - 2.2), (out + 1.6, top - 2.2), (out + 1.6, top - 0.4), (out - 1.6, top - 0.4)]],
-                grey=0.0)  # fmt: skip
+    canvas.box((out - 1.6, top - 2.2, out + 1.6, top - 0.4), grey=0.0)
     for x, y in bends:
         canvas.line([[(x, top - 3.0), (x, y)]], width=THIN, dash=(0.8, 0.6))
         canvas.disc((x, top - 3.0), 0.6, grey=0.0)
@@ -129,9 +126,8 @@ def _put_cloth(canvas: Canvas, top: float, holes: list[float], width: float) -> 
     """A strip of cloth from the left to the right, cut by holes."""
     walls = [0.0, *(side for hole in holes for side in (hole - 1.0, hole + 1.0)), width]
     for start, end in zip(walls[::2], walls[1::2], strict=True):
-        box = [(start, top), (end, top), (end, top + _CLOTH), (start, top + _CLOTH)]
-        canvas.fill([box], grey=0.72)
-        canvas.line([box[:2], box[2:]], width=THIN)
+        canvas.box((start, top, end, top + _CLOTH), grey=0.72)
+        canvas.line([[(start, top), (end, top)], [(end, top + _CLOTH), (start, top + _CLOTH)]], width=THIN)
 
 
 def stopper_scheme(*, cloth: str, width: float, height: float) -> Canvas:
@@ -144,9 +140,8 @@ def stopper_scheme(*, cloth: str, width: float, height: float) -> Canvas:
     """
     canvas = Canvas(width, height)
     line, exit_at, body_end, stopper = 0.48 * height, 16.0, width - 27.0, width - 15.0
-    canvas.fill([[(exit_at, line - 5), (body_end, line - 5), (body_end, line + 5), (exit_at, line + 5)]], grey=0.93)
-    canvas.fill([[(body_end - _CLOTH, line - 7), (body_end, line - 7), (body_end, line + 7),
-                  (body_end - _CLOTH, line + 7)]], grey=0.72)  # fmt: skip
+    canvas.box((exit_at, line - 5, body_end, line + 5), grey=0.93)
+    canvas.box((body_end - _CLOTH, line - 7, body_end, line + 7), grey=0.72)
     canvas.line([[(x, line - 7), (x, line + 7)] for x in (body_end - _CLOTH, body_end)], width=THIN)
     canvas.text(((exit_at + body_end) / 2, line + 2.6), "straight, not tight", size=8, grey=0.25)
     canvas.line([[(7.0, line - 4.2), (12.0, line), (stopper, line)]], width=THICK)

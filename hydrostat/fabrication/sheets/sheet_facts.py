@@ -70,7 +70,7 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
 
 
 def shown_stitches(given: SheetInput) -> CableStitches | None:
-    """Of the cable whose stitches are drawn: of those with the most holes the first."""
+    """Stitches of the cable that is drawn: of those with the most holes the first."""
     sewn = [stitches for stitches in given.stitches if stitches.passes]
     return max(sewn, key=lambda stitches: (len(stitches.passes), -stitches.cable)) if sewn else None
 

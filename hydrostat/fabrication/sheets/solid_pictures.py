@@ -134,7 +134,7 @@ def undercut_picture(
 
 
 def _view(body: DrawnSolid, held: Bool[np.ndarray, " triangles"], pull: Float[np.ndarray, " 3"]) -> Camera:
-    """From where the area of what holds and faces the eye is largest, with a share for the body's own breadth."""
+    """Find the view in which most of what holds faces the eye, with a share for the body's own breadth."""
     one, two, three = (body.vertices[corner] for corner in body.triangles.T)
     crosses = np.cross(two - one, three - one) / 2
     views = [Camera.at(float(turn), 20.0, up=pull) for turn in _TURNS]

@@ -43,14 +43,14 @@ def minutes_text(minutes: float) -> str:
 
 
 def held_text(robot: Robot) -> str:
-    """Where to clamp or strap it, a sentence; empty if it is held nowhere."""
+    """Tell where to clamp or strap a robot, in a sentence; empty if it is held nowhere."""
     if not robot.pins:
         return ""
-    places = "; ".join(_place(pin) for pin in robot.pins)
+    places = "; ".join(_pin_text(pin) for pin in robot.pins)
     return f"It was simulated as held {places}, in the coordinates of the robot file: clamp or strap it there."
 
 
-def _place(pin: Pin) -> str:
+def _pin_text(pin: Pin) -> str:
     if pin.box is not None:
         axes = zip("xyz", *pin.box, strict=False)
         spans = ", ".join(f"{axis} {_mm(min(one, two))} to {_mm(max(one, two))}" for axis, one, two in axes)
@@ -85,7 +85,7 @@ class CableDepths:
 
     @classmethod
     def of(cls, given: SheetInput) -> "CableDepths":
-        """From the list; without one all cables are sewn on."""
+        """Read the list of stitches; without one all cables are sewn on."""
         table = given.tables.get("stitching")
         titles = [column.title for column in table.columns] if table else []
         if table is None or "how" not in titles or "depth" not in titles:
@@ -126,7 +126,7 @@ def marks_on(given: SheetInput, mount: Mount) -> tuple[str, ...]:
 
 
 def winch_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
-    """Put them together, set those on the base, then those in a body of foam; into plush they go with the filling."""
+    """Steps for the winches: put together, on the base, then in a body of foam; into plush they go with the filling."""
     inside, outside = marks_on(given, Mount.BODY), marks_on(given, Mount.WORLD)
     count = len(inside) + len(outside)
     steps = []
@@ -166,7 +166,7 @@ def _base_step(outside: tuple[str, ...]) -> AssemblyStep:
 
 
 def tie_step(cables: int) -> AssemblyStep:
-    """Lines come on their spools."""
+    """The step by which lines come on their spools."""
     return AssemblyStep(
         "Tie the cables on",
         5 * cables,
@@ -185,7 +185,7 @@ def marks_text(marks: tuple[str, ...]) -> str:
 
 
 def calibration(given: SheetInput) -> tuple[str, ...]:
-    """From winches at zero to stoppers that are tight; nothing without cables."""
+    """Steps from winches at zero to stoppers that are tight; nothing without cables."""
     if not given.robot.cables:
         return ()
     cloth = "cloth" if given.method is Method.PLUSH else "skin"

@@ -89,10 +89,10 @@ def tile_grid(pattern: Pattern, paper: Paper) -> TileGrid:
     grids = []
     for left, top in product(lefts, tops):
         windows = _Windows(columns, rows, width, height, left, top, pattern.height)
-        grids.append((len(np.unique(tree.query(windows.own(), predicate="intersects")[0])), windows))
+        grids.append((len(np.unique(tree.query(windows.boxes(OVERLAP), predicate="intersects")[0])), windows))
     _, windows = min(grids, key=lambda grid: grid[0])
-    needed = set(np.unique(tree.query(windows.own(), predicate="intersects")[0]).tolist())
-    boxes = windows.whole()
+    needed = set(np.unique(tree.query(windows.boxes(OVERLAP), predicate="intersects")[0]).tolist())
+    boxes = windows.boxes(0.0)
     tiles = []
     for index, (row, column) in enumerate(product(range(rows), range(columns))):
         found = np.sort(tree.query(boxes[index], predicate="intersects")).tolist() if index in needed else ()
@@ -110,7 +110,7 @@ def tile_grid(pattern: Pattern, paper: Paper) -> TileGrid:
 
 
 class _Windows(NamedTuple):
-    """Where tiles lie on a sheet: y counts up there, rows from the top."""
+    """Places of tiles on a sheet: y counts up there, rows from the top."""
 
     columns: int
     rows: int
@@ -120,15 +120,8 @@ class _Windows(NamedTuple):
     top: float
     sheet: float
 
-    def whole(self) -> np.ndarray:
-        """A box for each tile, row by row."""
-        return self._boxes(0.0)
-
-    def own(self) -> np.ndarray:
-        """The same without what the tiles on the left and above show already."""
-        return self._boxes(OVERLAP)
-
-    def _boxes(self, shared: float) -> np.ndarray:
+    def boxes(self, shared: float) -> np.ndarray:
+        """A box for each tile, row by row, without what it shares with tiles on the left and above [mm]."""
         row, column = (grid.ravel() for grid in np.indices((self.rows, self.columns)))
         left = self.left + column * (self.width - OVERLAP)
         top = self.sheet - self.top - row * (self.height - OVERLAP)
