@@ -14,7 +14,7 @@ from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
-from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places, target_points
+from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
 from hydrostat.units import counted
@@ -120,11 +120,7 @@ def _draw_markers(
     named = [marker for marker in robot.markers if marker.name in goals]
     points = locate(robot.body.mesh, np.array([marker.at for marker in named])).positions(activation.nodes)
     tracked = {marker.name: point for marker, point in zip(named, points, strict=True)}
-    for pane in panes:
-        markers, targets = pane.named(tracked), pane.named(goals)
-        draw_errors(sheet, markers, targets)
-        draw_crosses(sheet, targets)
-        draw_markers(sheet, markers)
+    draw_misses(sheet, panes, tracked, goals)
     markers, targets = panes[0].named(tracked), panes[0].named(goals)
     labels = Labels(sheet, rings=surface.rings, avoid=np.array([*markers.values(), *targets.values()]))
     for name, place in markers.items():

@@ -19,6 +19,7 @@ class Attachments:
     """
 
     def __init__(self, robot: Robot) -> None:
+        self.robot = robot
         outside = {winch.name for winch in robot.winches if winch.mount is Mount.WORLD}
         cables, winches, markers = robot.cables, robot.winches, robot.markers
         self._mesh = robot.body.mesh

@@ -53,7 +53,7 @@ class DrawnBody:
         levels = np.ceil(LEVELS * (1 - np.exp(-3 * depths / thickness))) / LEVELS
         return np.where(depths > max(0.02 * thickness, image.buffer.pixel), 0.26 + 0.42 * levels, 0.0)
 
-    def run(self, points: Points) -> DrawnCable:
+    def cable(self, points: Points) -> DrawnCable:
         """A cable through points [m]."""
         if self.sight is None:
             places = MILLIMETRES * points

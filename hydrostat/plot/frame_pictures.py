@@ -10,14 +10,14 @@ from matplotlib.artist import Artist
 from hydrostat.drawing.palette import PAPER
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.frame import Frame
-from hydrostat.plot.hardware import draw_cables, draw_winches
+from hydrostat.plot.hardware import draw_hardware
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import SpacePane, fit_pixel
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.sheet import Spread
 from hydrostat.plot.skin import outer_points
-from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places, target_points
+from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
 
@@ -81,18 +81,11 @@ class FramePictures:
         sheet, pane, robot, carried = self._sheet, self._pane, self._robot, self._carried
         surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True)
         colours = [self._scale.colour(float(tension)) for tension in frame.tensions]
-        draw_cables(
-            sheet, robot, [surface.run(points) for points in carried.cables(frame.nodes)], colours=colours, width=2.6
-        )
-        winches = carried.winches(frame.nodes)
-        draw_winches(sheet, robot, pane.places(winches), surface.fades(winches), contractions=frame.contractions)
+        look = {"colours": colours, "width": 2.6, "contractions": frame.contractions}
+        draw_hardware(sheet, pane, surface, carried, frame.nodes, **look)
         names = [marker.name for marker in robot.markers]
-        markers = pane.named(dict(zip(names, carried.markers(frame.nodes), strict=True)))
-        if frame.target is not None:
-            targets = pane.named(target_places(frame.target))
-            draw_errors(sheet, markers, targets)
-            draw_crosses(sheet, targets)
-        draw_markers(sheet, markers)
+        markers = dict(zip(names, carried.markers(frame.nodes), strict=True))
+        draw_misses(sheet, [pane], markers, {} if frame.target is None else target_places(frame.target))
 
 
 def _seen(robot: Robot, carried: Attachments, frames: Sequence[Frame]) -> Spread:

@@ -1,18 +1,80 @@
-"""Winches and cables: spools, sheaths and stoppers."""
+"""Winches and cables on a body: spools, sheaths and stoppers, their names and numbers."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing.palette import DARK, FELT, LIGHT, mix, winch_colours
-from hydrostat.plot.drawn_body import DrawnCable
+from hydrostat.plot.attachments import Attachments
+from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.labels import Labels, shorten
+from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places
 from hydrostat.robot import Mount, Robot, Winch
 
 SHARES = np.linspace(0.3, 0.9, 13)
 """Shares of a cable's length where its number may stand."""
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnRobot:
+    """A robot on one pane.
+
+    Attributes:
+        pane: that shows it.
+        body: as it is drawn.
+        cables: as they are drawn.
+        winches: where they are [mm].
+    """
+
+    pane: Pane
+    body: DrawnBody
+    cables: list[DrawnCable]
+    winches: Places
+
+    @property
+    def runs(self) -> list[Places]:
+        """Points of each cable [mm]."""
+        return [cable.points for cable in self.cables]
+
+    def labels(self, sheet: PictureSheet, places: Places) -> Labels:
+        """Labels that keep off cables and off places [mm], such as markers."""
+        labels = Labels(sheet, rings=self.body.rings, avoid=np.concatenate([_cable_dots(sheet, self.runs), places]))
+        for place in places:
+            labels.reserve(place, 6)
+        return labels
+
+
+def draw_hardware(
+    sheet: PictureSheet,
+    pane: Pane,
+    body: DrawnBody,
+    carried: Attachments,
+    nodes: Nodes,
+    *,
+    colours: Sequence[str] | None = None,
+    width: float = 2.0,
+    contractions: Vector | None = None,
+) -> DrawnRobot:
+    """Draw cables and winches on a body whose nodes are at `nodes` [m].
+
+    Args:
+        sheet: to draw on.
+        pane: that shows the body.
+        body: as it was drawn.
+        carried: by the body.
+        nodes: of the body [m].
+        colours: of each cable; those of the winches if left out.
+        width: of a cable [pt].
+        contractions: of each winch [m], told by hands on the spools; without, there are none.
+    """
+    cables, winches = [body.cable(points) for points in carried.cables(nodes)], carried.winches(nodes)
+    drawn = DrawnRobot(pane, body, cables, pane.places(winches))
+    _draw_cables(sheet, carried.robot, cables, colours=colours, width=width)
+    _draw_winches(sheet, carried.robot, drawn.winches, body.fades(winches), contractions=contractions)
+    return drawn
 
 
 def spool_size(winch: Winch, scale: float) -> float:
@@ -27,7 +89,7 @@ def stopper_bar(run: Places, scale: float) -> Places:
     return np.array([run[-1] - across, run[-1] + across])
 
 
-def draw_cables(
+def _draw_cables(
     sheet: PictureSheet,
     robot: Robot,
     runs: list[DrawnCable],
@@ -38,13 +100,6 @@ def draw_cables(
     """Cables along their runs: sheaths as pale pipes, a bead at each via point, a bar as the stopper.
 
     What the body covers is thinner and of the colour of the body, the more so the deeper it lies.
-
-    Args:
-        sheet: to draw on.
-        robot: whose cables they are.
-        runs: where each cable runs.
-        colours: of each cable; those of the winches if left out.
-        width: of a cable [pt].
     """
     by_winch = winch_colours(robot.winches)
     for index, (cable, run) in enumerate(zip(robot.cables, runs, strict=True)):
@@ -57,8 +112,8 @@ def draw_cables(
         _draw_stopper(sheet, run, colour, width)
 
 
-def draw_winches(
-    sheet: PictureSheet, robot: Robot, centres: Places, fades: Vector, *, contractions: Vector | None = None
+def _draw_winches(
+    sheet: PictureSheet, robot: Robot, centres: Places, fades: Vector, *, contractions: Vector | None
 ) -> None:
     """A spool for each winch at its centre [mm], faded where the body covers it; a hand tells how far it has turned.
 
@@ -95,7 +150,7 @@ def draw_numbers(sheet: PictureSheet, runs: list[Places], colours: Sequence[str]
     return beads
 
 
-def cable_dots(sheet: PictureSheet, runs: list[Places]) -> Places:
+def _cable_dots(sheet: PictureSheet, runs: list[Places]) -> Places:
     """Points all along the cables, so close that no label between them can cover a cable."""
     dots = [
         _along(run, share) for run in runs for share in np.linspace(0, 1, 2 + int(_length(run) / (6 * sheet.scale)))

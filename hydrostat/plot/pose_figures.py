@@ -10,19 +10,12 @@ from hydrostat.drawing.palette import ERROR, LIGHT
 from hydrostat.geometry.outline import Outline, Ring
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.attachments import Attachments
-from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
-from hydrostat.plot.hardware import (
-    cable_dots,
-    draw_cables,
-    draw_numbers,
-    draw_winches,
-    name_winches,
-)
+from hydrostat.plot.hardware import draw_hardware, draw_numbers, name_winches
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Places, Spread
-from hydrostat.plot.targets import draw_crosses, draw_errors, draw_markers, target_places
+from hydrostat.plot.targets import draw_markers, draw_misses, target_places
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
 from hydrostat.simulation import SolvedPose
@@ -75,11 +68,7 @@ def draw_reached(
     tracked = {name: reached.pose.markers[name] for name in goals}
     for ring in rings:
         _draw_wanted(sheet, MILLIMETRES * ring)
-    for pane in panes:
-        markers, targets = pane.named(tracked), pane.named(goals)
-        draw_errors(sheet, markers, targets)
-        draw_crosses(sheet, targets)
-        draw_markers(sheet, markers)
+    draw_misses(sheet, panes, tracked, goals)
     for name, place in panes[0].named(tracked).items():
         labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
     return sheet.figure
@@ -115,13 +104,10 @@ def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, wi
         width: of the picture [inch].
     """
     carried = Attachments(robot)
-    cables, winches = carried.cables(nodes), carried.winches(nodes)
-    beside = [*cables, winches] if nodes.shape[1] == 3 else []
+    beside = [*carried.cables(nodes), carried.winches(nodes)] if nodes.shape[1] == 3 else []
     shapes, points = ([nodes], beside) if frame is None else ([], [frame])
     sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
-    surface = panes[0].draw_body(sheet, nodes)
-    draw_cables(sheet, robot, [surface.run(points) for points in cables])
-    draw_winches(sheet, robot, panes[0].places(winches), surface.fades(winches))
+    draw_hardware(sheet, panes[0], panes[0].draw_body(sheet, nodes), carried, nodes)
     return sheet.figure
 
 
@@ -137,57 +123,33 @@ def _in_pose(
 ) -> tuple[PictureSheet, list[Pane], Labels]:
     """A sheet with ghost, posed body, cables by tension and winches, room for rings and for labels off targets [m]."""
     rest, carried = robot.body.mesh.nodes, Attachments(robot)
-    cables, winches = carried.cables(pose.nodes), carried.winches(pose.nodes)
     goals = np.array(list(targets.values())).reshape(-1, robot.body.mesh.dim)
     sheet, panes = open_sheet(
         robot,
         [pose.nodes, rest],
-        [*cables, goals, *rings],
+        [*carried.cables(pose.nodes), goals, *rings],
         title=title,
         subtitle=subtitle,
         width=width,
-        bar=bool(cables),
+        bar=bool(robot.cables),
     )
     scale = TensionScale.of(pose.tensions)
     colours = [scale.colour(float(tension)) for tension in pose.tensions]
-    drawn: list[tuple[DrawnBody, list[DrawnCable]]] = []
+    drawn = []
     for pane in panes:
         pane.draw_ghost(sheet)
-        surface = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
-        runs = [surface.run(points) for points in cables]
-        draw_winches(sheet, robot, pane.places(winches), surface.fades(winches))
-        draw_cables(sheet, robot, runs, colours=colours, width=2.6)
-        drawn.append((surface, runs))
-    surface, runs = drawn[0]
-    labels = _labels(sheet, panes[0], surface, runs, [*pose.markers.values(), *goals])
-    if cables:
+        body = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
+        drawn.append(draw_hardware(sheet, pane, body, carried, pose.nodes, colours=colours, width=2.6))
+    points = [*pose.markers.values(), *goals]
+    labels = drawn[0].labels(sheet, panes[0].places(np.array(points)) if points else np.empty((0, 2)))
+    if robot.cables:
         scale.draw_bar(sheet, of="cable tension")
-        _tell_tensions(sheet, robot, pose, [run.points for run in runs], panes[0].places(winches), labels)
+        beads = draw_numbers(sheet, drawn[0].runs, colours, labels)
+        name_winches(labels, robot, drawn[0].winches, [_note(contraction) for contraction in pose.contractions])
+        for bead, tension in zip(beads, pose.tensions, strict=True):
+            words = f"{tension:.1f} N" if tension > 0 else "slack"
+            labels.place(bead, words, size=6.5, weight="bold", outside=0.1)
     return sheet, panes, labels
-
-
-def _labels(
-    sheet: PictureSheet, pane: Pane, surface: DrawnBody, runs: list[DrawnCable], points: list[Vector]
-) -> Labels:
-    """Labels that keep off cables, and off markers and targets at points [m]."""
-    dots = cable_dots(sheet, [run.points for run in runs])
-    places = pane.places(np.array(points)) if points else np.empty((0, 2))
-    labels = Labels(sheet, rings=surface.rings, avoid=np.concatenate([dots, places]))
-    for place in places:
-        labels.reserve(place, 6)
-    return labels
-
-
-def _tell_tensions(
-    sheet: PictureSheet, robot: Robot, pose: SolvedPose, runs: list[Places], winches: Places, labels: Labels
-) -> None:
-    """Each cable's number and newtons, each winch's contraction."""
-    scale = TensionScale.of(pose.tensions)
-    colours = [scale.colour(float(tension)) for tension in pose.tensions]
-    beads = draw_numbers(sheet, runs, colours, labels)
-    name_winches(labels, robot, winches, [_note(contraction) for contraction in pose.contractions])
-    for bead, tension in zip(beads, pose.tensions, strict=True):
-        labels.place(bead, f"{tension:.1f} N" if tension > 0 else "slack", size=6.5, weight="bold", outside=0.1)
 
 
 def _rests(pose: SolvedPose) -> str:

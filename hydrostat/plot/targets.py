@@ -1,12 +1,13 @@
 """Markers, where they should go, and how far from there they are."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing.palette import DARK, ERROR, LIGHT
+from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import PictureSheet, Place
 from hydrostat.robot import Pose, Robot
 
@@ -51,6 +52,17 @@ def draw_errors(sheet: PictureSheet, places: Mapping[str, Place], targets: Mappi
     ends = np.array([[places[name], target] for name, target in targets.items()])
     sheet.segments(ends, color=LIGHT, linewidth=2.6, zorder=15)
     sheet.segments(ends, color=ERROR, linewidth=1.3, zorder=15.1)
+
+
+def draw_misses(
+    sheet: PictureSheet, panes: Sequence[Pane], tracked: Mapping[str, Vector], goals: Mapping[str, Vector]
+) -> None:
+    """Draw markers at points [m], a cross at each goal [m], and how far the markers are from these."""
+    for pane in panes:
+        markers, targets = pane.named(tracked), pane.named(goals)
+        draw_errors(sheet, markers, targets)
+        draw_crosses(sheet, targets)
+        draw_markers(sheet, markers)
 
 
 def target_places(pose: Pose) -> dict[str, Vector]:

@@ -140,7 +140,7 @@ def test_a_run_is_cut_where_it_enters_the_body() -> None:
     mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
     image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
     surface = DrawnBody(image.rings(), (camera, np.array([7.0, 3.0]), image, 100.0))
-    run = surface.run(np.array([[-0.04, 0.01, 0.015], [0.04, 0.01, 0.015]]))
+    run = surface.cable(np.array([[-0.04, 0.01, 0.015], [0.04, 0.01, 0.015]]))
     (free, none), (covered, fade) = run.parts
     assert none == 0
     assert 0 < fade < 1
