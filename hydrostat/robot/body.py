@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
+from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.healing.heal import Healing, heal
@@ -19,6 +20,7 @@ from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.surface import Solid
 from hydrostat.robot.checks import check_positive
 from hydrostat.robot.material import Material
+from hydrostat.robot.materials import find_material
 
 
 class Source(StrEnum):
@@ -43,6 +45,8 @@ class Volume(StrEnum):
 class Body:
     """A meshed body. Two bodies are equal when they come from the same file and numbers.
 
+    A text stands for the source, the material or the volume of that name.
+
     Attributes:
         source: what the file holds.
         file: its name in the robot's folder.
@@ -55,6 +59,9 @@ class Body:
         mesh: nodes and elements.
         outline: of a flat body that was drawn.
         healing: of a body in space that came as a surface: that surface closed, and what that took.
+
+    Raises:
+        InputError: a thickness that is missing or too much, a length out of its range, or an unknown name.
     """
 
     source: Source
@@ -70,6 +77,10 @@ class Body:
     healing: Healing | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
+        make_member(self, "source", Source)
+        make_member(self, "volume", Volume)
+        if isinstance(self.material, str):
+            object.__setattr__(self, "material", find_material(self.material))
         if self.mesh.dim == 2 and self.thickness is None:
             raise InputError('thickness is missing; a flat body needs one, for example thickness = "40 mm"')
         if self.mesh.dim == 3 and self.thickness is not None:

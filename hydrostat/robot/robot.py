@@ -6,11 +6,12 @@ from typing import Self, TypeVar
 
 import numpy as np
 
+from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
-from hydrostat.robot.gravity import check_gravity
+from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.marker import Marker
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.point import Point
@@ -36,7 +37,7 @@ class Robot:
         markers: tracked points.
         poses: by name.
         length_unit: of the coordinates in its file.
-        gravity: acceleration along each axis of the body [m/s^2]; None: weightless.
+        gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -55,6 +56,10 @@ class Robot:
     def __post_init__(self) -> None:
         if not self.name:
             raise InputError("name must not be empty")
+        try:
+            units.unit_factor(self.length_unit, units.LENGTH)
+        except InputError as error:
+            raise InputError(f"length_unit: {error}") from None
         object.__setattr__(self, "cables", name_cables(self.cables))
         _unique("winch", [winch.name for winch in self.winches])
         _unique("cable", [cable.name for cable in self.cables])
@@ -63,6 +68,8 @@ class Robot:
             if name != pose.name:
                 raise InputError(f'pose[{index}].name: a pose called "{pose.name}" is filed under "{name}"')
         self._check_dimensions()
+        if isinstance(self.gravity, str):
+            object.__setattr__(self, "gravity", gravity_along(self.gravity, self.body.mesh.dim))
         if self.gravity is not None:
             check_gravity(self.gravity, self.body.mesh.dim)
         self._check_pins()
@@ -204,9 +211,7 @@ class Robot:
 
     def _text(self, value: Point | float) -> str:
         """A point or length in the unit of the file, to four digits."""
-        from hydrostat.units import LENGTH, unit_factor
-
-        scale = float(unit_factor(self.length_unit, LENGTH))
+        scale = float(units.unit_factor(self.length_unit, units.LENGTH))
         if isinstance(value, tuple):
             return "[" + ", ".join(f"{coordinate / scale:.4g}" for coordinate in value) + "]"
         return f"{value / scale:.4g} {self.length_unit}"

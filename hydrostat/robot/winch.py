@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
+from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.robot.checks import check_not_negative, check_point, check_positive
 from hydrostat.robot.point import Point
@@ -25,10 +26,10 @@ class Winch:
         spool_radius: at which contraction, travel and release are measured [m].
         travel: the most cable it can take in [m].
         release: the most cable it can let out beyond the rest length [m].
-        mount: `Mount.WORLD` fixes `at` in space: there its cables begin.
+        mount: `Mount.WORLD` (or its text) fixes `at` in space: there its cables begin.
 
     Raises:
-        InputError: an empty name or a number out of its range.
+        InputError: an empty name, a number out of its range, or no such mount.
     """
 
     name: str
@@ -45,3 +46,4 @@ class Winch:
         check_positive("spool_radius", self.spool_radius, "m")
         check_positive("travel", self.travel, "m")
         check_not_negative("release", self.release, "m")
+        make_member(self, "mount", Mount)

@@ -6,6 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.ik.checks import not_negative, told
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
@@ -33,16 +34,15 @@ class Closeness(Objective):
     of: ClosenessKind | str = ClosenessKind.CONTRACTIONS
     weight: float = 1e-2
 
+    def __post_init__(self) -> None:
+        make_member(self, "of", ClosenessKind, what="the kind of a closeness")
+
     def on(self, simulation: Simulation) -> Term:
         """The wish on this robot.
 
         Raises:
-            InputError: no solved pose or one of another robot, a kind that there is not, or a weight below 0.
+            InputError: no solved pose or one of another robot, or a weight below 0.
         """
-        try:
-            kind = ClosenessKind(self.of)
-        except ValueError:
-            raise InputError(f'closeness of "{self.of}"? it may be of: {", ".join(ClosenessKind)}') from None
         weight = not_negative("weight of a closeness", self.weight)
         if not isinstance(self.pose, SolvedPose):
             hint = ", give its .pose" if isinstance(getattr(self.pose, "pose", None), SolvedPose) else ""
@@ -50,7 +50,7 @@ class Closeness(Objective):
         mesh, winches = simulation.robot.body.mesh, simulation.robot.winches
         if self.pose.nodes.shape != mesh.nodes.shape or len(self.pose.contractions) != len(winches):
             raise InputError("the pose to stay close to is one of another robot")
-        if kind is ClosenessKind.NODES:
+        if self.of is ClosenessKind.NODES:
             return _Nodes(weight / np.sqrt(len(mesh.nodes)), self.pose.nodes)
         return _Contractions(weight, self.pose.contractions)
 

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from hydrostat.errors import InputError
+from hydrostat.closed_set import make_member
 from hydrostat.ik.checks import above_zero, not_negative
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation
@@ -34,23 +34,22 @@ class Effort(Objective):
     weight: float = 1e-3
     scale: float | None = None
 
+    def __post_init__(self) -> None:
+        make_member(self, "of", EffortKind, what="the kind of an effort")
+
     def on(self, simulation: Simulation) -> Term:
         """The wish on this robot.
 
         Raises:
-            InputError: a kind that there is not, a weight below 0, or a scale not above 0.
+            InputError: a weight below 0, or a scale not above 0.
         """
-        try:
-            kind = EffortKind(self.of)
-        except ValueError:
-            raise InputError(f'effort of "{self.of}"? it may be of: {", ".join(EffortKind)}') from None
         robot = simulation.robot
         travel = np.array([winch.travel for winch in robot.winches])
         weight = not_negative("weight of an effort", self.weight) * robot.body.mesh.size
         scale = None if self.scale is None else above_zero("scale of an effort", self.scale)
-        if kind is EffortKind.TENSION:
+        if self.of is EffortKind.TENSION:
             return _Tension(weight / (scale or _TENSION))
-        if kind is EffortKind.SLACK:
+        if self.of is EffortKind.SLACK:
             return _Slack(weight / (scale or simulation.cables.taken(travel)))
         return _Contraction(weight / (scale or travel))
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
@@ -82,7 +83,7 @@ def solve_ik_trajectory(
     """
     check_robot(simulation)
     chosen = options or TrajectoryOptions()
-    kind = _kind(path)
+    kind = member(PathKind, path, what="path")
     frames = as_keyframes(keyframes)
     _check(chosen, limits, hold, kind, acceleration, frames, loop)
     hardest = _ACCELERATION if acceleration is None and kind is not PathKind.LINEAR else acceleration
@@ -129,13 +130,6 @@ def solve_ik_trajectory(
         cables=tuple(cable.winch for cable in simulation.robot.cables),
         tension=allowed.tension,
     )
-
-
-def _kind(path: PathKind | str) -> PathKind:
-    try:
-        return PathKind(path)
-    except ValueError:
-        raise InputError(f'path "{path}"? it may be: {", ".join(PathKind)}') from None
 
 
 def _check(
