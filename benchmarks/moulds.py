@@ -32,11 +32,12 @@ def main() -> None:
         start = process_time()
         mould = make_mould(robot, options, pockets=pockets)
         seconds = process_time() - start
-        pull = " ".join(f"{value:+.2f}" for value in mould.pull)
+        held = 100 * mould.pull.share
+        pull = " ".join(f"{value:+.2f}" for value in mould.pull.direction)
         box = " x ".join(f"{side:.0f}" for side in mould.box)
         mix = mould.casting.body
         print(
-            f"{name:<15} {pull:<19} {100 * mould.share:7.1f} %  {box:<17}  {len(mould.printed):>6}  {mould.vents:>5}"
+            f"{name:<15} {pull:<19} {held:7.1f} %  {box:<17}  {len(mould.printed):>6}  {mould.vents:>5}"
             f"  {mix.volume / 1e3:>11.0f}  {mix.mass:>3.0f}  {seconds:>7.1f}"
         )
         for sentence in mould.problems:

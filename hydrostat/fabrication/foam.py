@@ -30,14 +30,16 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
     Raises:
         InputError: the body is not closed.
     """
-    pockets = {unit.winch: WinchRoom(low=unit.low, high=unit.high) for unit in units if unit.mount is Mount.BODY}
+    pockets = {
+        unit.winch: WinchRoom(low=unit.room.low, high=unit.room.high) for unit in units if unit.mount is Mount.BODY
+    }
     mould = make_mould(robot, options.mould, pockets=pockets)
     spare = tuple(
         part for part in mould.printed if part.name.startswith("positive") and mould.kind is MouldKind.PRINTED
     )
     printed = tuple(part for part in mould.printed if part not in spare)
     pieces, sides = sum(part.count for part in printed), " x ".join(f"{side:.0f}" for side in mould.box)
-    body = mould.casting.body
+    body, held = mould.casting.body, 100 * mould.pull.share
     return BodyWork(
         printed=printed,
         spare=spare,
@@ -52,7 +54,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
         ),
         mould=mould,
         summary=(
-            f"Mould: {counted(pieces, 'piece')}, closed {sides} mm; {100 * mould.share:.1f} % of the skin is undercut",
+            f"Mould: {counted(pieces, 'piece')}, closed {sides} mm; {held:.1f} % of the skin is undercut",
             f"Pour: {body.mass:.0f} g of {body.material}",
         ),
         problems=(*mould.problems, *channel_problems(robot, options.parts)),

@@ -14,7 +14,18 @@ from plush_robots import crossed, drawn_body, plush_robot
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Kit, KitOptions, Method, Paper, UnbuildableError, build_kit, export_kit
+from hydrostat.fabrication import (
+    Kit,
+    KitOptions,
+    Method,
+    MouldKind,
+    MouldOptions,
+    Paper,
+    PatternOptions,
+    UnbuildableError,
+    build_kit,
+    export_kit,
+)
 from hydrostat.fabrication.sheets.legible import typeset
 from hydrostat.robot import MATERIALS, robot_hash
 from hydrostat.robot.gallery import gallery_folder
@@ -123,6 +134,28 @@ def test_letter_paper():
 def test_an_unknown_motor_is_refused():
     with pytest.raises(InputError, match="n20, "):
         build_kit(crossed(), options=KitOptions(motor="v8"))
+
+
+@pytest.mark.parametrize(
+    ("made", "name", "word"),
+    [
+        (KitOptions, "method", "knit"),
+        (KitOptions, "paper", "a3"),
+        (MouldOptions, "kind", "plaster"),
+        (PatternOptions, "corner", "cut"),
+    ],
+)
+def test_a_word_that_is_no_choice_is_refused_with_those_that_are(made, name, word):
+    """Oracle: the enumeration of each."""
+    with pytest.raises(InputError, match=f'{name} must be one of [a-z0-9, ]+, not "{word}"'):
+        made(**{name: word})
+
+
+def test_a_choice_may_be_given_as_text():
+    """Oracle: the same options with members of the enumerations; a text alone is no member."""
+    given = KitOptions(method="foam", paper="letter", mould=MouldOptions(kind="silicone"))
+    assert given.method is Method.FOAM
+    assert given == KitOptions(method=Method.FOAM, paper=Paper.LETTER, mould=MouldOptions(kind=MouldKind.SILICONE))
 
 
 def test_a_stuffed_body_in_space_is_sewn_of_patches():

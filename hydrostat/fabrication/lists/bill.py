@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.prices import Price
-from hydrostat.fabrication.lists.table import Align, Cell, Column, Table
+from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,14 +63,12 @@ def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table:
         name="bill_of_materials",
         title="Bill of materials",
         columns=(
-            *(Column(title=title, align=Align.LEFT) for title in ("group", "what", "specification")),
-            Column(title="quantity", decimals=2),
-            Column(title="unit", align=Align.LEFT),
-            Column(title="mass", unit="g"),
-            Column(title="price", unit="USD", decimals=2),
-            Column(title="used up", unit="USD", decimals=2),
-            Column(title="in whole packs", unit="USD", decimals=2),
-            Column(title="source of the price", align=Align.LEFT),
+            *text_columns("group", "what", "specification"),
+            *number_columns("quantity", decimals=2),
+            *text_columns("unit"),
+            *number_columns("mass", unit="g"),
+            *number_columns("price", "used up", "in whole packs", unit="USD", decimals=2),
+            *text_columns("source of the price"),
         ),
         rows=tuple(rows),
         notes=(

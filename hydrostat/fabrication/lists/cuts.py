@@ -3,13 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import groupby
 
 import numpy as np
 
-from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.lists.table import Table, number_columns, text_columns
+from hydrostat.fabrication.patterns.stitches import runs_of
 from hydrostat.fabrication.self_check import Check
-from hydrostat.robot import Cable, Robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
 KNOT = 120.0
@@ -106,15 +106,15 @@ def cable_cuts(
 
 def cable_table(cuts: tuple[CableCut, ...]) -> Table:
     """The cut list."""
-    lengths = ("body", "slack", "outside", "lead", "wraps", "release", "knot", "tail", "total", "cut to")
-    whole = ("cut to", "spool mark from end")
     return Table(
         name="cable_cuts",
         title="Cables to cut",
         columns=(
-            Column(title="cable", align=Align.LEFT),
-            Column(title="winch", align=Align.LEFT),
-            *(Column(title=title, unit="mm", decimals=int(title not in whole)) for title in (*lengths, whole[1])),
+            *text_columns("cable", "winch"),
+            *number_columns(
+                *("body", "slack", "outside", "lead", "wraps", "release", "knot", "tail", "total"), unit="mm"
+            ),
+            *number_columns("cut to", "spool mark from end", unit="mm", decimals=0),
         ),
         rows=tuple(
             (
@@ -194,7 +194,7 @@ def sheath_cuts(robot: Robot, *, seats: Mapping[int, float], outside: Mapping[in
     cuts = []
     for index, cable in enumerate(robot.cables):
         seat, tube = float(seats.get(index, 0.0)), float(outside.get(index, 0.0))
-        runs = _runs(cable)
+        runs = [(points[0], points[-1]) for bare, points in runs_of(cable) if not bare]
         if tube > 0 and (not runs or runs[0][0] > 0):
             cuts.append(SheathCut(cable=index + 1, winch=cable.winch, start=None, end=0, run=tube, seat=seat))
         for start, end in runs:
@@ -211,16 +211,6 @@ def sheath_cuts(robot: Robot, *, seats: Mapping[int, float], outside: Mapping[in
                 )
             )
     return tuple(cuts)
-
-
-def _runs(cable: Cable) -> list[tuple[int, int]]:
-    """Stretches of sheathed segments, as indices of their first and last points."""
-    runs = []
-    for bare, places in groupby(range(len(cable.segments)), key=lambda place: bool(cable.bare[place])):
-        covered = list(places)
-        if not bare:
-            runs.append((covered[0], covered[-1] + 1))
-    return runs
 
 
 def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube: float) -> Table:
@@ -240,8 +230,8 @@ def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube
         name="sheath_cuts",
         title="PTFE tube to cut",
         columns=(
-            *(Column(title=title, align=Align.LEFT) for title in ("cable", "winch", "from", "to")),
-            *(Column(title=title, unit="mm") for title in ("bore", "outside", "run", "seat", "cut to")),
+            *text_columns("cable", "winch", "from", "to"),
+            *number_columns("bore", "outside", "run", "seat", "cut to", unit="mm"),
         ),
         rows=tuple(rows),
         notes=_notes(cuts),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.lists.table import Table, number_columns, text_columns
 from hydrostat.robot import Robot
 
 POUND = 4.448222
@@ -150,15 +150,11 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
         name="line_strength",
         title="Strength of the line",
         columns=(
-            Column(title="cable", align=Align.LEFT),
-            Column(title="winch", align=Align.LEFT),
-            Column(title="largest tension", unit="N"),
-            Column(title="line", align=Align.LEFT),
-            Column(title="breaks at", unit="N", decimals=0),
-            Column(title="at a knot", unit="N", decimals=0),
-            Column(title="working load", unit="N", decimals=0),
-            Column(title="stopper holds", unit="N", decimals=0),
-            Column(title="verdict", align=Align.LEFT),
+            *text_columns("cable", "winch"),
+            *number_columns("largest tension", unit="N"),
+            *text_columns("line"),
+            *number_columns("breaks at", "at a knot", "working load", "stopper holds", unit="N", decimals=0),
+            *text_columns("verdict"),
         ),
         rows=tuple(rows),
         notes=(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.lists.table import Table, number_columns, text_columns
 from hydrostat.fabrication.parts.motor import MARGIN, Motor
 from hydrostat.robot import Robot, Winch
 
@@ -25,9 +25,7 @@ class WinchSizing:
         radius: of its spool, where its travel is measured [mm].
         turns: of the spool from all let out to all taken in.
         travel: the most cable it takes in from rest [mm].
-        stall: torque at which the motor stands still [N mm].
-        rated: torque that the motor bears for long [N mm].
-        free: speed of the motor without load [rpm].
+        motor: that turns it.
     """
 
     winch: str
@@ -37,9 +35,7 @@ class WinchSizing:
     radius: float
     turns: float
     travel: float
-    stall: float
-    rated: float
-    free: float
+    motor: Motor
 
     @property
     def needed(self) -> float:
@@ -49,7 +45,7 @@ class WinchSizing:
     @property
     def loaded(self) -> float:
         """Speed of the motor at the largest torque [rpm]: speed falls evenly with torque, to none at stall."""
-        return self.free * max(0.0, 1 - self.torque / self.stall)
+        return self.motor.speed * max(0.0, 1 - self.torque / self.motor.stall_torque)
 
     @property
     def pull(self) -> float:
@@ -63,28 +59,28 @@ class WinchSizing:
         With q the largest torque over that of stall, speed falls along the travel as 1 - q x; the integral of 1/speed
         gives - ln(1 - q) / q times the time without load.
         """
-        if self.torque >= self.stall:
+        if self.torque >= self.motor.stall_torque:
             return None
-        share = self.torque / self.stall
+        share = self.torque / self.motor.stall_torque
         slower = -math.log1p(-share) / share if share > 1e-9 else 1.0
-        return slower * self.travel / (2 * math.pi * self.radius * self.free / 60)
+        return slower * self.travel / (2 * math.pi * self.radius * self.motor.speed / 60)
 
     @property
     def verdict(self) -> str:
         """Whether the motor will do."""
-        if self.torque >= self.stall:
+        if self.torque >= self.motor.stall_torque:
             return "too weak"
-        if self.needed > self.stall:
+        if self.needed > self.motor.stall_torque:
             return "no margin"
-        return "holds for seconds" if self.needed > self.rated else "good"
+        return "holds for seconds" if self.needed > self.motor.rated_torque else "good"
 
 
 _MINDS = {
-    "too weak": "but the motor stalls at {stall:.0f} N mm: it cannot reach the poses; take a stronger one, or a "
-    "smaller spool",
-    "no margin": "but the motor stalls at {stall:.0f} N mm: it may stand still before a pose is reached",
-    "holds for seconds": "more than the {rated:.0f} N mm that the motor bears for long: hold such poses for seconds "
-    "only",
+    "too weak": "but the motor stalls at {0.stall_torque:.0f} N mm: it cannot reach the poses; take a stronger one, or "
+    "a smaller spool",
+    "no margin": "but the motor stalls at {0.stall_torque:.0f} N mm: it may stand still before a pose is reached",
+    "holds for seconds": "more than the {0.rated_torque:.0f} N mm that the motor bears for long: hold such poses for "
+    "seconds only",
 }
 """What a person should mind of a winch, by its verdict."""
 
@@ -99,7 +95,7 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
             names = ", ".join(f'"{sizing.winch}"' for sizing in alike)
             who = f"winch {names} asks for" if len(alike) == 1 else f"winches {names} ask for up to"
             margin = "" if verdict == "too weak" else f", {worst.needed:.0f} N mm with the margin of {MARGIN:g}"
-            found.append(f"{who} {worst.torque:.0f} N mm{margin}, {mind.format(stall=worst.stall, rated=worst.rated)}")
+            found.append(f"{who} {worst.torque:.0f} N mm{margin}, {mind.format(worst.motor)}")
     slow = (sizing for sizing in sizings if sizing.time is not None and sizing.time > SLOW)
     return (
         *found,
@@ -144,9 +140,7 @@ def _size(robot: Robot, demand: Demand, motor: Motor, winch: Winch, torque: floa
         radius=1e3 * winch.spool_radius,
         turns=(winch.travel + winch.release) / (2 * math.pi * winch.spool_radius),
         travel=1e3 * winch.travel,
-        stall=motor.stall_torque,
-        rated=motor.rated_torque,
-        free=motor.speed,
+        motor=motor,
     )
 
 
@@ -157,26 +151,23 @@ def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) 
         name="motor_sizing",
         title=f"Motors: {motor.title}",
         columns=(
-            Column(title="winch", align=Align.LEFT),
-            Column(title="cables", decimals=0),
-            Column(title="largest tension", unit="N"),
-            Column(title="spool radius", unit="mm"),
-            Column(title="largest torque", unit="N mm"),
-            Column(title="with margin", unit="N mm"),
-            Column(title="motor stalls at", unit="N mm", decimals=0),
-            Column(title="bears for long", unit="N mm", decimals=0),
-            Column(title="spool turns", decimals=2),
-            Column(title="free speed", unit="rpm", decimals=0),
-            Column(title="loaded speed", unit="rpm", decimals=0),
-            Column(title="cable speed", unit="mm/s"),
-            Column(title="full travel in", unit="s"),
-            Column(title="verdict", align=Align.LEFT),
+            *text_columns("winch"),
+            *number_columns("cables", decimals=0),
+            *number_columns("largest tension", unit="N"),
+            *number_columns("spool radius", unit="mm"),
+            *number_columns("largest torque", "with margin", unit="N mm"),
+            *number_columns("motor stalls at", "bears for long", unit="N mm", decimals=0),
+            *number_columns("spool turns", decimals=2),
+            *number_columns("free speed", "loaded speed", unit="rpm", decimals=0),
+            *number_columns("cable speed", unit="mm/s"),
+            *number_columns("full travel in", unit="s"),
+            *text_columns("verdict"),
         ),
         rows=tuple(
             (
                 *(sizing.winch, sizing.cables, sizing.tension, sizing.radius, sizing.torque, sizing.needed),
-                *(sizing.stall, sizing.rated, sizing.turns, sizing.free, sizing.loaded, sizing.pull, sizing.time),
-                sizing.verdict,
+                *(motor.stall_torque, motor.rated_torque, sizing.turns, motor.speed),
+                *(sizing.loaded, sizing.pull, sizing.time, sizing.verdict),
             )
             for sizing in sizings
         ),

@@ -1,12 +1,13 @@
 """The order in which each cable is stitched, from hole to hole or from point to point."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.fabrication.lists.cuts import point_name
-from hydrostat.fabrication.lists.table import Align, Column, Table
+from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Body, Cable, Robot
@@ -37,8 +38,8 @@ def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:
         name="stitching",
         title="Stitching order",
         columns=(
-            *(Column(title=title, align=Align.LEFT) for title in ("cable", "winch", "point", "way")),
-            *(Column(title=title, unit="mm") for title in ("x", "y", "from the last point", "from the winch")),
+            *text_columns("cable", "winch", "point", "way"),
+            *number_columns("x", "y", "from the last point", "from the winch", unit="mm"),
         ),
         rows=tuple(rows),
         notes=(
@@ -61,31 +62,17 @@ def depth_table(robot: Robot) -> Table:
     if robot.cables:
         points = np.concatenate([np.array(cable.points) for cable in robot.cables])
         depths, skin = _under_skin(robot.body, points)
-        place = 0
-        for index, cable in enumerate(robot.cables):
-            along = np.concatenate([[0.0], np.cumsum(cable.segments)])
-            for step in range(len(cable.points)):
-                x, y, z = (1e3 * points[place]).tolist()
-                depth = 1e3 * float(depths[place])
-                rows.append(
-                    (
-                        *(f"C{index + 1}", cable.winch, point_name(step, len(cable.points) - 1), x, y, z),
-                        1e3 * float(cable.segments[step - 1]) if step else None,
-                        *(1e3 * float(along[step]), depth, *(1e3 * skin[place]).tolist()),
-                        _reach(cable, step, depth),
-                    )
-                )
-                place += 1
+        steps = [(cable, step) for cable in robot.cables for step in range(len(cable.points))]
+        for (cable, step), row, depth, nearest in zip(steps, _along(robot), 1e3 * depths, 1e3 * skin, strict=True):
+            rows.append((*row, float(depth), *nearest.tolist(), _reach(cable, step, float(depth))))
     return Table(
         name="stitching",
         title="Where the cables pass",
         columns=(
-            *(Column(title=title, align=Align.LEFT) for title in ("cable", "winch")),
-            Column(title="point", align=Align.LEFT),
-            *(Column(title=title, unit="mm") for title in ("x", "y", "z", "from the last point", "from the winch")),
-            Column(title="depth", unit="mm"),
-            *(Column(title=f"skin {axis}", unit="mm") for axis in "xyz"),
-            Column(title="how", align=Align.LEFT),
+            *text_columns("cable", "winch", "point"),
+            *number_columns("x", "y", "z", "from the last point", "from the winch", "depth", unit="mm"),
+            *number_columns("skin x", "skin y", "skin z", unit="mm"),
+            *text_columns("how"),
         ),
         rows=tuple(rows),
         notes=(
@@ -100,21 +87,14 @@ def depth_table(robot: Robot) -> Table:
 
 def plane_table(robot: Robot) -> Table:
     """From point to point in the middle plane, for flat bodies that are cast."""
-    rows = []
-    for number, cable in enumerate(robot.cables, start=1):
-        along = np.concatenate([[0.0], np.cumsum(cable.segments)])
-        for step, (x, y) in enumerate(cable.points):
-            gap = 1e3 * float(cable.segments[step - 1]) if step else None
-            name = point_name(step, len(cable.points) - 1)
-            rows.append((f"C{number}", cable.winch, name, 1e3 * x, 1e3 * y, gap, 1e3 * float(along[step])))
     return Table(
         name="stitching",
         title="Where the cables pass",
         columns=(
-            *(Column(title=title, align=Align.LEFT) for title in ("cable", "winch", "point")),
-            *(Column(title=title, unit="mm") for title in ("x", "y", "from the last point", "from the winch")),
+            *text_columns("cable", "winch", "point"),
+            *number_columns("x", "y", "from the last point", "from the winch", unit="mm"),
         ),
-        rows=tuple(rows),
+        rows=tuple(_along(robot)),
         notes=(
             "All points lie in the middle of the thickness; x and y count from the middle of the drawing, seen from "
             "the front.",
@@ -122,6 +102,16 @@ def plane_table(robot: Robot) -> Table:
             "else draw the line through the foam with a long needle, from point to point.",
         ),
     )
+
+
+def _along(robot: Robot) -> Iterator[tuple[Cell, ...]]:
+    """Rows of the points of all cables: cable, winch, point, where it is, how far from the last and from the winch."""
+    for number, cable in enumerate(robot.cables, start=1):
+        along = np.concatenate([[0.0], np.cumsum(cable.segments)])
+        for step, place in enumerate(cable.points):
+            name, gap = point_name(step, len(cable.points) - 1), 1e3 * float(cable.segments[step - 1]) if step else None
+            at = (1e3 * float(value) for value in place)
+            yield (f"C{number}", cable.winch, name, *at, gap, 1e3 * float(along[step]))
 
 
 def _under_skin(body: Body, points: Points) -> tuple[Vector, Points]:

@@ -53,6 +53,16 @@ class Column:
         return str(cell)
 
 
+def text_columns(*titles: str) -> tuple[Column, ...]:
+    """Columns of text, on the left."""
+    return tuple(Column(title=title, align=Align.LEFT) for title in titles)
+
+
+def number_columns(*titles: str, unit: str = "", decimals: int = 1) -> tuple[Column, ...]:
+    """Columns of numbers, on the right, all of one unit and so many decimals."""
+    return tuple(Column(title=title, unit=unit, decimals=decimals) for title in titles)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Table:
     """Rows of text and numbers.

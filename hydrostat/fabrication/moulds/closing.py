@@ -11,6 +11,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.moulds.openings import Sprue
 from hydrostat.fabrication.moulds.solids import joined, rod
+from hydrostat.fabrication.solids.construct import Cuboid
 
 RIM = 13.0
 """Least width of the rim round the cavity [mm]: a key or a bolt with walls on both sides."""
@@ -37,18 +38,14 @@ Spot = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class MouldBlock:
-    """The outside of a mould [mm].
+class MouldBlock(Cuboid):
+    """Outside of a mould [mm].
 
     Attributes:
-        low: its lowest corner.
-        high: its highest corner.
         x_cuts: where it is cut across x, to fit the printer.
         y_cuts: where it is cut across y.
     """
 
-    low: tuple[float, float, float]
-    high: tuple[float, float, float]
     x_cuts: tuple[float, ...] = ()
     y_cuts: tuple[float, ...] = ()
 
@@ -56,12 +53,6 @@ class MouldBlock:
     def solid(self) -> Manifold:
         """All of it."""
         return Manifold.cube(self.size).translate(self.low)
-
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Its sides [mm]."""
-        x, y, z = (high - low for low, high in zip(self.low, self.high, strict=True))
-        return x, y, z
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float
 from manifold3d import Manifold
 
 from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
@@ -29,33 +29,13 @@ TOP_RIM = 20.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MouldSurface:
-    """The body's surface and where it holds in the mould, for a picture.
-
-    Attributes:
-        vertices: in the coordinates of the robot [mm].
-        triangles: of three vertices each.
-        undercut: which of them neither half comes off.
-    """
-
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
-    undercut: Bool[np.ndarray, " triangles"]
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
 class Mould:
     """A mould in two halves; lengths in millimetres.
 
     Attributes:
         kind: printed halves, or silicone round a printed positive.
-        pull: unit vector along which the upper half is drawn, in the coordinates of the robot.
-        up: unit vector that points up while it is poured.
-        height: of the parting plane along the pull [mm].
-        share: of the surface that is undercut.
-        directions: all pulls that were tried.
-        shares: undercut of each of them.
-        surface: which triangles are undercut.
+        pull: how the halves come off, in the coordinates of the robot.
+        stance: how it lies in these, and which way is up while it is poured.
         printed: as they lie on the bed.
         assembly: halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across,
             y upwards as it stands, z along the pull, parted at z = 0.
@@ -75,13 +55,8 @@ class Mould:
     """
 
     kind: MouldKind
-    pull: Float[np.ndarray, "3"]
-    up: Float[np.ndarray, "3"]
-    height: float
-    share: float
-    directions: Float[np.ndarray, "tried 3"]
-    shares: Float[np.ndarray, " tried"]
-    surface: MouldSurface
+    pull: Pull
+    stance: Stance
     printed: tuple[Printed, ...]
     assembly: PartAssembly
     volumes: dict[str, float]
@@ -150,13 +125,8 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     shape = frames.inside if frames else inside.block
     return Mould(
         kind=options.kind,
-        pull=pull.direction,
-        up=stance.axes[1],
-        height=pull.height,
-        share=pull.share,
-        directions=pull.directions,
-        shares=pull.shares,
-        surface=MouldSurface(vertices=pull.surface.vertices, triangles=pull.surface.triangles, undercut=pull.undercut),
+        pull=pull,
+        stance=stance,
         printed=printed,
         assembly=_assembly(robot.name, halves, frames, positive, inside.block),
         volumes=volumes | {"cutting": lost},
@@ -223,7 +193,7 @@ def _block(body: Manifold, options: MouldOptions) -> MouldBlock:
     rim = max(options.wall, RIM)
     low = (box[0] - rim, box[1] - rim, box[2] - options.wall)
     high = (box[3] + rim, box[4] + max(options.wall, TOP_RIM), box[5] + options.wall)
-    return MouldBlock(low, high, *grid(low, high, options.bed))
+    return MouldBlock(*grid(low, high, options.bed), low=low, high=high)
 
 
 def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: MouldBlock) -> PartAssembly:

@@ -12,24 +12,14 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
 from hydrostat.fabrication.moulds.solids import MILLIMETRES, joined, rod
 from hydrostat.fabrication.moulds.stance import Stance
+from hydrostat.fabrication.solids.construct import Cuboid, Sides
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Mount, Robot
 
-Sides = tuple[float, float, float]
-"""Lengths along three axes [mm]."""
-
 
 @dataclass(frozen=True, kw_only=True)
-class WinchRoom:
-    """What a winch takes up; lengths in millimetres.
-
-    Attributes:
-        low: least corner of the box round it, its shaft along z through the origin.
-        high: largest corner of that box.
-    """
-
-    low: Sides
-    high: Sides
+class WinchRoom(Cuboid):
+    """Box round a winch, its shaft along z through the origin; lengths in millimetres."""
 
     @classmethod
     def about_the_middle(cls, sides: Sides) -> "WinchRoom":
@@ -38,14 +28,8 @@ class WinchRoom:
         return cls(low=(-a, -b, -c), high=(a, b, c))
 
     @property
-    def sides(self) -> Sides:
-        """Of the box [mm]."""
-        (a, b, c), (x, y, z) = self.low, self.high
-        return x - a, y - b, z - c
-
-    @property
     def off(self) -> Sides:
-        """From the winch's place to the middle of the box [mm]: across the shaft only.
+        """Way from the winch's place to the middle of the box [mm]: across the shaft only.
 
         Along the shaft the middle of the box is at the winch's place: the foam gives a cable that little way.
         """
@@ -116,8 +100,8 @@ def make_pockets(
     }
     for name, box in boxes.items():
         robot.winch(name)
-        if not all(np.isfinite(side) and side > 0 for side in box.sides):
-            raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {box.sides}')
+        if not all(np.isfinite(side) and side > 0 for side in box.size):
+            raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {box.size}')
     inside = [winch for winch in robot.winches if winch.mount is Mount.BODY and winch.name in boxes]
     ways = [
         _ways(winch.name, body, stance.into(_spot(winch.at)[None])[0], boxes[winch.name], clearance) for winch in inside
@@ -192,14 +176,14 @@ def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[_Lying]:
     """All ways to lay a winch; those that differ in no length only once."""
     off = np.where(np.abs(room.off) > _ROUNDING, room.off, 0.0)
     found = []
-    orders = sorted(permutations(range(3)), key=lambda order: (room.sides[order[2]], room.sides[order[0]], order))
+    orders = sorted(permutations(range(3)), key=lambda order: (room.size[order[2]], room.size[order[0]], order))
     for order, x, y in product(orders, (1, -1), (1, -1)):
         turn = round(np.linalg.det(np.eye(3)[list(order)])) * x * y if off[0] and off[1] else 1
         signs = np.array([x if off[0] else 1, y if off[1] else 1, turn])
         a, b, c = (at + (signs * off)[list(order)]).tolist()
         shaft = order.index(2)
         wires = (shaft, -int(signs[2])) if shaft < 2 else (0, -1)
-        sides = (room.sides[order[0]], room.sides[order[1]], room.sides[order[2]])
+        sides = (room.size[order[0]], room.size[order[1]], room.size[order[2]])
         found.append(_Lying(sides=sides, middle=(a, b, c), wires=wires))
     return list(dict.fromkeys(found))
 

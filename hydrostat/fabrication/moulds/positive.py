@@ -94,7 +94,8 @@ def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
     """Two open frames, and how much silicone goes into each."""
     whole = _with_sprue(cavity, sprue)
     low, high = (np.array(corner) for corner in np.reshape(cavity.bounding_box(), (2, 3)))
-    inside = MouldBlock(tuple((low - SILICONE_WALL).tolist()), tuple((high + SILICONE_WALL).tolist()))
+    least, largest = (tuple(corner.tolist()) for corner in (low - SILICONE_WALL, high + SILICONE_WALL))
+    inside = MouldBlock(low=least, high=largest)
     lower, upper = (_ring(inside, *span) for span in ((inside.low[2], 0.0), (0.0, inside.high[2])))
     silicone = inside.solid - whole
     above, below = silicone.split_by_plane((0.0, 0.0, 1.0), 0.0)

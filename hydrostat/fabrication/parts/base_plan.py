@@ -115,9 +115,9 @@ class BasePlan:
     @staticmethod
     def of(units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]) -> "BasePlan":
         """One row, so that all tubes leave to one side, in tiles of as many units as the bed takes."""
-        pitch = max(unit.size[0] for unit in units) + _GAP
-        low = min(unit.low[1] for unit in units) - _GAP / 2
-        high = max(unit.high[1] for unit in units) + FREE + HOLDER_DEPTH + 2.0
+        pitch = max(unit.room.size[0] for unit in units) + _GAP
+        low = min(unit.room.low[1] for unit in units) - _GAP / 2
+        high = max(unit.room.high[1] for unit in units) + FREE + HOLDER_DEPTH + 2.0
         most = max(1, math.floor((bed[0] - 2 * _STRIP) / pitch))
         count = math.ceil(len(units) / most)
         seats: list[Seat] = []

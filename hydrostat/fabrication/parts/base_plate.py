@@ -21,7 +21,7 @@ from hydrostat.fabrication.parts.base_plan import (
 from hydrostat.fabrication.parts.housing import SHEET
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, letters
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, solid_of
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 
@@ -73,25 +73,22 @@ def base_plate(
         return None
     plan = BasePlan.of(outside, options, bed)
     tiles = [
-        Printed(
+        Printed.of(
+            tile.raised,
             name=f"base_{letters(place)}" if len(plan.tiles) > 1 else "base",
             title="Base",
-            solid=solid_of(model),
             note="Flat on the bed, no support. Or cut the whole base from acrylic, 4 mm.",
-            model=model,
         )
-        for place, model in enumerate(tile.raised for tile in plan.tiles)
+        for place, tile in enumerate(plan.tiles)
     ]
     holders = _holders(outside, options)
     height = max(unit.motor.depth for unit in outside) + _BELOW - SHEET
-    leg = _leg(height)
-    legs = Printed(
+    legs = Printed.of(
+        _leg(height),
         name="base_leg",
         title="Leg of the base",
-        solid=solid_of(leg),
         count=len(plan.bolts),
         note="Standing, with a brim, no support; holes for screws M3 at both ends.",
-        model=leg,
     )
     used = {holder.name: sum(mine is holder for mine in holders) for holder in holders}
     own = {holder.name: replace(holder, count=used[holder.name]) for holder in holders}
@@ -155,12 +152,11 @@ def _holders(units: Sequence[WinchUnit], options: PartOptions) -> list[Printed]:
     for unit in units:
         model = tube_holder([leaves.point[2] for leaves in unit.exits], options)
         if model not in made:
-            made[model] = Printed(
+            made[model] = Printed.of(
+                model,
                 name=f"tube_holder_{letters(len(made))}",
                 title="Tube holder",
-                solid=solid_of(model),
                 note="Standing on its foot, the slot upwards, no support.",
-                model=model,
             )
         found.append(made[model])
     return found

@@ -4,7 +4,7 @@ import math
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.solids.construct import Construction, Cylinder, Turning, solid_of
+from hydrostat.fabrication.solids.construct import Construction, Cylinder, Turning
 from hydrostat.fabrication.solids.printed import Printed
 
 _LINE = 0.4
@@ -43,12 +43,11 @@ def grommet(options: PartOptions, hole: float) -> Printed:
             f"a grommet for a cable of {options.cable:g} mm needs a pinhole of {least:g} mm or more, not {hole:g} mm: "
             "its sleeve would be thinner than a line of plastic"
         )
-    return Printed(
+    return Printed.of(
+        _model(options, hole),
         name="grommet",
         title=f"Grommet for a pinhole of {hole:g} mm",
-        solid=solid_of(_model(options, hole)),
         note="Flange on the bed, no support, 0.12 mm layers; pull a thread through to take off burrs.",
-        model=_model(options, hole),
     )
 
 

@@ -14,7 +14,7 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.screws import Screw
 from hydrostat.fabrication.parts.spool import Spool
-from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder
+from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cuboid, Cylinder
 
 STUB = 8.0
 """How far the shaft of a coupling goes into a spool [mm]."""
@@ -208,16 +208,11 @@ class Housing:
         return (-side, low), (side, self.half)
 
     @property
-    def low(self) -> tuple[float, float, float]:
-        """Least corner of the box round it and its motor [mm]."""
+    def room(self) -> Cuboid:
+        """Box round it and its motor [mm]."""
         xs, ys = zip(*self.motor.outline, *self.tongue, strict=True)
-        return min(-self.half, *xs), min(ys), -self.motor.depth
-
-    @property
-    def high(self) -> tuple[float, float, float]:
-        """Largest corner of that box [mm]."""
-        xs, ys = zip(*self.motor.outline, *self.tongue, strict=True)
-        return max(self.half, *xs), max(ys), self.top
+        low, high = (min(-self.half, *xs), min(ys), -self.motor.depth), (max(self.half, *xs), max(ys), self.top)
+        return Cuboid(low=low, high=high)
 
     def plate(self) -> Construction:
         """As it lies on the motor."""

@@ -7,7 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from hydrostat.fabrication.solids.construct import Corner
+from hydrostat.fabrication.solids.construct import Corner, Cuboid
 from hydrostat.robot import Body
 
 GIVES = 0.25
@@ -25,28 +25,18 @@ _STEP = 30
 
 
 @dataclass(frozen=True, kw_only=True)
-class UnitBox:
-    """What is known of a unit before it is laid; lengths in millimetres.
+class UnitBox(Cuboid):
+    """Box round a unit before it is laid: the shaft along z, the face of the motor at z = 0, the roof at the top.
 
     Attributes:
         winch: its name.
         at: where the robot file has it: its shaft, or the middle of its housing if it lies.
-        low: least corner of the box round it, the shaft along z, the face of the motor at z = 0.
-        high: largest corner of that box; its z is the roof of the housing.
         along: the way in which its first cable goes on, counted from +x [degrees].
     """
 
     winch: str
     at: Corner
-    low: tuple[float, float, float]
-    high: tuple[float, float, float]
     along: float
-
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Sides of the box [mm]."""
-        (a, b, c), (x, y, z) = self.low, self.high
-        return x - a, y - b, z - c
 
     @property
     def words(self) -> str:

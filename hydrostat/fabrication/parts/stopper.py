@@ -76,22 +76,19 @@ def stopper(options: PartOptions) -> Stopper:
     """
     rib = max(0.4, options.cable)
     base, lid = _base(options, rib), _lid(options, rib)
-    lid_up = lid.turned(x=180).moved(0, 0, _LID)
     closed = _deck() + rib + options.cable / 2
     printed = (
-        Printed(
+        Printed.of(
+            base,
             name="stopper_base",
             title="Stopper base",
-            solid=solid_of(base),
             note="Flat side on the bed, no support, 0.12 mm layers, all walls (100 % infill).",
-            model=base,
         ),
-        Printed(
+        Printed.of(
+            lid.turned(x=180).moved(0, 0, _LID),
             name="stopper_lid",
             title="Stopper lid",
-            solid=solid_of(lid_up),
             note="Outer side on the bed, ribs up, no support, 0.12 mm layers, all walls (100 % infill).",
-            model=lid_up,
         ),
     )
     pieces = (

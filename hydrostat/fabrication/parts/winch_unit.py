@@ -15,7 +15,7 @@ from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
 from hydrostat.fabrication.parts.spool import Spool
 from hydrostat.fabrication.parts.spool_for import spool_for
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.construct import Construction, solid_of
+from hydrostat.fabrication.solids.construct import Construction, Cuboid, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot, Winch
 
@@ -48,8 +48,7 @@ class WinchParts:
     def _printed(self, kind: str, title: str, model: Construction, note: str) -> Printed:
         made = self._made.setdefault(kind, {})
         if model not in made:
-            name = f"{kind}_{letters(len(made))}"
-            made[model] = Printed(name=name, title=title, solid=solid_of(model), note=note, model=model)
+            made[model] = Printed.of(model, name=f"{kind}_{letters(len(made))}", title=title, note=note)
         return made[model]
 
     def _assembly(self, housing: Housing, printed: tuple[Printed, ...], winch: str) -> PartAssembly:
@@ -141,20 +140,9 @@ class WinchUnit:
         return self.housing.spool
 
     @property
-    def low(self) -> tuple[float, float, float]:
-        """Least corner of the box round the unit [mm]."""
-        return self.housing.low
-
-    @property
-    def high(self) -> tuple[float, float, float]:
-        """Largest corner of that box [mm]."""
-        return self.housing.high
-
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Sides of that box [mm]: what a pocket for it must take."""
-        (a, b, c), (x, y, z) = self.low, self.high
-        return x - a, y - b, z - c
+    def room(self) -> Cuboid:
+        """Box round the unit [mm]: what a pocket for it must take."""
+        return self.housing.room
 
 
 def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[WinchUnit, ...]:
@@ -231,8 +219,8 @@ def _laid(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
         UnitBox(
             winch=draft.winch.name,
             at=(1e3 * draft.winch.at[0], 1e3 * draft.winch.at[1]),
-            low=draft.housing.low,
-            high=draft.housing.high,
+            low=draft.housing.room.low,
+            high=draft.housing.room.high,
             along=_way(robot, draft.cables[0]),
         )
         for draft in drafts

@@ -13,40 +13,14 @@ from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import PatchNotch
 from hydrostat.fabrication.patches.skin_holes import SHARED, SkinHole
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.marks import dashed
 from hydrostat.fabrication.patterns.opening import Opening
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Panel, PatternPart, Place, Polyline, Shape, trace
 from hydrostat.fabrication.patterns.skin import Skin, skin_of
 from hydrostat.fabrication.patterns.stitches import Side
 
-_STOPPER = 3.0
 _CLEAR = 0.8
 _CROSS = 2.0
-_TITLE = 4.0
-_FIGURE = 2.5
-_FIGURE_GAP = 2.2
-
-
-class PatchLabels(PanelLabels):
-    """Labels of a patch."""
-
-    def cable_name(self, cable: int, at: Place) -> None:
-        """C1, C2, ... beside a place."""
-        self._beside(f"C{cable}", at, gap=4.5)
-
-    def has_room(self, text: str) -> bool:
-        """Whether a title fits somewhere on the patch."""
-        letters = Lettering(text, _TITLE)
-        return self._space.anywhere(letters.width, letters.height) is not None
-
-    def figure(self, text: str, at: Place) -> None:
-        """A small number beside a hole; none where there is no room."""
-        letters = Lettering(text, _FIGURE)
-        middle = self._space.clear_beside(at, letters.width, _FIGURE, gap=_FIGURE_GAP)
-        if middle is not None:
-            self._shapes.extend(letters.lines(middle))
-            self._space.take(middle, letters.width, _FIGURE)
 
 
 def patch_skin(patch: Patch, options: PatternOptions) -> Skin:
@@ -89,7 +63,7 @@ def patch_panel(
             shapes += _hole(hole, place, options)
     for _, own in cables:
         shapes += _runs(own, skin.seam, options)
-    labels = PatchLabels(skin.seam, tuple(shapes), mirrored=False)
+    labels = PanelLabels(skin.seam, tuple(shapes), mirrored=False)
     labels.notch_names(strokes, skin.cut)
     if opening:
         labels.opening(opening)

@@ -1,10 +1,8 @@
 """`Seam`: where two patches are sewn together, as it runs on the body and on both of them; its notches."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from string import ascii_uppercase
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -12,6 +10,7 @@ from jaxtyping import Float, Int
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh
 from hydrostat.fabrication.patterns.shape import Place
+from hydrostat.fabrication.patterns.skin import notch_letters
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -139,13 +138,6 @@ class PatchNotch:
     place: Place
 
 
-def _letters() -> Iterator[str]:
-    """A, B, ... Z, AA, AB, ..."""
-    yield from ascii_uppercase
-    for first in _letters():
-        yield from (first + second for second in ascii_uppercase)
-
-
 def _steps(seam: Seam) -> list[tuple[float, bool]]:
     """How far along a seam its notches are [mm], and whether each has a letter."""
     if seam.length < _SHORTEST:
@@ -159,7 +151,7 @@ def _steps(seam: Seam) -> list[tuple[float, bool]]:
 
 def _named(seams: tuple[Seam, ...]) -> list[list[tuple[str, float]]]:
     """Letters and places of the notches of each seam."""
-    letters = _letters()
+    letters = notch_letters()
     return [[(next(letters) if lettered else "", along) for along, lettered in _steps(seam)] for seam in seams]
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations, groupby, pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
@@ -12,7 +12,7 @@ from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import Seam
 from hydrostat.fabrication.patterns.shape import Place
-from hydrostat.fabrication.patterns.stitches import Side
+from hydrostat.fabrication.patterns.stitches import Side, runs_of
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Cable, Mount, Robot
 from hydrostat.units import counted
@@ -132,12 +132,11 @@ def _sewn(cable: Cable, near: list[int], side: Side) -> Iterator[tuple[int, bool
     """Of each point near the skin whether the cable passes there, and the side after it."""
     passes = dict.fromkeys(near, False)
     now = side
-    for bare, group in groupby(range(len(cable.points) - 1), key=lambda segment: bool(cable.bare[segment])):
-        segments = list(group)
+    for bare, points in runs_of(cable):
         if not bare:
             continue
-        last = segments[-1] + 1 == len(cable.points) - 1
-        holes = [index for index in (*segments, segments[-1] + 1) if index in passes]
+        last = points[-1] == len(cable.points) - 1
+        holes = [index for index in points if index in passes]
         wanted = now is not (Side.OUTSIDE if last else Side.INSIDE)
         used = holes if len(holes) % 2 == wanted else holes[1:]
         passes.update(dict.fromkeys(used, True))

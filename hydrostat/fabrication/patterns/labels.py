@@ -44,10 +44,7 @@ class FreeSpace:
 
     def beside(self, at: Place, width: float, height: float, *, gap: float) -> Place:
         """Middle of a box as near to a place as there is room, else where it crosses the least [mm]."""
-        reach, angle = np.meshgrid(gap + np.arange(0, 14, 1.5), np.arange(0, 2 * np.pi, np.pi / 8), indexing="ij")
-        x = at[0] + np.cos(angle) * (reach + width / 2)
-        y = at[1] + np.sin(angle) * (reach + height / 2)
-        centres = np.column_stack([x.ravel(), y.ravel()])
+        centres = _round(at, width, height, gap + np.arange(0, 14, 1.5))
         crossings = self._crossings(centres, _boxes(centres, width, height))
         leaders = np.array([shapely.LineString([at, centre]) for centre in centres])
         crossings += _THROUGH_TEXT * _hits(self._texts, leaders)
@@ -56,10 +53,7 @@ class FreeSpace:
 
     def clear_beside(self, at: Place, width: float, height: float, *, gap: float) -> Place | None:
         """Middle of a box near to a place that crosses nothing [mm]; None if there is none."""
-        reach, angle = np.meshgrid(gap + np.arange(0, 2.5, 0.5), np.arange(0, 2 * np.pi, np.pi / 8), indexing="ij")
-        x = at[0] + np.cos(angle) * (reach + width / 2)
-        y = at[1] + np.sin(angle) * (reach + height / 2)
-        centres = np.column_stack([x.ravel(), y.ravel()])
+        centres = _round(at, width, height, gap + np.arange(0, 2.5, 0.5))
         crossings = self._crossings(centres, _boxes(centres, width, height, _TIGHT))
         if crossings.min():
             return None
@@ -103,6 +97,14 @@ class FreeSpace:
         )
         room[found[0]] = distances
         return room
+
+
+def _round(at: Place, width: float, height: float, gaps: np.ndarray) -> np.ndarray:
+    """Middles of boxes in 16 directions about a place, at some gaps from it [mm]."""
+    reach, angle = np.meshgrid(gaps, np.arange(0, 2 * np.pi, np.pi / 8), indexing="ij")
+    x = at[0] + np.cos(angle) * (reach + width / 2)
+    y = at[1] + np.sin(angle) * (reach + height / 2)
+    return np.column_stack([x.ravel(), y.ravel()])
 
 
 def _hits(taken: list[BaseGeometry], geometries: np.ndarray) -> np.ndarray:
@@ -160,12 +162,16 @@ class PanelLabels:
     def cable_numbers(self, robot: Robot) -> None:
         """C1, C2, ... beside the stopper of each cable and where it leaves its winch."""
         for number, cable in enumerate(robot.cables, start=1):
-            self._beside(f"C{number}", place(cable.points[-1]), gap=4.5)
+            self.cable_name(number, place(cable.points[-1]))
         for number, cable in enumerate(robot.cables, start=1):
             first = LineString([place(point) for point in cable.points[:2]]).intersection(self._seam)
             if not first.is_empty:
                 near = first.interpolate(min(_ALONG, first.length / 2))
                 self._beside(f"C{number}", (near.x, near.y), gap=2.5)
+
+    def cable_name(self, cable: int, at: Place) -> None:
+        """C1, C2, ... beside a place."""
+        self._beside(f"C{cable}", at, gap=4.5)
 
     def winch_names(self, robot: Robot) -> None:
         """The name of each winch beside it."""
@@ -177,13 +183,15 @@ class PanelLabels:
         """Small figures beside the holes of each cable, from 2 on, in stitch order; none where there is no room."""
         for sewn in stitches:
             for stitch in sewn.stitches[1:]:
-                figure = Lettering(f"{stitch.number}", _FIGURE)
-                if not self._seam.contains(Point(stitch.place)):
-                    continue
-                middle = self._space.clear_beside(stitch.place, figure.width, _FIGURE, gap=_FIGURE_GAP)
-                if middle is not None:
-                    self._shapes.extend(figure.lines(middle))
-                    self._space.take(middle, figure.width, _FIGURE)
+                if self._seam.contains(Point(stitch.place)):
+                    self.figure(f"{stitch.number}", stitch.place)
+
+    def figure(self, text: str, at: Place) -> None:
+        """A small number beside a hole; none where there is no room."""
+        letters = Lettering(text, _FIGURE)
+        middle = self._space.clear_beside(at, letters.width, _FIGURE, gap=_FIGURE_GAP)
+        if middle is not None:
+            self._write(letters, middle)
 
     def notch_names(self, strokes: Iterable[tuple[str, LineString]], cloth: Polygon) -> None:
         """The letter of each notch beside its stroke, in the allowance; none where that is too narrow for a letter."""
@@ -207,8 +215,7 @@ class PanelLabels:
         for text, y in ((upper, top - 4.0), (lower, bottom + 4.0)):
             letters = Lettering(text, _NAMES[-1])
             if top - bottom > 16 and letters.width < right - left:
-                self._shapes.extend(letters.lines(((left + right) / 2, y)))
-                self._space.take(((left + right) / 2, y), letters.width, letters.height)
+                self._write(letters, ((left + right) / 2, y))
 
     def marker_names(self, robot: Robot, options: PatternOptions) -> None:
         """The name of each marker beside it, if asked for."""
@@ -220,14 +227,18 @@ class PanelLabels:
         middle = opening.slit.interpolate(0.5, normalized=True)
         self._beside(opening.label, (middle.x, middle.y), gap=6.5)
 
+    def has_room(self, text: str) -> bool:
+        """Tell whether a title fits somewhere on the panel."""
+        letters = Lettering(text, _TITLES[-1])
+        return self._space.anywhere(letters.width, letters.height) is not None
+
     def title(self, text: str) -> None:
         """The name of the panel, as large as there is room for."""
         for height in _TITLES:
             lettering = Lettering(text, height)
             middle = self._space.anywhere(lettering.width, height)
             if middle is not None:
-                self._shapes.extend(lettering.lines(middle))
-                self._space.take(middle, lettering.width, height)
+                self._write(lettering, middle)
                 return
         middle = self._seam.representative_point()
         self._beside(text, (middle.x, middle.y), gap=0.0)
@@ -240,6 +251,11 @@ class PanelLabels:
                 self._shapes.extend(_arrow(middle, length))
                 return
 
+    def _write(self, letters: Lettering, middle: Place) -> None:
+        """Letters in a place, which what is placed later keeps off."""
+        self._shapes.extend(letters.lines(middle))
+        self._space.take(middle, letters.width, letters.height)
+
     def _beside(self, text: str, at: Place, *, gap: float) -> None:
         """Text as near to a place as there is room, smaller where it is crowded; led to it by a line from afar."""
         at = (-at[0], at[1]) if self._mirrored else at
@@ -250,8 +266,7 @@ class PanelLabels:
             choices.append((lettering, middle, _way(at, middle, lettering)))
         near = (choice for choice in choices if np.linalg.norm(choice[2]) < gap + _NEAR)
         lettering, middle, way = next(near, choices[-1])
-        self._shapes.extend(lettering.lines(middle))
-        self._space.take(middle, lettering.width, lettering.height)
+        self._write(lettering, middle)
         if np.linalg.norm(way) >= gap + _NEAR:
             leader = _leader(at, way, gap)
             self._shapes.append(leader)

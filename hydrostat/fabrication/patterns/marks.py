@@ -1,7 +1,6 @@
 """What is engraved on a panel, before its labels: seam, notches, cables, sheaths, winches, markers."""
 
-from collections.abc import Iterable, Iterator
-from itertools import groupby
+from collections.abc import Iterable
 
 import numpy as np
 import shapely
@@ -12,8 +11,8 @@ from shapely.ops import substring
 from hydrostat.fabrication.patterns.pinholes import Pinhole
 from hydrostat.fabrication.patterns.shape import Circle, Layer, PatternPart, Place, Polyline, Shape, trace
 from hydrostat.fabrication.patterns.skin import Notch, Skin
-from hydrostat.fabrication.patterns.stitches import CableStitches, Side
-from hydrostat.robot import Cable, Robot
+from hydrostat.fabrication.patterns.stitches import CableStitches, Side, runs_of
+from hydrostat.robot import Robot
 
 _SHEATH = 3.0
 """Width of the drawn sheath [mm]."""
@@ -48,8 +47,9 @@ def cable_marks(
     pinholes = tuple(pinholes)
     holes = shapely.union_all([shapely.Point(hole.centre).buffer(hole.radius + _CLEAR) for hole in pinholes])
     for cable, sewn in zip(robot.cables, stitches, strict=True):
-        for sheathed, run in _runs(cable):
-            if sheathed:
+        for bare, points in runs_of(cable):
+            if not bare:
+                run = LineString([place(cable.points[point]) for point in points])
                 tube = run.buffer(_SHEATH / 2, cap_style="flat", join_style="mitre").boundary
                 marks.extend(trace(tube.intersection(seam).difference(holes), Layer.MARK, PatternPart.SHEATH))
         for index in np.flatnonzero(cable.bare):
@@ -85,14 +85,6 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
                 Polyline(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
             )
     return tuple(marks)
-
-
-def _runs(cable: Cable) -> Iterator[tuple[bool, LineString]]:
-    """Stretches of a cable [mm], each with whether it is sheathed."""
-    points = [place(point) for point in cable.points]
-    for bare, group in groupby(range(len(points) - 1), key=lambda segment: bool(cable.bare[segment])):
-        segments = list(group)
-        yield not bare, LineString(points[segments[0] : segments[-1] + 2])
 
 
 def dashed(geometry: BaseGeometry) -> BaseGeometry:

@@ -160,7 +160,7 @@ def find_notches(skin: Skin) -> tuple[Notch, ...]:
     """Notches that meet when the panels lie on each other; none where the allowance is shared with another seam."""
     notches: list[Notch] = []
     allowance = skin.seam.boundary.distance(skin.cut.boundary)
-    names = _names()
+    names = notch_letters()
     for ring, seam, cut in _allowances(skin):
         top = seam_top(seam)
         count = max(4, round(seam.length / _SPACING))
@@ -176,10 +176,10 @@ def seam_top(seam: LinearRing) -> float:
     return seam.project(shapely.Point(max(seam.coords, key=lambda corner: corner[1])))
 
 
-def _names() -> Iterator[str]:
+def notch_letters() -> Iterator[str]:
     """A, B, ... Z, AA, AB, ..."""
     yield from ascii_uppercase
-    for first in _names():
+    for first in notch_letters():
         yield from (first + second for second in ascii_uppercase)
 
 

@@ -88,11 +88,11 @@ def _stitched(robot: Robot, number: int, cable: Cable, seam: Polygon) -> CableSt
     beside = world and not seam.intersects(shapely.Point(places[0]))
     begins = Side.OUTSIDE if world else Side.INSIDE
     if beside and cable.bare[0]:
-        bare = next(run for run in _runs(cable))[1]
+        bare = next(run for run in runs_of(cable))[1]
         begins = Side.OUTSIDE if (bare[-1] - bare[0]) % 2 == (_end(cable, bare) is Side.INSIDE) else Side.INSIDE
     passes = [False] * len(places)
     side = begins
-    for is_bare, points in _runs(cable):
+    for is_bare, points in runs_of(cable):
         if is_bare:
             holes = [point for point in points if point or not beside]
             wanted = _end(cable, points) is not side
@@ -108,8 +108,8 @@ def _stitched(robot: Robot, number: int, cable: Cable, seam: Polygon) -> CableSt
     return CableStitches(cable=number, winch=cable.winch, begins=begins, stitches=tuple(stitches))
 
 
-def _runs(cable: Cable) -> Iterator[tuple[bool, list[int]]]:
-    """Stretches of a cable: whether each is bare, and its points."""
+def runs_of(cable: Cable) -> Iterator[tuple[bool, list[int]]]:
+    """Stretches of a cable: whether each is bare, and the indices of its points."""
     for bare, group in groupby(range(len(cable.points) - 1), key=lambda segment: bool(cable.bare[segment])):
         segments = list(group)
         yield bare, [*segments, segments[-1] + 1]

@@ -96,10 +96,10 @@ def _mould(given: SheetInput) -> dict[str, Canvas]:
     if given.method is not Method.FOAM or mould is None:
         return {}
     numbers = {placed.name: number for number, placed in enumerate(mould.assembly.pieces, start=1)}
-    surface = mould.surface
+    surface = mould.pull.surface
     return {
         "mould": exploded_picture(mould.assembly, numbers, width=HALF, height=92.0, view=Camera.at(-50.0, 24.0)),
         "undercut": undercut_picture(
-            surface.vertices, surface.triangles, surface.undercut, mould.pull, width=50.0, height=62.0
+            surface.vertices, surface.triangles, mould.pull.undercut, mould.pull.direction, width=50.0, height=62.0
         ),
     }

@@ -158,7 +158,7 @@ def _mould(mould: Mould | None) -> Facts | None:
     ]
     return {
         "silicone": mould.kind is MouldKind.SILICONE,
-        "undercut": _undercut(mould.share),
+        "undercut": _undercut(mould.pull.share),
         "amounts": amounts,
         "ratio": sentence(body.ratio),
         "release": sentence(casting.release),

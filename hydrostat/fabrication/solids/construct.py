@@ -14,8 +14,30 @@ from manifold3d import CrossSection, Manifold
 Corner = tuple[float, float]
 """A corner of a profile [mm]."""
 
+Sides = tuple[float, float, float]
+"""Lengths along three axes [mm]."""
+
 _SAG = 0.02
 """How far a round side is at most from its true place [mm]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cuboid:
+    """Two corners of a box along the axes [mm].
+
+    Attributes:
+        low: the least.
+        high: the largest.
+    """
+
+    low: Sides
+    high: Sides
+
+    @property
+    def size(self) -> Sides:
+        """Sides of the box [mm]."""
+        (a, b, c), (x, y, z) = self.low, self.high
+        return x - a, y - b, z - c
 
 
 class Construction:

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from manifold3d import Manifold
 
-from hydrostat.fabrication.solids.construct import Construction
+from hydrostat.fabrication.solids.construct import Construction, solid_of
 
 _DECIMALS = 5
 """Of a coordinate [mm]: what a file of 32-bit numbers can hold of parts up to 128 mm."""
@@ -118,6 +118,11 @@ class Printed:
     count: int = 1
     note: str = ""
     model: Construction | None = None
+
+    @classmethod
+    def of(cls, model: Construction, *, name: str, title: str, note: str, count: int = 1) -> "Printed":
+        """Part that is made of simple shapes."""
+        return cls(name=name, title=title, solid=solid_of(model), count=count, note=note, model=model)
 
     @property
     def volume(self) -> float:

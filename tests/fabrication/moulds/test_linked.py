@@ -93,7 +93,7 @@ def mould_of(solid: Manifold, kind: MouldKind, monkeypatch: pytest.MonkeyPatch) 
 
 def test_mould_that_is_linked_with_the_body_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     mould = mould_of(ball_with_handles(), MouldKind.PRINTED, monkeypatch)
-    assert mould.share < TOLERATED  # of the skin little is undercut: its area alone does not tell
+    assert mould.pull.share < TOLERATED  # of the skin little is undercut: its area alone does not tell
     (problem,) = mould.problems
     assert "like a link of a chain" in problem
 

@@ -70,9 +70,9 @@ def test_footprints_have_the_sides_of_the_unit(motor: Motor):
         assert unit.place is not None
         corners = np.array(unit.place.footprint.exterior.coords)
         sides = sorted({round(float(side), 6) for side in np.linalg.norm(np.diff(corners, axis=0), axis=1)})
-        flat = unit.size[:2] if unit.across else unit.size[1:]
+        flat = unit.room.size[:2] if unit.across else unit.room.size[1:]
         assert sides == pytest.approx(sorted({round(side, 6) for side in flat}))
-        assert unit.place.depth == pytest.approx(unit.size[2] if unit.across else unit.size[0])
+        assert unit.place.depth == pytest.approx(unit.room.size[2] if unit.across else unit.room.size[0])
 
 
 def test_a_body_thinner_than_stuffing_gives_is_refused_and_a_little_thinner_is_told():
@@ -82,7 +82,7 @@ def test_a_body_thinner_than_stuffing_gives_is_refused_and_a_little_thinner_is_t
     def of(thickness: float) -> tuple[WinchUnit, ...]:
         return units_of(replace(robot, body=replace(robot.body, thickness=1e-3 * thickness)))
 
-    thinnest = min(of(40.0)[0].size)
+    thinnest = min(of(40.0)[0].room.size)
     for unit in (*of(4.0), *of(thinnest / (1 + GIVES) - 0.1)):
         assert any(f'winch "{unit.winch}"' in text and "take a smaller motor" in text for text in unit.problems)
     for unit in of(thinnest / (1 + GIVES) + 0.1):
@@ -96,7 +96,7 @@ def test_a_motor_longer_than_the_body_is_refused():
     for side in (59, 60):
         small = plush_robot(drawn_body(f"M0 0H{side}V{side}H0Z"), [(0, 0), (10, 12)], marker=(5, 5))
         (unit,) = units_of(small, POLOLU_25D)
-        assert max(unit.size) > 59 * math.sqrt(2)
+        assert max(unit.room.size) > 59 * math.sqrt(2)
         assert any("does not lie within the seam" in text or "mm of a body" in text for text in unit.problems)
         assert units_of(small, N20)[0].problems == ()
     large = plush_robot(drawn_body("M0 0H200V200H0Z"), [(0, 0), (10, 12)])

@@ -49,7 +49,10 @@ def test_everything_fits_on_the_base(name: str, motor: Motor, unchecked: None):
     assert base.problems == ()
     assert len(base.seats) == len(units)
     assert interferences(base.assembly) == ()
-    boxes = [seat.placed(Manifold.cube(units[seat.unit].size).translate(units[seat.unit].low)) for seat in base.seats]
+    boxes = [
+        seat.placed(Manifold.cube(units[seat.unit].room.size).translate(units[seat.unit].room.low))
+        for seat in base.seats
+    ]
     assert all(one.min_gap(other, 5.0) >= 2.9 for one, other in combinations(boxes, 2))
     for part in base.printed:
         assert watertight_problems(part) == ()

@@ -91,9 +91,9 @@ def test_the_size_is_that_of_the_box_round_all_pieces(motor: Motor):
     for name in ("starfish", "trunk"):
         for unit in units_of(gallery_robot(name), motor):
             boxes = np.array([piece.solid.bounding_box() for piece in unit.assembly.pieces])
-            assert boxes[:, :3].min(axis=0) == pytest.approx(unit.low, abs=0.03)
-            assert boxes[:, 3:].max(axis=0) == pytest.approx(unit.high, abs=0.03)
-            assert unit.size == pytest.approx(np.subtract(unit.high, unit.low))
+            assert boxes[:, :3].min(axis=0) == pytest.approx(unit.room.low, abs=0.03)
+            assert boxes[:, 3:].max(axis=0) == pytest.approx(unit.room.high, abs=0.03)
+            assert unit.room.size == pytest.approx(np.subtract(unit.room.high, unit.room.low))
 
 
 def test_a_radius_too_small_is_refused_with_the_least_there_is():
@@ -146,7 +146,7 @@ def test_a_shaft_too_short_for_thick_walls_is_refused():
 
 def test_a_unit_stands_across_a_body_that_is_thick_enough_and_else_lies():
     robot = gallery_robot("starfish")
-    assert [unit.across for unit in units_of(robot)] == [unit.size[2] <= 40.0 for unit in units_of(robot)]
+    assert [unit.across for unit in units_of(robot)] == [unit.room.size[2] <= 40.0 for unit in units_of(robot)]
     assert all(unit.place is not None and unit.place.across == unit.across for unit in units_of(robot))
     assert not any(unit.across for unit in units_of(robot, POLOLU_25D))
 

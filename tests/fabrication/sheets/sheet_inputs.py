@@ -10,7 +10,10 @@ from plush_robots import SQUARE, drawn_body
 from hydrostat.fabrication.kit_options import Method, MouldKind, Paper
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
-from hydrostat.fabrication.moulds.mould import Mould, MouldSurface
+from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.moulds.pull import Pull
+from hydrostat.fabrication.moulds.release import FineSurface
+from hydrostat.fabrication.moulds.stance import Stance
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.sheets.cable_map import body_solid
@@ -134,13 +137,16 @@ def mould(robot: Robot, *, silicone: bool = False) -> Mould:
     )
     return Mould(
         kind=MouldKind.SILICONE if silicone else MouldKind.PRINTED,
-        pull=np.array([0.0, 0.0, 1.0]),
-        up=np.array([0.0, 1.0, 0.0]),
-        height=0.0,
-        share=0.123,
-        directions=np.eye(3),
-        shares=np.zeros(3),
-        surface=MouldSurface(vertices=piece.vertices, triangles=piece.triangles, undercut=held),
+        pull=Pull(
+            direction=np.array([0.0, 0.0, 1.0]),
+            height=0.0,
+            share=0.123,
+            surface=FineSurface(piece.vertices, piece.triangles),
+            undercut=held,
+            directions=np.eye(3),
+            shares=np.zeros(3),
+        ),
+        stance=Stance(np.eye(3), 0.0),
         printed=(),
         assembly=PartAssembly(name="mould", pieces=pieces),
         volumes={},
