@@ -3,8 +3,9 @@
 import math
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from typing import Any, TypeVar
+from typing import Any
 
+from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.robot import Body
 
@@ -13,8 +14,6 @@ STUFFINGS = ("polyester fibre",)
 
 _SHORTEST = 50.0
 """A piece of the gusset that is still worth sewing [mm]."""
-
-_Word = TypeVar("_Word", bound=StrEnum)
 
 
 class Corner(StrEnum):
@@ -43,19 +42,6 @@ class Paper(StrEnum):
 
     A4 = "a4"
     LETTER = "letter"
-
-
-def _check_word(options: object, name: str, kind: type[_Word]) -> None:
-    """Make a word of a closed set of a text that stands for it.
-
-    Raises:
-        InputError: it stands for none.
-    """
-    given = getattr(options, name)
-    try:
-        object.__setattr__(options, name, kind(given))
-    except ValueError:
-        raise InputError(f'{name} must be one of {", ".join(kind)}, not "{given}"') from None
 
 
 def _check_sizes(options: Any, *, above_zero: tuple[str, ...]) -> None:
@@ -109,7 +95,7 @@ class PatternOptions:
     force: bool = False
 
     def __post_init__(self) -> None:
-        _check_word(self, "corner", Corner)
+        make_member(self, "corner", Corner)
         _check_sizes(self, above_zero=("pinhole",))
         if self.gusset_piece < _SHORTEST:
             raise InputError(f"gusset_piece must be at least {_SHORTEST:g} mm, not {self.gusset_piece:g} mm")
@@ -177,7 +163,7 @@ class MouldOptions:
     mark_depth: float = 10.0
 
     def __post_init__(self) -> None:
-        _check_word(self, "kind", MouldKind)
+        make_member(self, "kind", MouldKind)
         _check_sizes(self, above_zero=("wall", "key_clearance", "mark_depth"))
         for axis, side in enumerate(self.bed):
             if not (math.isfinite(side) and side > 0):
@@ -213,8 +199,8 @@ class KitOptions:
 
     def __post_init__(self) -> None:
         if self.method is not None:
-            _check_word(self, "method", Method)
-        _check_word(self, "paper", Paper)
+            make_member(self, "method", Method)
+        make_member(self, "paper", Paper)
 
     def method_for(self, body: Body) -> Method:
         """Method by which a body is made."""

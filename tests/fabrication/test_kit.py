@@ -145,13 +145,13 @@ def test_an_unknown_motor_is_refused():
         (PatternOptions, "corner", "cut"),
     ],
 )
-def test_a_word_that_is_no_choice_is_refused_with_those_that_are(made, name, word):
+def test_a_word_that_is_no_choice_is_refused_with_those_that_are(unchecked, made, name, word):
     """Oracle: the enumeration of each."""
     with pytest.raises(InputError, match=f'{name} must be one of [a-z0-9, ]+, not "{word}"'):
         made(**{name: word})
 
 
-def test_a_choice_may_be_given_as_text():
+def test_a_choice_may_be_given_as_text(unchecked):
     """Oracle: the same options with members of the enumerations; a text alone is no member."""
     given = KitOptions(method="foam", paper="letter", mould=MouldOptions(kind="silicone"))
     assert given.method is Method.FOAM
