@@ -8,13 +8,14 @@ import numpy as np
 from hydrostat.arrays import Nodes
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.design.score_card import rest_error
+from hydrostat.drawing.svg import Html, tag
 from hydrostat.errors import InputError
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.pose_figures import draw_portrait
 from hydrostat.plot.report_chapters import chapters
-from hydrostat.plot.report_parts import Html, captioned, fact, page, tag
+from hydrostat.plot.report_parts import captioned, fact, page
 from hydrostat.plot.report_tables import footer, millimetres
 from hydrostat.plot.sheet import MILLIMETRES, Spread
 from hydrostat.plot.skin import outer_points

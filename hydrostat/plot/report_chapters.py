@@ -1,11 +1,12 @@
 """The stages of a design as chapters of the report, each with its pictures."""
 
 from hydrostat.design.network import Network, TreeTrace
+from hydrostat.drawing.svg import Html, tag
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.pose_figures import draw_reached
 from hydrostat.plot.report_growth import alternative_chapters, growth_chapters
-from hydrostat.plot.report_parts import NARROW, Chapter, Html, grid, picture, section, tag
+from hydrostat.plot.report_parts import NARROW, Chapter, grid, picture, section
 from hydrostat.plot.report_tables import (
     body_table,
     cable_table,

@@ -7,8 +7,9 @@ import numpy as np
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, size_of
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.score_card import rest_error
+from hydrostat.drawing.svg import Html, tag
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
-from hydrostat.plot.report_parts import Chapter, Html, grid, picture, tag
+from hydrostat.plot.report_parts import Chapter, grid, picture
 from hydrostat.plot.report_tables import millimetres
 from hydrostat.plot.robot_figures import draw_stage, stage_frame
 from hydrostat.units import counted

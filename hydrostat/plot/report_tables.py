@@ -6,8 +6,9 @@ import numpy as np
 
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.drawing.palette import winch_colours
+from hydrostat.drawing.svg import Html, tag
 from hydrostat.ik import ReachedPose
-from hydrostat.plot.report_parts import Html, bar, swatch, table, tag
+from hydrostat.plot.report_parts import bar, swatch, table
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.plot.targets import rest_errors
 from hydrostat.plot.tension_scale import TensionScale

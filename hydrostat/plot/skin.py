@@ -42,7 +42,7 @@ class FlatSkin:
             InputError: a body in space.
         """
         if body.mesh.dim != 2:
-            raise InputError("pictures of bodies in space are not there yet; only flat bodies can be drawn")
+            raise InputError("only a flat body has a skin of rings; this one is in space")
         shape = _shape(body)
         inset = shape.buffer(-0.016 * body.mesh.size, join_style="round")
         edges, seams = _rings(shape, shape.length), _rings(inset, shape.length)

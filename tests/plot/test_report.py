@@ -9,6 +9,7 @@ from plot.designs import FORMULA, SCRIPT, hostile_network, hostile_trace
 
 from hydrostat.errors import InputError
 from hydrostat.plot import report_text, write_report
+from hydrostat.plot.report_tables import millimetres
 from hydrostat.robot import robot_hash
 
 VOID = {"meta"}
@@ -95,3 +96,12 @@ def test_a_design_without_poses_is_refused() -> None:
 def test_a_title_that_is_no_valid_text(tmp_path: Path) -> None:
     path = write_report(hostile_network(), tmp_path / "report.html", title="caf\udce9")
     assert "caf?" in path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [(0.0123456, "12.35"), (1e-4, "0.10"), (9.87e-5, "0.099"), (1.234e-6, "0.0012"), (0.0, "0.00")],
+)
+def test_millimetres(error: float, words: str) -> None:
+    """Oracle: by hand."""
+    assert millimetres(error) == words

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from hydrostat.drawing.svg import Html, tag
 from hydrostat.ik import ReachedPose
 from hydrostat.plot import draw_network, draw_reached, draw_rest, draw_target
-from hydrostat.plot.report_parts import NARROW, Chapter, Html, fact, grid, page, picture, section, table, tag
+from hydrostat.plot.report_parts import NARROW, Chapter, fact, grid, page, picture, section, table
 from hydrostat.plot.report_tables import (
     body_table,
     cable_table,
