@@ -13,7 +13,7 @@ from hydrostat.fabrication.solids.printed import Printed
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BodyWork:
-    """What making the soft body takes.
+    """Work of making the soft body: files, parts, and what is said of them.
 
     Attributes:
         files: content by path in the kit.

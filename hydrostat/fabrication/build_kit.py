@@ -134,7 +134,7 @@ class _Stages:
         self.part(0, 1)
 
     def part(self, done: int, total: int) -> None:
-        """So much of the stage is done."""
+        """Tell that so much of the stage is done."""
         self._total = total
         if self._progress is not None and self._stage:
             self._progress(self._stage, done, total)

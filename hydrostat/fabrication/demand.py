@@ -42,7 +42,7 @@ class Demand:
 
 
 def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = None) -> Demand:
-    """What the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at its full travel.
+    """Find what the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at full travel.
 
     Winches are pulled alone too if no pose could be solved. Where cables have friction, contractions are found without
     it, and loads with it.
@@ -117,7 +117,7 @@ class _PoseLoads:
 
 
 def _torques(robot: Robot, tensions: Vector) -> Vector:
-    """On the shaft of each winch [N m]."""
+    """Torque on the shaft of each winch [N m]."""
     radii = {winch.name: winch.spool_radius for winch in robot.winches}
     own = np.array([cable.spool_radius or radii[cable.winch] for cable in robot.cables])
     mine = np.array([[cable.winch == winch.name for cable in robot.cables] for winch in robot.winches], dtype=float)

@@ -25,7 +25,7 @@ MUCH_PLASTIC = 5e3
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
-    """The mould of a body, with room for the winches that sit in it.
+    """Make the mould of a body, with room for the winches that sit in it.
 
     Raises:
         InputError: the body is not closed.
@@ -82,7 +82,7 @@ _STEP = 1e-3
 
 
 def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
-    """Sheathed stretches that come too near the skin between two deeper places, a line each.
+    """Tell which sheaths come too near the skin between two deeper places, a line each.
 
     Where a tube enters the body, or ends at the skin, it is near by intent.
     """

@@ -17,7 +17,7 @@ from hydrostat.units import counted
 
 
 def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
-    """The pattern of a body: of a flat one front and back, of one in space its skin in patches.
+    """Make the pattern of a body: of a flat one front and back, of one in space its skin in patches.
 
     Raises:
         InputError: the body is in several pieces, or its skin cannot be cut into patches.

@@ -1,4 +1,4 @@
-"""Whether a mould leaves room for just the body that was simulated."""
+"""Checks whether a mould leaves room for just the body that was simulated."""
 
 import math
 

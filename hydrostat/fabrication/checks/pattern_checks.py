@@ -1,4 +1,4 @@
-"""Whether a pattern is true to its robot: measured on the SVG and DXF that are written."""
+"""Checks whether a pattern is true to its robot, measured on the SVG and DXF that are written."""
 
 import numpy as np
 from jaxtyping import Float

@@ -67,7 +67,7 @@ class SeenDxf:
 
     @property
     def millimetres(self) -> bool:
-        """Whether it says that it counts millimetres."""
+        """Tell whether it says that it counts millimetres."""
         return self._document.header.get("$INSUNITS") == _MILLIMETRES
 
     @cached_property
@@ -90,7 +90,7 @@ class SeenDxf:
 
 
 def drawing_checks(svg: SeenSvg, dxf: SeenDxf) -> tuple[Check, ...]:
-    """Whether both drawings show the same holes, and the bar of 100 mm at its length."""
+    """Tell whether both drawings show the same holes, and the bar of 100 mm at its length."""
     return _same_holes(svg.circles(PatternPart.PINHOLE), dxf.pinholes), _bar(svg, dxf)
 
 

@@ -1,4 +1,4 @@
-"""Whether printed parts can be sliced, fit together, and take in cable as the robot file says."""
+"""Checks whether printed parts can be sliced, fit together, and take in cable as the robot file says."""
 
 from collections.abc import Iterable
 

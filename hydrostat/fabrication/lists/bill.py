@@ -30,17 +30,17 @@ class Item:
 
     @property
     def cost(self) -> float:
-        """Of what is used up, in the currency of its price."""
+        """Cost of what is used up, in the currency of its price."""
         return self.quantity * self.price.amount
 
     @property
     def spent(self) -> float:
-        """On whole packs, in the currency of its price."""
+        """Cost of the whole packs, in the currency of its price."""
         return self.price.of_packs(self.quantity)
 
 
 def cost_of(items: Iterable[Item], group: str | None = None) -> float:
-    """Of what is used up of all items, or of those of a group."""
+    """Cost of what is used up of all items, or of those of a group."""
     return sum(item.cost for item in items if group in (None, item.group))
 
 
@@ -93,5 +93,5 @@ def _spent(items: Iterable[Item]) -> float:
 
 
 def _mass(items: Iterable[Item]) -> float:
-    """Of all items whose mass is known [g]."""
+    """Mass of all items, as far as it is known [g]."""
     return float(sum(item.mass or 0.0 for item in items))

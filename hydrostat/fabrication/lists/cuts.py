@@ -77,7 +77,7 @@ class CableCut:
 def cable_cuts(
     robot: Robot, *, leads: Mapping[int, float], outside: Mapping[int, float], spare_wraps: float
 ) -> tuple[CableCut, ...]:
-    """How long each cable of a robot is cut.
+    """Find how long each cable of a robot is cut.
 
     Args:
         robot: whose cables.
@@ -137,7 +137,7 @@ def cable_table(cuts: tuple[CableCut, ...]) -> Table:
 
 
 def check_lengths(table: Table, simulation: Simulation) -> Check:
-    """Whether the lengths of the list are those that were simulated."""
+    """Check whether the lengths of the list are those that were simulated."""
     robot = simulation.robot
     sheathed = [float(cable.segments[~cable.bare].sum()) for cable in robot.cables]
     simulated = 1e3 * (simulation.cables.rest_lengths + np.array(sheathed))
@@ -258,7 +258,7 @@ def _notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
 
 
 def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
-    """Whether the tubes of the list cover what the simulation leaves out of the lengths of the cables.
+    """Check whether the tubes of the list cover what the simulation leaves out of the lengths of the cables.
 
     Args:
         table: the cut list.
@@ -288,5 +288,5 @@ def _ends(robot: Robot, cut: SheathCut) -> tuple[str, str]:
 
 
 def point_name(index: int, last: int) -> str:
-    """What the lists call a point of a cable, by its index and that of the last one; they count from 1 at the winch."""
+    """Name of a point of a cable in the lists, by its index and that of the last; they count from 1 at the winch."""
     return f"{index + 1} (winch)" if index == 0 else f"{index + 1} (stopper)" if index == last else f"{index + 1}"

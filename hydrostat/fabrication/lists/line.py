@@ -43,17 +43,17 @@ class FishingLine:
 
     @property
     def strength(self) -> float:
-        """At which it breaks without a knot [N]."""
+        """Load at which it breaks without a knot [N]."""
         return POUND * self.pounds
 
     @property
     def at_knot(self) -> float:
-        """At which it breaks at a knot [N]."""
+        """Load at which it breaks at a knot [N]."""
         return KNOT * self.strength
 
     @property
     def working_load(self) -> float:
-        """That it bears for long [N]."""
+        """Load that it bears for long [N]."""
         return SAFETY * self.at_knot
 
 
@@ -82,7 +82,7 @@ def line_for(diameter: float) -> FishingLine:
 
 @dataclass(frozen=True, kw_only=True)
 class LineCheck:
-    """Whether one line bears all cables.
+    """Verdict on whether one line bears all cables.
 
     Attributes:
         line: what they are made of.
@@ -98,7 +98,7 @@ class LineCheck:
 
 
 def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float | None = None) -> LineCheck:
-    """Whether a line and its stopper bear the largest tension of each cable [N].
+    """Check whether a line and its stopper bear the largest tension of each cable [N].
 
     Args:
         robot: whose cables.

@@ -15,7 +15,7 @@ from hydrostat.robot import Robot
 
 @dataclass(frozen=True, kw_only=True)
 class Cloth:
-    """What the pattern of a plush robot takes.
+    """Cloth that the pattern of a plush robot takes.
 
     Attributes:
         felt: of all panels [mm^2].
@@ -30,7 +30,7 @@ class Cloth:
 
 @dataclass(frozen=True, kw_only=True)
 class FoamNeeds:
-    """What casting the body takes.
+    """Foam and silicone that casting the body takes.
 
     Attributes:
         volume: of the cavity [mm^3].
@@ -51,7 +51,7 @@ class FoamNeeds:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ListInput:
-    """All that the lists are made of; lengths in millimetres, cables by their index.
+    """Facts that the lists are made of; lengths in millimetres, cables by their index.
 
     Attributes:
         robot: that is built.

@@ -43,7 +43,7 @@ class Lists:
 
     @property
     def cost(self) -> tuple[float, float]:
-        """Of all that is used up, and of all that is bought in whole packs [USD]."""
+        """Cost of all that is used up, and of all that is bought in whole packs [USD]."""
         bill = self.table("bill_of_materials")
         used, packs = (bill.column(title)[-1] for title in ("used up", "in whole packs"))
         return float(used or 0.0), float(packs or 0.0)
@@ -106,7 +106,7 @@ def _bill_notes(given: ListInput, items: tuple[Item, ...]) -> tuple[str, ...]:
 
 
 def _sewing(given: ListInput) -> tuple[tuple[Table, ...], tuple[str, ...]]:
-    """Where the cables are sewn, if it is known, and what to mind there."""
+    """Tables of where the cables are sewn, if it is known, and what to mind there."""
     if given.stitches:
         return (stitch_table(given.stitches),), ()
     if given.robot.body.mesh.dim == 3:

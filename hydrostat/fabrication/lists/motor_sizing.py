@@ -15,7 +15,7 @@ SLOW = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class WinchSizing:
-    """What one winch asks of its motor and what it gets.
+    """Demand of one winch on its motor, and what it gets.
 
     Attributes:
         winch: its name.
@@ -54,7 +54,7 @@ class WinchSizing:
 
     @property
     def time(self) -> float | None:
-        """For the full travel while torque rises evenly from none to the largest [s]; None: it never gets there.
+        """Time for the full travel as torque rises evenly from none to the largest [s]; None: it never gets there.
 
         With q the largest torque over that of stall, speed falls along the travel as 1 - q x; the integral of 1/speed
         gives - ln(1 - q) / q times the time without load.
@@ -67,7 +67,7 @@ class WinchSizing:
 
     @property
     def verdict(self) -> str:
-        """Whether the motor will do."""
+        """Verdict on the motor, in words."""
         if self.torque >= self.motor.stall_torque:
             return "too weak"
         if self.needed > self.motor.stall_torque:
@@ -86,7 +86,7 @@ _MINDS = {
 
 
 def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
-    """What the motor cannot do, a sentence for all winches of one verdict, and for each that is slow."""
+    """Warn of what the motor cannot do: a sentence for all winches of one verdict, and for each that is slow."""
     found = []
     for verdict, mind in _MINDS.items():
         alike = [sizing for sizing in sizings if sizing.verdict == verdict]
@@ -107,7 +107,7 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
 
 
 def size_winches(robot: Robot, demand: Demand, motor: Motor) -> tuple[WinchSizing, ...]:
-    """What each winch of a robot asks of a motor.
+    """Find what each winch of a robot asks of a motor.
 
     Raises:
         InputError: a demand of another robot, or a motor without torque or speed.
@@ -145,7 +145,7 @@ def _size(robot: Robot, demand: Demand, motor: Motor, winch: Winch, torque: floa
 
 
 def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) -> Table:
-    """What each winch asks of the motor and what it gets."""
+    """Table of what each winch asks of the motor and what it gets."""
     poses = ", ".join(demand.poses) or "no pose"
     return Table(
         name="motor_sizing",

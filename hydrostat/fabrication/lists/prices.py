@@ -41,13 +41,13 @@ class Price:
 
     @property
     def words(self) -> str:
-        """Where it is from and when."""
+        """Its source and its month, in words."""
         if self.source == NO_SOURCE:
             return NO_SOURCE
         return f"rough, from {self.source}; {self.month or 'no date'}"
 
     def packs(self, quantity: float) -> int:
-        """How many packs hold a quantity."""
+        """Count of the packs that hold a quantity."""
         return math.ceil(quantity / self.pack - 1e-9)
 
     def of_packs(self, quantity: float) -> float:

@@ -25,7 +25,7 @@ CLOSE = 2.0
 
 
 def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:
-    """From hole to hole, for plush robots."""
+    """Table of the stitches from hole to hole, for plush robots."""
     rows = []
     for cable in stitches:
         along, before, last = 0.0, None, cable.stitches[-1].number - 1
@@ -57,7 +57,7 @@ def _way(stitch: Stitch) -> str:
 
 
 def depth_table(robot: Robot) -> Table:
-    """From point to point, with its depth under the skin, for bodies in space."""
+    """Table of the points of the cables with their depth under the skin, for bodies in space."""
     rows = []
     if robot.cables:
         points = np.concatenate([np.array(cable.points) for cable in robot.cables])
@@ -86,7 +86,7 @@ def depth_table(robot: Robot) -> Table:
 
 
 def plane_table(robot: Robot) -> Table:
-    """From point to point in the middle plane, for flat bodies that are cast."""
+    """Table of the points of the cables in the middle plane, for flat bodies that are cast."""
     return Table(
         name="stitching",
         title="Where the cables pass",

@@ -16,7 +16,7 @@ _FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 
 
 class Align(StrEnum):
-    """On which side of its column a text stands."""
+    """Side of its column on which a text stands."""
 
     LEFT = "left"
     RIGHT = "right"
@@ -96,7 +96,7 @@ class Table:
 
     @property
     def headings(self) -> tuple[str, ...]:
-        """Of its columns, with units."""
+        """Headings of its columns, with units."""
         return tuple(column.heading for column in self.columns)
 
     @property

@@ -44,7 +44,7 @@ class Mix:
 
     @property
     def mass(self) -> float:
-        """Of both parts [g]."""
+        """Mass of both parts [g]."""
         return self.part_a + self.part_b
 
 
@@ -105,7 +105,7 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
 
 
 def _poisoned(material: Material, *, silicone: bool) -> tuple[str, ...]:
-    """Whether the mould keeps the body from curing."""
+    """Tell whether the mould keeps the body from curing."""
     if not (silicone and material.name.startswith(_PLATINUM)):
         return ()
     return (

@@ -57,7 +57,7 @@ class MouldBlock(Cuboid):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Closing:
-    """How the halves meet.
+    """Keys, bolts and slots by which the halves meet.
 
     Attributes:
         keys: middles and radii of the keys [mm]; one is smaller, so that the halves fit one way round.
@@ -130,7 +130,7 @@ def _cone(spot: Spot, radius: float, clearance: float) -> Manifold:
 
 
 def _slot(block: MouldBlock, side: int, bolts: list[float]) -> Manifold:
-    """Where a screwdriver is put in, at a side, half way between two bolts or a bolt and a key."""
+    """Slot for a screwdriver at a side, half way between two bolts or a bolt and a key."""
     depth, length, height = _SLOT
     marks = sorted([block.low[1] + INSET, *bolts, block.high[1] - INSET])
     gaps = [(end - start, (start + end) / 2) for start, end in pairwise(marks)]

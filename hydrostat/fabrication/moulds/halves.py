@@ -87,7 +87,7 @@ def _voids(block: MouldBlock, cavity: Manifold, openings: dict[str, Manifold], c
 
 
 def volume(solid: Manifold) -> float:
-    """Of a solid [mm^3]."""
+    """Volume of a solid [mm^3]."""
     return float(solid.volume())
 
 

@@ -24,7 +24,7 @@ Loop = Float[np.ndarray, "_ 3"]
 
 
 def linked(half: Manifold, body: Manifold) -> int:
-    """How many independent holes of a body a half reaches through; 0 if it is not linked with it."""
+    """Count the independent holes of a body that a half reaches through; 0 if it is not linked with it."""
     theirs = loops_of(body)
     mine = loops_of(half) if theirs else []
     if not mine:
@@ -54,7 +54,7 @@ def loops_of(solid: Manifold) -> list[Loop]:
 
 
 def linking_number(one: Loop, other: Loop) -> int:
-    """How often a closed line winds round another: half the signed crossings in a view."""
+    """Count how often a closed line winds round another: half the signed crossings in a view."""
     a, b = one @ _VIEW.T, other @ _VIEW.T
     along, across = np.roll(a, -1, axis=0) - a, np.roll(b, -1, axis=0) - b
     apart = b[None] - a[:, None]

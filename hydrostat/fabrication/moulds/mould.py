@@ -148,7 +148,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
 
 
 def _silicone_volumes(halves: Halves, positive: Positive, frames: Frames) -> dict[str, float]:
-    """Where the room in the frames goes [mm^3]."""
+    """Account of the room in the frames [mm^3]."""
     kept = {part: halves.volumes[part] for part in ("body", "dents", "pockets", "cavity")}
     lower, upper = frames.pours
     sides = float(frames.inside.solid.volume())

@@ -22,7 +22,7 @@ STIFF = 1e6
 
 
 def standing(stance: Stance, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
-    """How the mould stands when it is poured."""
+    """Tell how the mould stands when it is poured."""
     held = ", the end that is held at the top" if stance.held_upwards else ""
     upward = sum(vent.upward for vent in vents)
     backward = len(vents) - upward
@@ -53,7 +53,7 @@ def mould_problems(
     *,
     links: tuple[int, int] = (0, 0),
 ) -> tuple[str, ...]:
-    """Why the mould cannot be built well; `links` counts holes of the body that the lower and the upper half close."""
+    """Tell why the mould cannot be built well; `links` counts holes of the body that the lower and upper half close."""
     found = [pocket.problem for pocket in pockets if pocket.problem] + clashes(pockets)
     rigid = options.kind is MouldKind.PRINTED
     if rigid and any(links):
@@ -83,7 +83,7 @@ def mould_problems(
 
 
 def _sorted(size: tuple[float, float, float]) -> list[float]:
-    """In the plane the longer side first: a piece may be turned on the bed, not tilted."""
+    """Sort sides in the plane, the longer first: a piece may be turned on the bed, not tilted."""
     return [*sorted(size[:2], reverse=True), size[2]]
 
 
@@ -100,7 +100,7 @@ def _reaches(links: tuple[int, int]) -> str:
 def mould_warnings(
     pull: Pull, material: Material, kind: MouldKind, *, links: tuple[int, int] = (0, 0)
 ) -> tuple[str, ...]:
-    """What a person should mind; `links` as in `mould_problems`."""
+    """Tell what a person should mind; `links` as in `mould_problems`."""
     found = []
     if kind is MouldKind.SILICONE and any(links):
         found.append(

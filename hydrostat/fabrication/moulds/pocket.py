@@ -257,7 +257,7 @@ def _box(at: np.ndarray, width: float, height: float, deep: float, far: float) -
 
 
 def _holds(part: Manifold, at: np.ndarray) -> bool:
-    """Whether a point is in a solid, seen by a small box round it."""
+    """Tell whether a point is in a solid, seen by a small box round it."""
     return float((Manifold.cube((0.1, 0.1, 0.1), True).translate(tuple(at.tolist())) ^ part).volume()) > 0
 
 

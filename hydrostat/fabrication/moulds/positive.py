@@ -47,7 +47,7 @@ class Positive:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Frames:
-    """What holds the silicone, in the coordinates of the mould.
+    """Frames that hold the silicone, in the coordinates of the mould.
 
     Attributes:
         lower: round the lower half.

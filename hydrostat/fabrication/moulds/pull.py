@@ -34,7 +34,7 @@ _BEST = 3
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Pull:
-    """How the halves come off.
+    """Pull by which the halves come off.
 
     Attributes:
         direction: unit vector along which the upper half is drawn, in the coordinates of the body.
@@ -153,7 +153,7 @@ def _ring(direction: Float[np.ndarray, "3"], angle: float) -> Float[np.ndarray, 
 
 
 def _upright(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
-    """Of a direction and its opposite the one whose largest coordinate is positive; tiny ones are rounding."""
+    """Turn a direction round if its largest coordinate is negative; tiny ones are rounding."""
     direction = np.where(np.abs(direction) < 1e-9, 0.0, direction)
     largest = direction[int(np.argmax(np.abs(direction)))]
     return direction * np.sign(largest) / np.linalg.norm(direction)

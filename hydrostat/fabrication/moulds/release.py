@@ -47,7 +47,7 @@ class FineSurface:
 
     @cached_property
     def corners(self) -> Float[np.ndarray, "triangles 3 3"]:
-        """Of each triangle [mm]."""
+        """Corners of each triangle [mm]."""
         return self.vertices[self.triangles]
 
     @cached_property
@@ -58,7 +58,7 @@ class FineSurface:
 
     @cached_property
     def areas(self) -> Vector:
-        """Of each triangle [mm^2]."""
+        """Area of each triangle [mm^2]."""
         return np.linalg.norm(self.crosses, axis=1) / 2
 
     @cached_property
@@ -91,7 +91,7 @@ def fine_surface(solid: Manifold) -> FineSurface:
 
 @dataclass(frozen=True, eq=False)
 class Release:
-    """What a pull along a direction sets free.
+    """Triangles that a pull along a direction sets free.
 
     Attributes:
         heights: of the middle of each triangle along the direction [mm].
@@ -109,7 +109,7 @@ class Release:
 
 
 def release(surface: FineSurface, direction: Float[np.ndarray, "3"]) -> Release:
-    """What comes out when the mould of a body is drawn off along a unit vector."""
+    """Find what comes out when the mould of a body is drawn off along a unit vector."""
     turned = axes_along(direction).T
     facing = surface.normals @ direction
     asked = (surface.middles + _OUT * surface.size * surface.normals) @ turned
@@ -133,7 +133,7 @@ def axes_along(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
 @nb.njit(**KERNEL)
 @no_type_check
 def _covered(points, corners):  # pragma: no cover
-    """Whether triangles lie straight above, and straight below, each point; triangles are found by a grid of cells."""
+    """Tell whether triangles lie straight above and straight below each point; they are found by a grid of cells."""
     count = len(corners)
     low = np.array([corners[:, :, 0].min(), corners[:, :, 1].min()])
     high = np.array([corners[:, :, 0].max(), corners[:, :, 1].max()])

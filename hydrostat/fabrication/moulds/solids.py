@@ -16,7 +16,7 @@ MILLIMETRES = 1e3
 
 
 def body_solid(body: Body) -> Manifold:
-    """What is to be cast [mm], in the coordinates of the robot.
+    """Make the solid that is to be cast [mm], in the coordinates of the robot.
 
     In space it is the healed surface, or the boundary of a ready mesh; a flat body is its outline, raised by its
     thickness half to either side of z = 0, with sharp edges.

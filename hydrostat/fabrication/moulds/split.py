@@ -39,7 +39,7 @@ class Pieces:
 
 
 def cuts(low: float, high: float, longest: float) -> tuple[float, ...]:
-    """Where to cut a length into equal pieces that are no longer than the printer takes [mm]."""
+    """Places that cut a length into equal pieces no longer than the printer takes [mm]."""
     count = max(int(np.ceil((high - low) / longest - 1e-9)), 1)
     return tuple(low + (high - low) * step / count for step in range(1, count))
 
@@ -47,7 +47,7 @@ def cuts(low: float, high: float, longest: float) -> tuple[float, ...]:
 def grid(
     low: tuple[float, float, float], high: tuple[float, float, float], bed: tuple[float, float, float]
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Where to cut across x and across y, with the solid turned by 90 degrees on the bed if that makes fewer pieces."""
+    """Find cuts across x and y, the solid turned by 90 degrees on the bed if that makes fewer pieces."""
     ways = [
         (cuts(low[0], high[0], sides[0]), cuts(low[1], high[1], sides[1]))
         for sides in ((bed[0], bed[1]), (bed[1], bed[0]))
@@ -88,7 +88,7 @@ def _bodies(piece: Manifold) -> list[Manifold]:
 
 
 def _printable(part: Manifold) -> bool:
-    """Whether it is more than a crumb that a cut leaves."""
+    """Tell whether it is more than a crumb that a cut leaves."""
     low, high = np.reshape(part.bounding_box(), (2, 3))
     return bool((high - low).min() > _THIN) and part.volume() > _CRUMB
 
@@ -113,7 +113,7 @@ def dowels_across(solid: Manifold) -> list[Manifold]:
 
 
 def dowels_at(solid: Manifold, spots: Float[np.ndarray, "spots 3"], axis: int) -> list[Manifold]:
-    """Of many places the two furthest apart where a dowel along an axis has room; fewer if there are none."""
+    """Choose of many places the two furthest apart where a dowel along an axis has room; fewer if there are none."""
     good = [spot for spot in spots if _has_room(solid, spot, axis)]
     if not good:
         return []
@@ -143,7 +143,7 @@ def _strip(section: CrossSection, axis: int, span: tuple[float, float]) -> Cross
 
 
 def _has_room(solid: Manifold, spot: Float[np.ndarray, "3"], axis: int) -> bool:
-    """Whether a dowel with a wall round it lies inside the solid."""
+    """Tell whether a dowel with a wall round it lies inside the solid."""
     rod_with_wall = _dowel(spot, axis, _WALL / 2)
     return float((rod_with_wall - solid).volume()) < 1e-6
 

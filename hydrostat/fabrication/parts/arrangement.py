@@ -30,7 +30,7 @@ class LaidUnit:
 
 
 def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
-    """How each unit is laid, in their order, with what is wrong with it.
+    """Lay each unit, in their order, and tell what is wrong with it.
 
     Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
     and is moved least, until none changes. Those that meet all the same lie one above the other, if the body is thick
@@ -122,7 +122,7 @@ def _settled(ways: list[_Ways]) -> tuple[tuple[float, float], list[UnitPlace]]:
 
 
 def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float], list[UnitPlace]]:
-    """Where all are after some rounds in an order, and what they share."""
+    """Find where all are after some rounds in an order, and what they share."""
     chosen = [way.alone for way in ways]
     hard = soft = 0.0
     for _ in range(_SWEEPS):
@@ -136,7 +136,7 @@ def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float]
 
 
 def _meet(places: Sequence[UnitPlace], numbers: Sequence[int]) -> bool:
-    """Whether some units all cover a common part of the plane."""
+    """Tell whether some units all cover a common part of the plane."""
     return float(shapely.intersection_all([places[number].footprint for number in numbers]).area) > TOUCHES
 
 

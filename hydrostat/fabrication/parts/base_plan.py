@@ -70,7 +70,7 @@ class Hole:
 
     @property
     def ring(self) -> Ring:
-        """As a polygon."""
+        """Outline of it as a polygon [mm]."""
         count = segments(self.radius)
         angles = (2 * math.pi * corner / count for corner in range(count))
         x, y = self.middle
@@ -78,13 +78,13 @@ class Hole:
 
     @property
     def raised(self) -> Construction:
-        """What is taken away."""
+        """Shape that is taken away for it."""
         return Cylinder(SHEET + 2, self.radius).moved(*self.middle, -1)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Seat:
-    """Where a unit stands on the base.
+    """Place of a unit on the base.
 
     Attributes:
         unit: index among the units outside.
@@ -149,7 +149,7 @@ class BaseTile:
 
     @staticmethod
     def of(low: Corner, high: Corner, seats: Sequence[tuple[Seat, WinchUnit]], options: PartOptions) -> "BaseTile":
-        """With a hole for each motor, the screws of its housing and its tube holder, and one for each leg."""
+        """Make a tile with a hole for each motor, the screws of its housing and its tube holder, and for each leg."""
         inset = _STRIP / 2
         bolts = tuple((x, y) for x in (low[0] + inset, high[0] - inset) for y in (low[1] + inset, high[1] - inset))
         holes = [Hole(bolt, _LEG_SCREW / 2) for bolt in bolts]
@@ -169,7 +169,7 @@ class BaseTile:
 
     @property
     def raised(self) -> Construction:
-        """As it lies on the bed."""
+        """Shape of it as it lies on the bed."""
         body: Construction = Prism(_rectangle(self.low, self.high), SHEET)
         for cut in self.cuts:
             body = body - Prism(cut, SHEET + 2).moved(0, 0, -1)

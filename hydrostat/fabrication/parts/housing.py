@@ -35,7 +35,7 @@ of the screws [mm]."""
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """Where a spool stands on a motor; heights above the face of the motor [mm].
+    """Place of a spool on a motor; heights above the face of the motor [mm].
 
     Attributes:
         floor: thickness of the plate under the heads of its screws.
@@ -58,7 +58,7 @@ class Drive:
 
 
 def drive_of(motor: Motor, options: PartOptions) -> Drive:
-    """Where a spool stands on a motor."""
+    """Find where a spool stands on a motor."""
     floor = motor.screw.floor(options.wall)
     plate = floor + motor.screw.head_height
     if motor.horn is None:
@@ -94,22 +94,22 @@ class Housing:
 
     @cached_property
     def drive(self) -> Drive:
-        """Where the spool stands."""
+        """Place of the spool on its motor."""
         return drive_of(self.motor, self.options)
 
     @property
     def roof(self) -> float:
-        """Its thickness [mm]."""
+        """Thickness of the roof [mm]."""
         return roof_of(self.options)
 
     @property
     def under_roof(self) -> float:
-        """Height of its lower side [mm]."""
+        """Height of the lower side of the roof [mm]."""
         return self.drive.start + self.spool.body + self.options.clearance
 
     @property
     def top(self) -> float:
-        """Height of its upper side [mm]."""
+        """Height of the upper side of the roof [mm]."""
         return self.under_roof + self.roof
 
     @cached_property
@@ -136,7 +136,7 @@ class Housing:
         return found
 
     def _blocked(self, post: float) -> bool:
-        """Whether a screw would get into the way of a screw in the face, or of a motor below the base."""
+        """Tell whether a screw would get into the way of a screw in the face, or of a motor below the base."""
         mine = self.screw.passage / 2
         corners = MultiPoint([(x, y) for x in (-post, post) for y in (-post, post)])
         if self.outside:
@@ -169,7 +169,7 @@ class Housing:
 
     @cached_property
     def screw(self) -> Screw:
-        """That holds the box, four of them: the longest that ends in the plate, or below the nut under the base."""
+        """Screw that holds the box, one of four: the longest that ends in the plate, or below a nut under the base."""
         if self.outside:
             length = next((each for each in _LENGTHS if each >= self.top + SHEET + _NUT), _LENGTHS[-1])
         else:
@@ -184,12 +184,12 @@ class Housing:
         return 0.0 if self.outside else max(0.0, self.top - 0.3 - self.screw.length)
 
     def height(self, cable: int) -> float:
-        """Of the channel of a cable of this winch, by its place on the spool [mm]."""
+        """Height of the channel of a cable of this winch, by its place on the spool [mm]."""
         return self.drive.start + self.spool.middles[cable]
 
     @property
     def lead(self) -> float:
-        """From where a cable leaves the spool to the outer face of the box [mm]."""
+        """Length of cable from its spool to the outer face of the box [mm]."""
         return self.half
 
     def seat(self, cable: int) -> float:
@@ -215,7 +215,7 @@ class Housing:
         return Cuboid(low=low, high=high)
 
     def plate(self) -> Construction:
-        """As it lies on the motor."""
+        """Plate as it lies on the motor."""
         half, drive, motor = self.half, self.drive, self.motor
         body: Construction = Box((2 * half, 2 * half, drive.plate)).moved(-half, -half, 0)
         if motor.horn is not None:
@@ -251,7 +251,7 @@ class Housing:
         return body
 
     def box(self) -> Construction:
-        """As it stands on the plate."""
+        """Box as it stands on the plate."""
         half, low, top = self.half, self.drive.plate, self.top
         body: Construction = Box((2 * half, 2 * half, top - low)).moved(-half, -half, low)
         body = body - Cylinder(self.under_roof - low + 1, self.cavity).moved(0, 0, low - 1)
@@ -267,7 +267,7 @@ class Housing:
         return body
 
     def _channel(self, place: int) -> Construction:
-        """Of a cable that leaves along +x."""
+        """Channel of a cable that leaves along +x."""
         seat = self.seat(place)
         bore = Cylinder(self.half + 1, self.options.bore / 2).turned(y=90)
         end = Cylinder(seat + 1, self._seat_radius).turned(y=90).moved(self.half - seat, 0, 0)

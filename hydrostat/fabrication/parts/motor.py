@@ -38,7 +38,7 @@ class FaceScrew:
         return max(wall, self.length(wall) - self.depth)
 
     def title(self, wall: float) -> str:
-        """As it is bought, for a wall [mm]."""
+        """Name by which it is bought, for a wall [mm]."""
         return f"{self.size} x {self.length(wall):g} mm pan head screw"
 
 
@@ -64,7 +64,7 @@ class Shaft:
     boss_height: float
 
     def shape(self, length: float, grown: float = 0.0) -> Construction:
-        """Its solid from z = 0 upwards [mm], thicker by so much on each side [mm]."""
+        """Shape of it from z = 0 upwards [mm], thicker by so much on each side [mm]."""
         radius = self.diameter / 2 + grown
         flat = self.across - self.diameter / 2 + grown
         side = 2 * radius + 2
@@ -137,7 +137,7 @@ class Motor:
 
     @property
     def envelope(self) -> Construction:
-        """All of it with what turns, without the coupling."""
+        """Shape of all of it with what turns, without the coupling."""
         if self.horn is not None:
             return self.body + Cylinder(self.horn.height, self.horn.radius)
         boss = Cylinder(self.shaft.boss_height, self.shaft.boss)

@@ -40,7 +40,7 @@ class UnitBox(Cuboid):
 
     @property
     def words(self) -> str:
-        """Its winch and its sides."""
+        """Name of its winch and its sides, in words."""
         return f'the unit of winch "{self.winch}", ' + " x ".join(f"{side:.0f}" for side in self.size) + " mm,"
 
 
@@ -78,7 +78,7 @@ class UnitPlace:
 
     @property
     def told(self) -> str:
-        """How a person lays it."""
+        """Instruction to lay it, for a person."""
         right, ahead = self.slid
         slid = ""
         if right or ahead:
@@ -112,7 +112,7 @@ def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[UnitPlace]:
 
 
 def _place(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, across: bool, flipped: bool) -> UnitPlace:
-    """With its +y at a turn [degrees]: x is to the right of it, or z to the right or to the left."""
+    """Lay a unit with its +y at a turn [degrees]: x is to the right of it, or z to the right or to the left."""
     angle = math.radians(turn)
     up = (math.cos(angle), math.sin(angle))
     right = (up[1], -up[0])

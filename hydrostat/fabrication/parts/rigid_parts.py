@@ -78,12 +78,12 @@ class RigidParts:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """Why they cannot be built well."""
+        """Reasons why they cannot be built well."""
         return (*(text for unit in self.units for text in unit.problems), *(self.base.problems if self.base else ()))
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What to mind."""
+        """Sentences on what to mind."""
         base = self.base.warnings if self.base else ()
         return (*(text for unit in self.units for text in unit.warnings), *self.between, *base)
 

@@ -46,7 +46,7 @@ def capacity(width: float, radius: float, cable: float, layers: int) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Groove:
-    """Where one cable is wound; lengths in millimetres.
+    """Place where one cable is wound; lengths in millimetres.
 
     Attributes:
         radius: of the middle of the cable in the first layer [mm].
@@ -132,7 +132,7 @@ class Spool:
 
     @property
     def radius(self) -> float:
-        """Of its largest flange [mm]."""
+        """Radius of its largest flange [mm]."""
         return max(self.flanges)
 
     @property
@@ -145,7 +145,7 @@ class Spool:
         return max(self.wall, self.inside + 0.2 - tall - self.journal)
 
     def construction(self) -> Construction:
-        """Stands on its lower face; undersides of flanges rise by 45 degrees, so that it prints without support."""
+        """Shape on its lower face; undersides of flanges rise by 45 degrees, so that it prints without support."""
         top = self.body + self.journal
         body: Construction = Turning(self._profile())
         deep = self.inside + 0.5

@@ -49,7 +49,7 @@ def spool_for(
 def _radii(
     robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor
 ) -> tuple[list[float], list[str]]:
-    """At which each cable is wound [mm], and a sentence for each that is too small for the shaft."""
+    """Radius at which each cable is wound [mm], and a sentence for each that is too small for the shaft."""
     least = motor.shaft.diameter / 2 + options.fit + options.wall + options.cable / 2
     radii, small = [], []
     for index in cables:

@@ -178,7 +178,7 @@ def _way_up(options: PartOptions) -> Construction:
 
 
 def _lid(options: PartOptions, rib: float) -> Construction:
-    """With its lower face at z = 0, as it lies on the base; ribs hang below."""
+    """Lid with its lower face at z = 0, as it lies on the base; ribs hang below."""
     free = options.fit
     body: Construction = _button(options, _LID).turned(x=180).moved(0, 0, _LID)
     for angle in _steps(options)[1::2]:

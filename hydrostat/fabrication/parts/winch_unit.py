@@ -33,7 +33,7 @@ class WinchParts:
         self._motors: dict[str, Manifold] = {}
 
     def of(self, housing: Housing, winch: str) -> tuple[tuple[Printed, ...], PartAssembly]:
-        """What is printed for a winch: spool, box, plate, and the coupling of a servo; and all of it put together."""
+        """Make what is printed for a winch (spool, box, plate, the coupling of a servo) and put it together."""
         box = housing.box().turned(x=180).moved(0, 0, housing.top)
         printed = [
             self._printed("spool", "Spool", housing.spool.construction(), _SPOOL),
@@ -83,7 +83,7 @@ def letters(number: int) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Exit:
-    """Where a cable leaves a unit, in the unit's coordinates: the shaft is z, the face of the motor z = 0.
+    """Exit of a cable from a unit, in the unit's coordinates: the shaft is z, the face of the motor z = 0.
 
     Attributes:
         cable: index of the cable in the robot.
@@ -136,7 +136,7 @@ class WinchUnit:
 
     @property
     def spool(self) -> Spool:
-        """Its sizes."""
+        """Sizes of its spool."""
         return self.housing.spool
 
     @property
@@ -184,14 +184,14 @@ class _UnitDraft:
 
     @staticmethod
     def of(robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor) -> "_UnitDraft":
-        """Of a winch and its cables."""
+        """Size the unit of a winch and its cables."""
         spool, problems, warnings = spool_for(robot, winch, cables, options, motor)
         outside = winch.mount is Mount.WORLD
         housing = Housing(motor=motor, spool=spool, azimuths=(90,) * len(cables), outside=outside, options=options)
         return _UnitDraft(winch=winch, cables=cables, housing=housing, problems=problems, warnings=warnings)
 
     def unit(self, robot: Robot, parts: WinchParts, laid: LaidUnit | None) -> WinchUnit:
-        """It, as it is laid in a flat body, or else where there is no question of that."""
+        """Make the unit as it is laid in a flat body, or where there is no question of that."""
         housing = replace(self.housing, azimuths=_azimuths(robot, self.cables, self.winch.mount, laid))
         printed, assembly = parts.of(housing, self.winch.name)
         return WinchUnit(
@@ -212,7 +212,7 @@ class _UnitDraft:
 
 
 def _laid(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
-    """How units lie in a flat body, by the name of the winch; none in space."""
+    """Lay units in a flat body: each by the name of its winch; none in space."""
     if robot.body.thickness is None:
         return {}
     boxes = [
@@ -230,13 +230,13 @@ def _laid(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
 
 
 def _way(robot: Robot, cable: int) -> float:
-    """In which a cable of a flat robot goes on from its winch, counted from +x [degrees]."""
+    """Way in which a cable of a flat robot goes on from its winch, counted from +x [degrees]."""
     first, second = robot.cables[cable].points[:2]
     return math.degrees(math.atan2(second[1] - first[1], second[0] - first[0]))
 
 
 def _azimuths(robot: Robot, cables: tuple[int, ...], mount: Mount, laid: LaidUnit | None) -> tuple[int, ...]:
-    """In which way each cable leaves [degrees]; the first along +y, unless a unit is turned out of another's way.
+    """Ways in which cables leave [degrees]; the first along +y, unless a unit is turned out of another's way.
 
     Outside all leave towards the tubes. In a flat body each leaves on the side that is nearest to the way in which it
     goes on; in a body of space they are spread.

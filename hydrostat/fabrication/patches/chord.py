@@ -60,7 +60,7 @@ class Chord:
 
 
 def best_chord(patch: Patch, limit: float) -> Chord | None:
-    """Of chords near the worst place, the one after which the patch should lie flattest; None if there is none.
+    """Choose the chord near the worst place after which the patch should lie flattest; None if there is none.
 
     Judged by the scale with which the pieces would flatten if angles were kept: the solution of a Poisson equation with
     the curvature of the skin, zero along rim and chord (Ben-Chen, Gotsman, Bunin 2008), without flattening them all.
@@ -164,7 +164,7 @@ def _longer(line: shapely.LineString) -> shapely.LineString:
 
 
 def _in_space(patch: Patch, chord: Chord) -> Float[np.ndarray, " 3"]:
-    """Where the middle of a chord is on the body: at the triangle whose middle is nearest."""
+    """Place of the middle of a chord on the body: in the triangle whose middle is nearest."""
     at = np.array(chord.through) + np.array(chord.along) * (chord.low + chord.high) / 2
     nearest = int(np.linalg.norm(patch.flat[patch.disc.triangles].mean(axis=1) - at, axis=1).argmin())
     return patch.disc.vertices[patch.disc.triangles[nearest]].mean(axis=0)

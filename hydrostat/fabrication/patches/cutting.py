@@ -173,7 +173,7 @@ NARROWEST = 8.0
 def patch_problems(
     names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
 ) -> tuple[str, ...]:
-    """Why the patches cannot be sewn, a line each."""
+    """Tell why the patches cannot be sewn, a line each."""
     problems = []
     for name, patch, skin in zip(names, patches, skins, strict=True):
         give = distortion(patch).give(0.95)
@@ -204,7 +204,7 @@ def patch_problems(
 def patch_warnings(
     names: tuple[str, ...], patches: tuple[Patch, ...], skins: tuple[Skin, ...], seams: tuple[Seam, ...]
 ) -> tuple[str, ...]:
-    """What to mind with the cloth, a line each."""
+    """Tell what to mind with the cloth, a line each."""
     warnings = []
     gives = {name: distortion(patch).give(0.95) for name, patch in zip(names, patches, strict=True)}
     most = max(gives, key=lambda name: gives[name])

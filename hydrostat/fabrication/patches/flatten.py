@@ -12,7 +12,7 @@ from hydrostat.fabrication.patches.patch import Disc, Patch
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Distortion:
-    """Of the map from flat cloth to the body, triangle by triangle.
+    """Distortion of the map from flat cloth to the body, triangle by triangle.
 
     Attributes:
         longest: ratio of length in the direction of most stretch: above 1 the cloth has to stretch.

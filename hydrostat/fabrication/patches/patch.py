@@ -30,7 +30,7 @@ class Disc:
 
     @cached_property
     def areas(self) -> Float[np.ndarray, " triangles"]:
-        """Of the triangles in space [mm^2]."""
+        """Areas of the triangles in space [mm^2]."""
         corners = self.vertices[self.triangles]
         return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
 
@@ -54,7 +54,7 @@ class Patch:
 
     @cached_property
     def flat_areas(self) -> Float[np.ndarray, " triangles"]:
-        """Of the flat triangles [mm^2], below 0 where one lies on its back."""
+        """Areas of the flat triangles [mm^2], below 0 where one lies on its back."""
         corners = self.flat[self.disc.triangles]
         one, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         return (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]) / 2

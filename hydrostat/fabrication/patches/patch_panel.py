@@ -79,7 +79,7 @@ def patch_panel(
 
 
 def _stroke(place: Place, skin: Skin) -> LineString:
-    """From the seam across the allowance."""
+    """Stroke from the seam across the allowance."""
     return shapely.shortest_line(shapely.Point(place), skin.cut.exterior)
 
 

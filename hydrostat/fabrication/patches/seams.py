@@ -36,12 +36,12 @@ class Seam:
 
     @property
     def length(self) -> float:
-        """On the body [mm]."""
+        """Length on the body [mm]."""
         return float(self.along[-1])
 
     @property
     def lengths(self) -> tuple[float, float]:
-        """On the two patches [mm]."""
+        """Lengths on the two patches [mm]."""
         one, other = (float(np.linalg.norm(np.diff(side, axis=0), axis=1).sum()) for side in self.sides)
         return one, other
 
@@ -51,12 +51,12 @@ class Seam:
         return max(self.lengths) / min(self.lengths) - 1
 
     def place(self, along: float, side: int) -> tuple[float, float]:
-        """Where a place of the seam lies on its first (0) or second (1) patch [mm]."""
+        """Place of the seam on its first (0) or second (1) patch [mm]."""
         x, y = (float(np.interp(along, self.along, self.sides[side][:, axis])) for axis in (0, 1))
         return x, y
 
     def on_body(self, along: float) -> tuple[float, float, float]:
-        """The same place on the body [mm]."""
+        """Place of the seam on the body [mm]."""
         x, y, z = (float(np.interp(along, self.along, self.solid[:, axis])) for axis in range(3))
         return x, y, z
 
@@ -165,7 +165,7 @@ def patch_notches(seams: tuple[Seam, ...]) -> dict[int, list[PatchNotch]]:
 
 
 def stuffing_gap(seams: tuple[Seam, ...], names: tuple[str, ...]) -> tuple[str, ...]:
-    """Where a body without a zipper is turned and stuffed, in words."""
+    """Tell where a body without a zipper is turned and stuffed."""
     lengths = [seam.length for seam in seams]
     longest = int(np.argmax(lengths))
     seam, named = seams[longest], [notch for notch in _named(seams)[longest] if notch[0]]

@@ -33,7 +33,7 @@ _SHALLOW = 5.0
 
 @dataclass(frozen=True, kw_only=True)
 class SkinHole:
-    """What a cable does at one of its points that is near the skin.
+    """Point of a cable near the skin, and what the cable does there.
 
     Attributes:
         cable: its number, 1 for the first cable of the robot.
@@ -55,11 +55,11 @@ class SkinHole:
 
     @property
     def in_seam(self) -> bool:
-        """Whether the cable passes between two stitches of a seam, without a hole."""
+        """Tell whether the cable passes between two stitches of a seam, without a hole."""
         return len(self.places) > 1
 
     def on(self, patch: int) -> Place | None:
-        """Where it is on a patch [mm]; None if it is on another."""
+        """Its place on a patch [mm]; None if it is on another."""
         return next((place for number, place in self.places if number == patch), None)
 
 
@@ -129,7 +129,7 @@ def find_holes(
 
 
 def _sewn(cable: Cable, near: list[int], side: Side) -> Iterator[tuple[int, bool, Side]]:
-    """Of each point near the skin whether the cable passes there, and the side after it."""
+    """Tell of each point near the skin whether the cable passes there, and the side after it."""
     passes = dict.fromkeys(near, False)
     now = side
     for bare, points in runs_of(cable):
@@ -162,7 +162,7 @@ def _into_seam(
 
 
 def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple[str, ...]:
-    """Of each cable whether its holes overlap others, a line each."""
+    """Tell which cables have holes that overlap others, a line each."""
     close: dict[int, tuple[float, SkinHole, SkinHole]] = {}
     cut = [hole for hole in holes if hole.passes and not hole.in_seam]
     for one, other in combinations(cut, 2):
@@ -178,7 +178,7 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
 
 
 def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
-    """Of each cable whether it would run outside where it was simulated deep in the body, a line each."""
+    """Tell which cables would run outside where they were simulated deep in the body, a line each."""
     nearest, problems = NearestOnSkin(patches).nearest, {}
     for one, other in pairwise([hole for hole in holes if hole.passes]):
         if one.cable != other.cable or one.after is Side.INSIDE:
@@ -196,7 +196,7 @@ def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole
 
 
 def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
-    """What cables that are sewn to the skin do otherwise than the simulated ones, a line each."""
+    """Tell what cables that are sewn to the skin do otherwise than the simulated ones, a line each."""
     warnings, shallow, free = [], {}, {}
     for number, cable in enumerate(robot.cables, start=1):
         near = {hole.point for hole in holes if hole.cable == number}

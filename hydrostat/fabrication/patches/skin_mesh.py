@@ -40,7 +40,7 @@ class SkinMesh:
 
     @property
     def areas(self) -> Float[np.ndarray, " triangles"]:
-        """Of the triangles [mm^2]."""
+        """Areas of the triangles [mm^2]."""
         return np.linalg.norm(self.crosses, axis=1) / 2
 
     @cached_property

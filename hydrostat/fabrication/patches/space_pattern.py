@@ -174,7 +174,7 @@ def _level(places: Float[np.ndarray, "places 2"]) -> Float[np.ndarray, "places 3
 
 
 def skin_stitches(robot: Robot, holes: tuple[SkinHole, ...], view: FrontView) -> tuple[CableStitches, ...]:
-    """How each cable is sewn; points deep inside stay on the side of the one before."""
+    """Tell how each cable is sewn; points deep inside stay on the side of the one before."""
     sewn = []
     for number, cable in enumerate(robot.cables, start=1):
         begins = Side.OUTSIDE if robot.winch(cable.winch).mount is Mount.WORLD else Side.INSIDE

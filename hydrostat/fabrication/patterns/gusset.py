@@ -13,7 +13,7 @@ from hydrostat.fabrication.patterns.skin import Notch, Skin
 
 
 def stuffed_thickness(seam: Polygon) -> float:
-    """How thick a limb of two flat panels becomes when it is stuffed [mm].
+    """Thickness of a limb of two flat panels when it is stuffed [mm].
 
     Stuffing makes a round tube of two flat strips of width w, and keeps its girth: 2 w = pi d. The mean width of a
     branched outline is w = 2 area / length of its seams, which is exact for a long strip and for a ring.
@@ -22,7 +22,7 @@ def stuffed_thickness(seam: Polygon) -> float:
 
 
 def wants_gusset(seam: Polygon, thickness: float, options: PatternOptions) -> bool:
-    """Whether a body of this thickness [mm] gets a gusset: as the options say, else where panels alone stay thinner."""
+    """Tell whether a body so thick [mm] gets a gusset: as the options say, else where panels alone stay thinner."""
     return thickness > stuffed_thickness(seam) if options.gusset is None else options.gusset
 
 
@@ -56,7 +56,7 @@ class _StripPiece:
 
 
 def _ends(length: float, notches: list[float], longest: float) -> list[float]:
-    """Where a strip is cut: at the last notch before it would become too long, else just there [mm]."""
+    """Places where a strip is cut: at the last notch before it would become too long, else just there [mm]."""
     ends = [0.0]
     while length - ends[-1] > longest + 1e-9:
         here = ends[-1]

@@ -32,7 +32,7 @@ _ROOMY = 6.0
 
 
 class FreeSpace:
-    """What is still empty inside an outline. Whatever is placed takes its room."""
+    """Room that is still empty inside an outline. Whatever is placed takes its room."""
 
     def __init__(self, inside: Polygon, shapes: Iterable[Shape]) -> None:
         self._inside = inside
@@ -210,7 +210,7 @@ class PanelLabels:
             self._shapes.extend(letter.lines((-best[0], best[1]) if self._mirrored else best))
 
     def edge_names(self, upper: str, lower: str) -> None:
-        """What the upper and the lower edge of a strip are sewn to, along them."""
+        """Write along the edges of a strip what the upper and the lower are sewn to."""
         left, bottom, right, top = self._seam.bounds
         for text, y in ((upper, top - 4.0), (lower, bottom + 4.0)):
             letters = Lettering(text, _NAMES[-1])
@@ -280,7 +280,7 @@ def _frame(middle: Place, letter: Lettering) -> Polygon:
 
 
 def _way(at: Place, middle: Place, lettering: Lettering) -> np.ndarray:
-    """From a place to the nearest point of its label [mm]."""
+    """Way from a place to the nearest point of its label [mm]."""
     half = np.array([lettering.width, lettering.height]) / 2
     offset = np.subtract(middle, at)
     return np.sign(offset) * np.maximum(np.abs(offset) - half, 0.0)

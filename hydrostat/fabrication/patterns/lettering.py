@@ -24,7 +24,7 @@ class Lettering:
 
     @property
     def width(self) -> float:
-        """From the first stroke to the last [mm]."""
+        """Width from the first stroke to the last [mm]."""
         return self._scale * max((x for stroke in self._strokes for x, _ in stroke), default=0.0)
 
     def lines(self, middle: Place) -> tuple[Polyline, ...]:

@@ -57,7 +57,7 @@ class Opening:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Whether it is short for a hand."""
+        """Sentence that it is short for a hand, if it is."""
         if self.slit.length > ZIPPERS[0] - 1e-6:
             return ()
         return (

@@ -148,7 +148,7 @@ def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
 
 
 def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[str, ...]:
-    """Of the thickness and the opening."""
+    """Warn of the thickness, the opening and stoppers inside."""
     warnings = list(draft.opening.warnings if draft.opening else ())
     stuffed = stuffed_thickness(draft.skin.seam)
     if not gusset and thickness > stuffed:

@@ -23,7 +23,7 @@ class Layer(StrEnum):
 
 
 class PatternPart(StrEnum):
-    """What a shape stands for on the panel."""
+    """Part of a panel that a shape stands for."""
 
     EDGE = "edge"
     SLIT = "slit"
@@ -143,7 +143,7 @@ class Panel:
     shapes: tuple[Shape, ...]
 
     def on_sheet(self, point: Point) -> Place:
-        """Where a point of the robot [m] lies on the sheet [mm]; for the front and the back."""
+        """Place of a point of the robot [m] on the sheet [mm]; for the front and the back."""
         x, y = 1e3 * point[0], 1e3 * point[1]
         return self.origin[0] + (-x if self.mirrored else x), self.origin[1] + y
 

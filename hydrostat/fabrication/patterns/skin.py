@@ -106,7 +106,7 @@ def _slits(seam: Polygon, outside: Polygon, options: PatternOptions) -> tuple[Mu
 
 
 def _tight_bays(seam: Polygon, cut: Polygon, slits: MultiLineString, options: PatternOptions) -> tuple[str, ...]:
-    """Where two stretches of seam share one allowance, because they lie too close."""
+    """Warn where two stretches of seam share one allowance, because they lie too close."""
     edges = shapely.union_all([cut.boundary, slits])
     shapely.prepare(edges)
     rings = (seam.exterior, *seam.interiors)
@@ -127,7 +127,7 @@ def _polygons(geometry: BaseGeometry) -> list[Polygon]:
 
 
 def _at(geometry: Polygon | shapely.Point) -> str:
-    """Where a geometry is, in words."""
+    """Place of a geometry, in words."""
     place = geometry.representative_point()
     return f"[{place.x:.4g}, {place.y:.4g}] mm"
 

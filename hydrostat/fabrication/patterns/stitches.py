@@ -13,20 +13,20 @@ from hydrostat.robot import Cable, Mount, Robot
 
 
 class Side(StrEnum):
-    """Of the cloth of the front panel."""
+    """Side of the cloth of the front panel."""
 
     INSIDE = "inside"
     OUTSIDE = "outside"
 
     @property
     def other(self) -> "Side":
-        """Where a cable is after it went through the cloth."""
+        """Side on which a cable is after it went through the cloth."""
         return Side.OUTSIDE if self is Side.INSIDE else Side.INSIDE
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stitch:
-    """What a cable does at one of its points.
+    """Point of a cable, and what the cable does there.
 
     Attributes:
         number: of the point along its cable, 1 at the winch.
@@ -60,17 +60,17 @@ class CableStitches:
 
     @property
     def passes(self) -> tuple[Stitch, ...]:
-        """Those that go through the cloth: out, in, out, ..."""
+        """Stitches that go through the cloth: out, in, out, ..."""
         return tuple(stitch for stitch in self.stitches if stitch.passes)
 
     @property
     def stopper(self) -> Side:
-        """Where its stopper sits: the tension pulls it against the last hole."""
+        """Side on which its stopper sits: the tension pulls it against the last hole."""
         return self.stitches[-1].after
 
 
 def cable_stitches(robot: Robot, seam: Polygon) -> tuple[CableStitches, ...]:
-    """How each cable is sewn: a running stitch through its points that ends outside, where its stopper can be adjusted.
+    """Sew each cable: a running stitch through its points that ends outside, where its stopper can be adjusted.
 
     The winch sits inside, so its cables begin there; a sheath lies inside too. A bare stretch goes through the cloth at
     each of its points. Where that would end on the wrong side, it stays inside up to its second point: its beginning
@@ -116,5 +116,5 @@ def runs_of(cable: Cable) -> Iterator[tuple[bool, list[int]]]:
 
 
 def _end(cable: Cable, points: list[int]) -> Side:
-    """Where a bare stretch has to end: outside at the stopper, inside before a sheath."""
+    """Side on which a bare stretch has to end: outside at the stopper, inside before a sheath."""
     return Side.OUTSIDE if points[-1] == len(cable.points) - 1 else Side.INSIDE

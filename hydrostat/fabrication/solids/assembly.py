@@ -77,6 +77,6 @@ def interferences(assembly: PartAssembly, *, least: float = LEAST) -> tuple[Inte
 
 
 def _near(one: Manifold, other: Manifold) -> bool:
-    """Whether the boxes of two solids meet."""
+    """Tell whether the boxes of two solids meet."""
     mine, theirs = one.bounding_box(), other.bounding_box()
     return all(mine[axis] <= theirs[axis + 3] and theirs[axis] <= mine[axis + 3] for axis in range(3))

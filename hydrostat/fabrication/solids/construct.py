@@ -110,7 +110,7 @@ class Turning(Construction):
 
 @dataclass(frozen=True)
 class Joined(Construction):
-    """What either has."""
+    """Union: what either has."""
 
     one: Construction
     other: Construction
@@ -118,7 +118,7 @@ class Joined(Construction):
 
 @dataclass(frozen=True)
 class Cut(Construction):
-    """What the first has and the other has not."""
+    """Difference: what the first has and the other has not."""
 
     one: Construction
     other: Construction
@@ -126,7 +126,7 @@ class Cut(Construction):
 
 @dataclass(frozen=True)
 class Common(Construction):
-    """What both have."""
+    """Intersection: what both have."""
 
     one: Construction
     other: Construction

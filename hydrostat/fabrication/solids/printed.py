@@ -126,12 +126,12 @@ class Printed:
 
     @property
     def volume(self) -> float:
-        """Of one, filled [mm^3]."""
+        """Volume of one, filled [mm^3]."""
         return float(self.solid.volume())
 
     @property
     def mass(self) -> float:
-        """Of one in PLA [g], estimated: a whole shell under all of its surface, little inside; at most all plastic."""
+        """Mass of one in PLA [g], estimated: a whole shell under its surface, little inside; at most all plastic."""
         shell = min(SHELL * float(self.solid.surface_area()), self.volume)
         return PLA * (shell + INFILL * (self.volume - shell))
 

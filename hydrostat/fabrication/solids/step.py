@@ -113,7 +113,7 @@ def _(shape: Turned) -> Any:
 
 
 def require_cad() -> None:
-    """Before long work begins: STEP can be written.
+    """Make sure, before long work begins, that STEP can be written.
 
     Raises:
         InputError: build123d is not installed.
