@@ -2,8 +2,8 @@
 
 import io
 import re
-import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import ezdxf
 import numpy as np

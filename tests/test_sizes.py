@@ -1,0 +1,208 @@
+"""What keeps the house legible: sizes, names and first words. Oracle: the syntax tree of each file."""
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FILE, FUNCTION, PARAMETERS = 400, 60, 8
+
+LARGE_FILES = {
+    "hydrostat/mechanics/supernodal.py": "the kernels of one factorisation",
+    "hydrostat/simulation/simulation.py": "in work",
+}
+LARGE_FUNCTIONS = {
+    "hydrostat/cli/design.py:design": "an option a line",
+    "hydrostat/cli/fabricate.py:fabricate": "an option a line",
+    "hydrostat/cli/trajectory.py:trajectory": "an option a line",
+    "hydrostat/fabrication/lists/line.py:check_line": "in work",
+    "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "in work",
+    "hydrostat/studio/face/panels/start_draft.py:_fields": "in work",
+}
+MANY_PARAMETERS = {
+    "hydrostat/cli/design.py:design": "a parameter is an option of the command line",
+    "hydrostat/cli/fabricate.py:fabricate": "a parameter is an option of the command line",
+    "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
+    "hydrostat/cli/trajectory.py:trajectory": "a parameter is an option of the command line",
+    "hydrostat/design/design_cables.py:design_cables": "in work",
+    "hydrostat/design/routes/design_routes.py:design_routes": "in work",
+    "hydrostat/design/routes/design_routes.py:Search.__init__": "in work",
+    "hydrostat/design/routes/price.py:price_paths": "in work",
+    "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "in work",
+    "hydrostat/mechanics/cable.py:CableEnergy.__init__": "in work",
+    "hydrostat/mechanics/friction.py:FrictionCableEnergy.__init__": "in work",
+    "hydrostat/mechanics/newton.py:minimise": "in work",
+}
+"""What may be larger, with the reason."""
+
+ROOMS_IN_WORK = ("cli", "design", "fabrication", "ik", "mechanics", "simulation", "studio")
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def modules(folder: str = "hydrostat") -> dict[str, str]:
+    """Text of each file of the package, by its path."""
+    return {
+        str(file.relative_to(ROOT)): file.read_text(encoding="utf-8") for file in sorted((ROOT / folder).rglob("*.py"))
+    }
+
+
+@cache
+def syntax(text: str) -> ast.Module:
+    """Syntax tree of a file."""
+    return ast.parse(text)
+
+
+def functions(node: ast.AST, name: str = "") -> Iterator[tuple[str, Function]]:
+    """Every function with its full name, also within classes and functions."""
+    for child in ast.iter_child_nodes(node):
+        inner = f"{name}.{child.name}" if isinstance(child, Function | ast.ClassDef) else name
+        if isinstance(child, Function):
+            yield inner.removeprefix("."), child
+        yield from functions(child, inner)
+
+
+def code_lines(text: str, function: Function) -> int:
+    """Lines of a function without its decorators, docstring, blank lines and comments."""
+    docstring = function.body[0] if ast.get_docstring(function) is not None else None
+    told = range(docstring.lineno, (docstring.end_lineno or 0) + 1) if docstring else ()
+    lines = enumerate(text.splitlines()[function.lineno - 1 : function.end_lineno], function.lineno)
+    return sum(number not in told and bool(line.strip()) and line.strip()[0] != "#" for number, line in lines)
+
+
+def parameters(function: Function) -> int:
+    """Parameters of a function; self and cls do not count."""
+    named = [*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs]
+    return sum(each.arg not in {"self", "cls"} for each in named)
+
+
+def is_kernel(function: Function) -> bool:
+    """Tell whether numba compiles a function: its arrays come one by one, and calls within it take time to compile."""
+    return any("njit" in ast.unparse(decorator) for decorator in function.decorator_list)
+
+
+def large_files(texts: dict[str, str]) -> dict[str, int]:
+    return {path: count for path, text in texts.items() if (count := len(text.splitlines())) > FILE}
+
+
+def large_functions(texts: dict[str, str]) -> dict[str, int]:
+    return {
+        f"{path}:{name}": count
+        for path, text in texts.items()
+        for name, function in functions(syntax(text))
+        if not is_kernel(function) and (count := code_lines(text, function)) > FUNCTION
+    }
+
+
+def many_parameters(texts: dict[str, str]) -> dict[str, int]:
+    return {
+        f"{path}:{name}": count
+        for path, text in texts.items()
+        for name, function in functions(syntax(text))
+        if not is_kernel(function) and (count := parameters(function)) > PARAMETERS
+    }
+
+
+def twice(texts: dict[str, str]) -> list[str]:
+    """Names of classes that stand at the top of several files."""
+    names = Counter(
+        node.name for text in texts.values() for node in syntax(text).body if isinstance(node, ast.ClassDef)
+    )
+    return sorted(name for name, count in names.items() if count > 1)
+
+
+def fragments(texts: dict[str, str]) -> list[str]:
+    """First lines of public docstrings that begin with a word that needs another sentence before it."""
+    found = []
+    for path, text in texts.items():
+        tree = syntax(text)
+        nodes = [tree, *(node for node in ast.walk(tree) if isinstance(node, Function | ast.ClassDef))]
+        for node in nodes:
+            public = isinstance(node, ast.Module) or not node.name.startswith("_")
+            first = (ast.get_docstring(node) or "").split("\n")[0]
+            if public and re.match(r"(Of|That|As)\b", first):
+                found.append(f"{path}: {first}")
+    return found
+
+
+def asks_for_energies(texts: dict[str, str], energies: set[str]) -> list[str]:
+    """Places outside mechanics that ask what kind of energy one is."""
+    found = []
+    for path, text in texts.items():
+        if path.startswith("hydrostat/mechanics/"):
+            continue
+        for node in ast.walk(syntax(text)):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "isinstance":
+                kinds = set(re.findall(r"\w+", ast.unparse(node.args[1])))
+                found += [f"{path}:{node.lineno}"] * bool(kinds & energies)
+    return found
+
+
+def energies(texts: dict[str, str]) -> set[str]:
+    """Names of Energy and of all classes that are one."""
+    bases = {
+        node.name: {ast.unparse(base).split("[")[0] for base in node.bases}
+        for text in texts.values()
+        for node in ast.walk(syntax(text))
+        if isinstance(node, ast.ClassDef)
+    }
+    known = {"Energy"}
+    while more := {name for name, above in bases.items() if above & known} - known:
+        known |= more
+    return known
+
+
+@pytest.fixture(scope="module")
+def texts() -> dict[str, str]:
+    return modules()
+
+
+def test_files_are_short(texts: dict[str, str]) -> None:
+    assert set(large_files(texts)) <= set(LARGE_FILES)
+
+
+def test_functions_are_short(texts: dict[str, str]) -> None:
+    assert set(large_functions(texts)) <= set(LARGE_FUNCTIONS)
+
+
+def test_parameters_are_few(texts: dict[str, str]) -> None:
+    assert set(many_parameters(texts)) <= set(MANY_PARAMETERS)
+
+
+def test_a_class_name_stands_once(texts: dict[str, str]) -> None:
+    in_work = {"Found", "Limits", "Page", "Polyline", "Posture", "Search", "Stage", "Table", "Tree", "Way"}
+    in_work |= {"_Descent", "_Grid", "_Plan", "_State"}
+    assert set(twice(texts)) <= in_work
+
+
+def test_first_lines_stand_alone(texts: dict[str, str]) -> None:
+    assert [told for told in fragments(texts) if told.split("/")[1] not in ROOMS_IN_WORK] == []
+
+
+def test_only_mechanics_asks_what_an_energy_is(texts: dict[str, str]) -> None:
+    known = energies(texts)
+    assert len(known) > 8
+    assert [place for place in asks_for_energies(texts, known) if place.split("/")[1] not in ROOMS_IN_WORK] == []
+
+
+def test_the_checks_can_fail() -> None:
+    long = 'def long(a):\n    """Told."""\n\n    # why\n' + "    a += 1\n" * FUNCTION
+    assert large_functions({"p": long}) == {"p:long": FUNCTION + 1}
+    assert large_functions({"p": long.removesuffix("    a += 1\n")}) == {}
+    assert large_functions({"p": "@njit(**KERNEL)\n" + long}) == {}
+    assert large_files({"p": "\n" * FILE, "q": "\n" * (FILE + 1)}) == {"q": FILE + 1}
+    few = "class A:\n    def f(self, a, b, /, c, d, *, e, f, g, h):\n        pass\n"
+    assert many_parameters({"p": few, "q": few.replace("h)", "h, i)")}) == {"q:A.f": PARAMETERS + 1}
+    assert twice({"p": "class A: pass\nclass B: pass", "q": "class A: pass"}) == ["A"]
+    told = '"""As told."""\ndef f(): "That is it."\ndef _g(): "Of g."\ndef h(): "Assembly of h."\n'
+    assert fragments({"p": told}) == ["p: As told.", "p: That is it."]
+    made = "class Energy: ...\nclass Spring(Energy): ...\nclass Stiff(Spring): ...\nclass Other: ..."
+    assert energies({"p": made}) == {"Energy", "Spring", "Stiff"}
+    asking = "isinstance(a, Other)\nisinstance(a, Stiff | Other)\n"
+    places = asks_for_energies({"hydrostat/a/b.py": asking, "hydrostat/mechanics/c.py": asking}, energies({"p": made}))
+    assert places == ["hydrostat/a/b.py:2"]
