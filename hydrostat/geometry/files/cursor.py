@@ -41,6 +41,11 @@ def whole_numbers(values: np.ndarray, kind: str = "i8") -> np.ndarray:
     return values.astype(kind)
 
 
+def damaged(name: str, what: str) -> InputError:
+    """Make the error for a file that is not as it should be."""
+    return InputError(f"{name}: {what}: the file is damaged or cut short, save or copy it again")
+
+
 class Cursor:
     """Bytes of a file that are read from the front.
 
@@ -142,5 +147,5 @@ class Cursor:
         return part.numbers(sum(1 for _ in _WORD.finditer(part.content)), kind)
 
     def damaged(self, what: str) -> InputError:
-        """The error for a file that is not as it should be."""
-        return InputError(f"{self.name}: {what}: the file is damaged or cut short, save or copy it again")
+        """The error for this file, which is not as it should be."""
+        return damaged(self.name, what)

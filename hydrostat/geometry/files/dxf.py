@@ -22,7 +22,9 @@ from hydrostat.geometry.files.rings import (
     checked_lines,
     closed_rings,
     join_lines,
+    one_line,
     outline_on_page,
+    without_repeats,
 )
 from hydrostat.geometry.outline import Ring
 from hydrostat.units import counted
@@ -83,10 +85,10 @@ def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
         with _listening() as said:
             document, auditor = recover.read(io.BytesIO(content))
     except (DXFError, OSError, *_BROKEN) as error:
-        raise OutlineError(f"{name}: cannot be read as DXF ({_one_line(error)}): export the drawing again") from error
+        raise OutlineError(f"{name}: cannot be read as DXF ({one_line(error)}): export the drawing again") from error
     if auditor.errors:
-        raise OutlineError(f"{name}: the file is damaged ({_one_line(auditor.errors[0].message)}): export it again")
-    mended = [_one_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
+        raise OutlineError(f"{name}: the file is damaged ({one_line(auditor.errors[0].message)}): export it again")
+    mended = [one_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
     return document, (f"mended {counted(len(mended), 'fault')} of the file: {mended[0]}",) if mended else ()
 
 
@@ -128,7 +130,7 @@ class _ModelSpace:
         try:
             yield from self._lines_of(self.document.modelspace(), 0)
         except (DXFError, *_BROKEN) as error:
-            raise OutlineError(f"{self.name}: cannot be read as DXF ({_one_line(error)}): export it again") from error
+            raise OutlineError(f"{self.name}: cannot be read as DXF ({one_line(error)}): export it again") from error
 
     def notes(self) -> tuple[str, ...]:
         """In words, what was left out."""
@@ -176,7 +178,7 @@ def _flatten(entity: Any) -> Ring:
     from ezdxf.path import make_path
 
     if entity.dxftype() == "SPLINE":
-        return _without_repeats(_spline(entity))
+        return without_repeats(_spline(entity))
     path = make_path(entity, segments=16)
     control = np.array([(point.x, point.y) for point in path.control_vertices()]).reshape(-1, 2)
     if not len(control):
@@ -185,7 +187,7 @@ def _flatten(entity: Any) -> Ring:
         return np.full((2, 2), np.nan)
     tolerance = CHORD_ERROR * float(np.ptp(control, axis=0).max()) or 1.0
     points = [(point.x, point.y) for point in islice(path.flattening(tolerance, segments=2), MOST_POINTS + 1)]
-    return _without_repeats(np.array(points).reshape(-1, 2))
+    return without_repeats(np.array(points).reshape(-1, 2))
 
 
 def _spline(entity: Any) -> Ring:
@@ -210,19 +212,9 @@ def _spline(entity: Any) -> Ring:
         count *= 2
 
 
-def _without_repeats(points: Ring) -> Ring:
-    """The points, none repeated in a row."""
-    return points[np.r_[True, np.any(np.diff(points, axis=0) != 0.0, axis=1)]] if len(points) else points
-
-
 def _closed(entity: Any, points: Ring) -> bool:
     """Tell whether an entity returns to where it begins, by what it says of itself or by its points."""
     if entity.dxftype() in ("LWPOLYLINE", "POLYLINE") and entity.is_closed:
         return True
     extent = float(np.ptp(points, axis=0).max())
     return float(np.linalg.norm(points[0] - points[-1])) <= 1e-9 * extent
-
-
-def _one_line(error: object) -> str:
-    """The text of an error as the part of a line."""
-    return re.sub(r"[^ -~]+", " ", str(error))[:120]

@@ -1,7 +1,6 @@
 """Outlines from pictures: photographs and drawings on plain ground."""
 
 import io
-import re
 import warnings
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,7 @@ from jaxtyping import Float
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.page import Drawing, Page, page_about
-from hydrostat.geometry.files.rings import outline_on_page
+from hydrostat.geometry.files.rings import one_line, outline_on_page
 from hydrostat.geometry.files.silhouette import Contrast, PixelPatch, Silhouette, contrast, covered, silhouette
 from hydrostat.units import counted
 
@@ -73,8 +72,7 @@ def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 
     except OutlineError:
         raise
     except _BROKEN as error:
-        reason = re.sub(r"[^ -~]+", " ", str(error))[:120]
-        raise OutlineError(f"{name}: cannot be read as a picture ({reason}): save it again") from error
+        raise OutlineError(f"{name}: cannot be read as a picture ({one_line(error)}): save it again") from error
 
 
 def _too_large(name: str, pixels: str) -> OutlineError:

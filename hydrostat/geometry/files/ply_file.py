@@ -36,7 +36,7 @@ class _Element:
 
     name: str
     count: int
-    properties: tuple[_Property, ...]
+    properties: list[_Property]
 
 
 def read_ply(content: bytes, name: str) -> Soup:
@@ -84,11 +84,11 @@ def _head(content: bytes, name: str) -> tuple[str, list[_Element], int]:
             case ["format", text, *_] if text in _ORDERS:
                 order = _ORDERS[text]
             case ["element", kind, count] if count.isdecimal() and len(count) < 20:
-                elements.append(_Element(kind, int(count), ()))
+                elements.append(_Element(kind, int(count), []))
             case ["property", "list", length, kind, label] if elements and {length, kind} <= _TYPES.keys():
-                elements[-1] = _with(elements[-1], _Property(label, _TYPES[kind], _TYPES[length]))
+                elements[-1].properties.append(_Property(label, _TYPES[kind], _TYPES[length]))
             case ["property", kind, label] if elements and kind in _TYPES:
-                elements[-1] = _with(elements[-1], _Property(label, _TYPES[kind]))
+                elements[-1].properties.append(_Property(label, _TYPES[kind]))
             case [] | ["comment" | "obj_info", *_]:
                 pass
             case _:
@@ -97,10 +97,6 @@ def _head(content: bytes, name: str) -> tuple[str, list[_Element], int]:
         if len({each.name for each in element.properties}) < len(element.properties):
             raise SurfaceError(f"{name}: a property of its {element.name} stands twice: export it again")
     return order, elements, start
-
-
-def _with(element: _Element, new: _Property) -> _Element:
-    return _Element(element.name, element.count, (*element.properties, new))
 
 
 def _room(element: _Element, order: str, content: bytes, start: int) -> float:

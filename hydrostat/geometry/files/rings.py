@@ -1,5 +1,6 @@
 """Lines of any kind of drawing, joined to rings: which of them are the body, and which its holes."""
 
+import re
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -135,6 +136,16 @@ def outline_on_page(body: Ring, holes: list[Ring], page: Page, name: str) -> Out
         return Outline(page.places(body), tuple(page.places(hole) for hole in holes))
     except OutlineError as error:
         raise OutlineError(f"{name}: {error}") from error
+
+
+def without_repeats(points: Ring) -> Ring:
+    """Give the points of a line, none repeated in a row."""
+    return points[np.r_[True, np.any(np.diff(points, axis=0) != 0.0, axis=1)]] if len(points) else points
+
+
+def one_line(error: object) -> str:
+    """Give the text of another program's error as a part of a line, in plain letters."""
+    return re.sub(r"[^ -~]+", " ", str(error))[:120]
 
 
 def point_text(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:

@@ -12,7 +12,15 @@ import numpy as np
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.page import Drawing, Page, page_about
-from hydrostat.geometry.files.rings import CHORD_ERROR, MOST_POINTS, body_and_holes, closed_rings, outline_on_page
+from hydrostat.geometry.files.rings import (
+    CHORD_ERROR,
+    MOST_POINTS,
+    body_and_holes,
+    closed_rings,
+    one_line,
+    outline_on_page,
+    without_repeats,
+)
 from hydrostat.geometry.outline import Ring
 
 if TYPE_CHECKING:
@@ -220,8 +228,7 @@ def _subpaths(document: _SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
                     if len(points) > 1:
                         yield points, any(type(segment).__name__ == "Close" for segment in path)
     except _BROKEN as error:
-        reason = re.sub(r"\s+", " ", str(error))[:120]
-        raise OutlineError(f"{name}: cannot be read as SVG ({reason}): save it again as plain SVG") from error
+        raise OutlineError(f"{name}: cannot be read as SVG ({one_line(error)}): save it again as plain SVG") from error
 
 
 def _flatten(path: "Path") -> Ring:
@@ -242,8 +249,7 @@ def _flatten(path: "Path") -> Ring:
             pieces.append(np.array([[segment.end.x, segment.end.y]]))
         else:
             pieces.append(np.asarray(segment.npoint(np.linspace(0.0, 1.0, _chords(segment, tolerance) + 1)[1:])))
-    points = np.concatenate(pieces).astype(float)
-    return points[np.r_[True, np.any(np.diff(points, axis=0) != 0.0, axis=1)]] if len(points) else points
+    return without_repeats(np.concatenate(pieces).astype(float))
 
 
 def _chords(segment: Any, tolerance: float) -> int:

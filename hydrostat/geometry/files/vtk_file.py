@@ -5,7 +5,7 @@ from array import array
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.cursor import Cells, Cursor, whole_numbers
+from hydrostat.geometry.files.cursor import Cells, Cursor, damaged, whole_numbers
 
 TETRAHEDRON, TRIANGLE = 10, 5
 """VTK's numbers of the two kinds of cells that are read."""
@@ -72,7 +72,7 @@ def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types:
         or (counts < 0).any()
         or (len(starts) and not 0 <= starts[0] <= starts[-1] <= len(corners))
     ):
-        raise Cursor(b"", name).damaged("has cells, types and corners that do not fit each other")
+        raise damaged(name, "has cells, types and corners that do not fit each other")
     chosen = []
     for kind, count in ((TETRAHEDRON, 4), (TRIANGLE, 3)):
         first = starts[:-1][(types == kind) & (counts == count)]

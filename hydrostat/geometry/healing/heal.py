@@ -169,17 +169,13 @@ def _made_anew(
             f"{_MOST_PATCHED:.0%} are: scan what is missing, or close the holes in the program it comes from"
         )
     lost = _lost_pieces(kept, off.lost, made)
-    done = (
-        *done,
-        f"made anew on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it",
-    )
+    anew = [f"made anew on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it"]
     if made.spacing > want:
-        done = (*done, f"the grid is coarser than the {1e3 * want:.3g} mm asked for, which would have too many points")
-    done = (*done, *made.done)
+        anew.append(f"the grid is coarser than the {1e3 * want:.3g} mm asked for, which would have too many points")
     return Healing(
         surface=made.surface,
         found=found,
-        done=done,
+        done=(*done, *anew, *made.done),
         removed=(*removed, *made.removed, *lost),
         volume_before=float(shells.volumes[shells.of_role(Role.BODY, Role.CAVITY)].sum()),
         volume_after=made.surface.volume,
