@@ -46,7 +46,7 @@ def read_drawing(content: bytes, *, name: str, size: float | None = None, page: 
             f"{name}: outlines are read from SVG, DXF, PNG and JPG files: save the drawing as one of these"
         )
     if not content.strip():
-        raise OutlineError(f"{name}: the file is empty: export the drawing again")
+        raise OutlineError(f"{name}: the file is empty: save it again")
     if len(content) > _MOST_BYTES[suffix]:
         raise OutlineError(
             f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {_MOST_BYTES[suffix] / 1e6:.0f} MB are read: "
