@@ -106,10 +106,9 @@ class Motor:
         slot: how far the holes in what is screwed on are drawn out to both sides along x, as the place of the holes in
             the motor is not sure [mm].
         screw: that goes into the face.
-        stall_torque: at which it stands still [N mm].
+        stall_torque: at which it stands still, at the voltage that its title or source names [N mm].
         rated_torque: that it should be loaded with at most [N mm].
         speed: without load [rpm].
-        voltage: at which the torques and the speed are [V].
         mass: [g].
         price: of one, rough [USD].
         price_source: where that is from, and when.
@@ -129,7 +128,6 @@ class Motor:
     stall_torque: float
     rated_torque: float
     speed: float
-    voltage: float
     mass: float
     price: float
     price_source: str
@@ -170,7 +168,6 @@ _N20 = Motor(
     stall_torque=196.0,
     rated_torque=49.0,
     speed=45.0,
-    voltage=6.0,
     mass=10.0,
     price=18.0,
     price_source="of its sister HPCB 75:1, 17.95 in an order list of the team ASROB-sumo, which has no date",
@@ -194,7 +191,6 @@ _XL330 = Motor(
     stall_torque=520.0,
     rated_torque=104.0,
     speed=103.0,
-    voltage=5.0,
     mass=18.0,
     price=25.0,
     price_source="estimate, no source",
@@ -216,7 +212,6 @@ _POLOLU_25D = Motor(
     stall_torque=1373.0,
     rated_torque=343.0,
     speed=35.0,
-    voltage=6.0,
     mass=100.0,
     price=47.0,
     price_source="AUD 72.95 for its sister 4822 at robotgear.com.au, no date, at 0.65 USD",
