@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.prepare import prepared, read_robot
-from hydrostat.cli.progress import progress_bar
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.options import PictureWidth, check_width
+from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import counted
 
@@ -44,7 +44,7 @@ def animate(
     format: Annotated[
         list[Format] | None, typer.Option(metavar="gif|glb|mp4", help="May be repeated; gif and glb if left out.")
     ] = None,
-    width: Annotated[int, typer.Option(metavar="PIXELS", help="Width of the pictures.")] = 640,
+    width: PictureWidth = 640,
 ) -> None:
     """Film a robot as it goes from rest to one pose after another and back.
 
@@ -54,7 +54,6 @@ def animate(
     Example: hydrostat animate examples/starfish --pose wave --out build/wave
     """
     from hydrostat.plot import film, find_ffmpeg
-    from hydrostat.plot.animation import WIDTHS
 
     require_folder(out)
     formats = list(dict.fromkeys(format or (Format.GIF, Format.GLB)))
@@ -62,8 +61,7 @@ def animate(
         find_ffmpeg()
     if seconds is not None and not 0 < seconds <= LONGEST:
         raise InputError(f"--seconds {seconds:g}: must be above 0 and at most {LONGEST:g}")
-    if not WIDTHS[0] <= width <= WIDTHS[1]:
-        raise InputError(f"--width {width}: must be {WIDTHS[0]} to {WIDTHS[1]}")
+    check_width(width)
     loaded = read_robot(robot)
     for pose in name or []:
         loaded.pose(pose)

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.contractions import check_contraction, contraction
-from hydrostat.cli.prepare import prepared, read_robot
-from hydrostat.cli.progress import progress_bar
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.options import Contract, contractions
+from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,9 +18,7 @@ if TYPE_CHECKING:
 def branches(
     robot: RobotFolder,
     out: OutFolder,
-    contract: Annotated[
-        list[str] | None, typer.Option(metavar="WINCH=LENGTH", help="Cable a winch takes in; may be repeated.")
-    ] = None,
+    contract: Contract = None,
     starts: Annotated[int, typer.Option(metavar="N", help="In how many ways the robot is brought there.")] = 16,
     seed: Annotated[int, typer.Option(help="Of the ways that are drawn at random.")] = 0,
 ) -> None:
@@ -36,9 +33,7 @@ def branches(
 
     require_folder(out)
     loaded = read_robot(robot)
-    given = dict(contraction(text) for text in contract or [])
-    for name, value in given.items():
-        check_contraction(loaded, name, value)
+    given = contractions(loaded, contract)
     if not any(given.values()):
         raise InputError('--contract: nothing is taken in; name a winch and a length, for example "left=40mm"')
     if starts < 1:

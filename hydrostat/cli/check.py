@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from hydrostat.cli.arguments import RobotFolder
-from hydrostat.cli.prepare import read_robot
+from hydrostat.cli.folders import RobotFolder
+from hydrostat.cli.waiting import read_robot
 
 if TYPE_CHECKING:
     from hydrostat.robot import Body

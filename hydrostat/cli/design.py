@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import AUTO, Limits, wanted_constraints, wanted_options, winch_count
 from hydrostat.cli.fabricate import print_kit
-from hydrostat.cli.one_interrupt import one_interrupt
-from hydrostat.cli.prepare import read_robot
-from hydrostat.cli.result_folder import result_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.design import Network
+
+STOPPING = "stopping: the best network so far is solved and written ..."
+"""Said when Ctrl-C ends a search."""
 
 
 def design(
@@ -83,7 +84,7 @@ def design(
 
     Example: hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
-    from hydrostat.cli.progress import progress_bar
+    from hydrostat.cli.waiting import progress_bar
     from hydrostat.design import design_cables
     from hydrostat.fabrication.kit import forget_files
 
@@ -105,7 +106,7 @@ def design(
     asked: dict[str, Any] = {"winches": count, "cables": cables, "method": method, "options": options}
     asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
     poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
-    with progress_bar() as progress, one_interrupt() as pass_over:
+    with progress_bar() as progress, one_interrupt(STOPPING) as pass_over:
         try:
             network = design_cables(source, poses, progress=progress, **asked)
         except KeyboardInterrupt:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hydrostat.cli.quantities import positive
+from hydrostat.cli.options import positive
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:

@@ -2,15 +2,13 @@
 
 import re
 import time
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.prepare import read_robot
-from hydrostat.cli.progress import progress_bar
-from hydrostat.cli.quantities import positive
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.options import one_of, positive
+from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -69,10 +67,10 @@ def fabricate(
 
     require_folder(out)
     options = KitOptions(
-        method=None if method is None else _one_of("--method", method, Method),
+        method=None if method is None else one_of("--method", method, Method),
         motor=motor,
-        mould=MouldOptions(kind=_one_of("--mould", mould or "printed", MouldKind), bed=_lengths("--bed", bed)),
-        paper=_one_of("--paper", paper, Paper),
+        mould=MouldOptions(kind=one_of("--mould", mould or "printed", MouldKind), bed=_lengths("--bed", bed)),
+        paper=one_of("--paper", paper, Paper),
         pattern=PatternOptions(seam_allowance=_millimetres("--seam", seam)),
         parts=PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
         step=step,
@@ -100,7 +98,7 @@ def fabricate(
 
 
 def print_kit(kit: "Kit") -> None:
-    """What is in a kit, what to mind, and whether it is true to the robot."""
+    """Print what is in a kit, what to mind, and whether it is true to the robot."""
     for problem in kit.problems:
         print(f"cannot be built well: {problem}")
     for warning in kit.warnings:
@@ -112,17 +110,6 @@ def print_kit(kit: "Kit") -> None:
     for check in kit.checks:
         if not check.passed:
             print(f"  does not hold: {check.what}: {check.measured} (allowed: {check.allowed})")
-
-
-_Word = TypeVar("_Word", bound=StrEnum)
-
-
-def _one_of(option: str, text: str, kind: type[_Word]) -> _Word:
-    """A word of those that are allowed."""
-    allowed = [item.value for item in kind]
-    if text not in allowed:
-        raise InputError(f"{option} {text}: must be {' or '.join(allowed)}")
-    return kind(text)
 
 
 def _millimetres(option: str, text: str) -> float:

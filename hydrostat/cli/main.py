@@ -2,6 +2,9 @@
 
 import os
 import sys
+from collections.abc import Callable
+from functools import wraps
+from typing import Any
 
 import typer
 
@@ -12,10 +15,12 @@ from hydrostat.cli.design import design
 from hydrostat.cli.fabricate import fabricate
 from hydrostat.cli.materials import materials
 from hydrostat.cli.new import new
+from hydrostat.cli.play import play
 from hydrostat.cli.pose import pose
 from hydrostat.cli.simulate import simulate
 from hydrostat.cli.studio import studio
 from hydrostat.cli.trajectory import trajectory
+from hydrostat.cli.waiting import heed_interrupts
 from hydrostat.errors import HydrostatError, InputError
 
 app = typer.Typer(
@@ -28,8 +33,27 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (new, check, simulate, branches, pose, trajectory, animate, design, fabricate, studio, materials):
-    app.command()(command)
+
+
+class _InterruptError(Exception):
+    """Ctrl-C, which typer would turn into an exit code of its own."""
+
+
+def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
+    """The command; Ctrl-C in it reaches `main`."""
+
+    @wraps(command)
+    def run(*arguments: Any, **options: Any) -> None:
+        try:
+            command(*arguments, **options)
+        except KeyboardInterrupt:
+            raise _InterruptError from None
+
+    return run
+
+
+for command in (new, check, simulate, branches, pose, trajectory, play, animate, design, fabricate, studio, materials):
+    app.command()(_interruptible(command))
 
 
 @app.callback(invoke_without_command=True)
@@ -43,7 +67,8 @@ def version(show: bool = typer.Option(False, "--version", help="Print the versio
 
 
 def main() -> None:
-    """Run a command. Exit codes: 0 done, 1 ran and did not succeed, 2 the input is wrong."""
+    """Run a command. Exit codes: 0 done, 1 ran and did not succeed, 2 the input is wrong, 130 stopped by Ctrl-C."""
+    heed_interrupts()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
     try:
         app()
@@ -53,7 +78,7 @@ def main() -> None:
         _stop(str(error), 1)
     except OSError as error:
         _stop(f"{error.filename or 'a file'}: {error.strerror or error}", 2)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, _InterruptError):
         _stop("stopped; what had been written is whole", 130)
 
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.prepare import patiently
+from hydrostat.cli.options import positive
+from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -94,16 +95,14 @@ class _Wish:
 
 
 def _length(key: str, text: str | None) -> float | None:
-    from hydrostat.units import LENGTH, parse_quantity
+    from hydrostat.units import LENGTH
 
     if text is None:
         return None
-    try:
-        value = parse_quantity(text, LENGTH)
-    except InputError as error:
-        raise InputError(f"--{key.replace('_', '-')}: {error}") from None
-    if not 0 < value <= LONGEST:
-        raise InputError(f"--{key.replace('_', '-')}: must be above 0 and at most {LONGEST:g} m, not {text}")
+    option = f"--{key.replace('_', '-')}"
+    value = positive(option, text, LENGTH)
+    if value > LONGEST:
+        raise InputError(f"{option}: must be above 0 and at most {LONGEST:g} m, not {text}")
     return value
 
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.prepare import read_robot
-from hydrostat.cli.quantities import positive, winch_groups
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.options import EqualWinches, MostTension, pose_limits
+from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,11 +30,8 @@ def pose(
         Path | None,
         typer.Option(metavar="FILE", help="The shape of the pose, drawn over the body's own drawing."),
     ] = None,
-    tension: Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears.")] = None,
-    equal: Annotated[
-        list[str] | None,
-        typer.Option(metavar="WINCH,WINCH", help="Winches of one contraction; may be repeated."),
-    ] = None,
+    tension: MostTension = None,
+    equal: EqualWinches = None,
     restarts: Annotated[
         int | None, typer.Option(metavar="N", help="How often to begin elsewhere where a goal is missed.")
     ] = None,
@@ -47,15 +44,11 @@ def pose(
 
     Example: hydrostat pose examples/starfish --pose wave --out build/wave
     """
-    from hydrostat.ik import InverseOptions, InverseReason, Limits, ShapeGoal, drawn_pose, solve_ik
+    from hydrostat.ik import InverseOptions, InverseReason, ShapeGoal, drawn_pose, solve_ik
     from hydrostat.simulation import Simulation
-    from hydrostat.units import FORCE
 
     require_folder(out)
-    limits = Limits(
-        tension=None if tension is None else positive("--tension", tension, FORCE),
-        equal=winch_groups("--equal", equal or []),
-    )
+    limits = pose_limits(tension, equal)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
     options = InverseOptions() if restarts is None else InverseOptions(restarts=restarts)

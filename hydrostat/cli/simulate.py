@@ -1,29 +1,28 @@
 """`hydrostat simulate`."""
 
 import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.contractions import check_contraction, contraction
-from hydrostat.cli.motion import move
-from hydrostat.cli.places import print_places
-from hydrostat.cli.prepare import prepared, read_robot
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.options import Contract, check_contraction, contractions, positive
 from hydrostat.cli.profiling import profiled
+from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
-    from hydrostat.simulation import Simulation, SolvedPose
+    from hydrostat.robot import Robot
+    from hydrostat.simulation import Motion, Profile, Simulation, SolvedPose
 
 
 def simulate(
     robot: RobotFolder,
     out: OutFolder,
-    contract: Annotated[
-        list[str] | None, typer.Option(metavar="WINCH=LENGTH", help="Cable a winch takes in; may be repeated.")
-    ] = None,
+    contract: Contract = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
     dynamic: Annotated[
         bool, typer.Option("--dynamic", help="Move there in time, from where it rests at first.")
@@ -46,14 +45,13 @@ def simulate(
     Example: hydrostat simulate examples/starfish --contract left=12mm --out build/pose
     """
     from hydrostat import __version__
+    from hydrostat.plot import draw_pose, save_png
     from hydrostat.simulation import write_pose
 
     require_folder(out)
     with profiled(profile, "reading"):
         loaded = read_robot(robot)
-    contractions = dict(contraction(text) for text in contract or [])
-    for name, value in contractions.items():
-        check_contraction(loaded, name, value)
+    given = contractions(loaded, contract)
     if dynamic and jacobian:
         raise InputError("--jacobian: a motion has none; leave out --dynamic")
     if not dynamic and (play is not None or duration is not None):
@@ -62,16 +60,16 @@ def simulate(
         simulation = prepared(loaded)
     if dynamic:
         with profiled(profile, "moving"):
-            files = move(simulation, contractions, out, duration=duration, step=step, ramp=ramp, play=play)
+            files = _move(simulation, given, out, duration=duration, step=step, ramp=ramp, play=play)
         print("Wrote " + ", ".join(str(file) for file in files))
         return
     began = time.process_time()
     with profiled(profile, "finding the pose"):
-        pose = simulation.solve(contractions, strict=False)
+        pose = simulation.solve(given, strict=False)
     seconds = time.process_time() - began
     files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
-    files += _picture(simulation, pose, out)
-    print_places(pose, loaded)
+    files.append(save_png(draw_pose(loaded, pose), out / "pose.png"))
+    _print_places(pose, loaded)
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
     if pose.result.buckled:
         print("note: the body buckled on the way; it could as well have gone to another side")
@@ -82,7 +80,68 @@ def simulate(
         raise typer.Exit(1)
 
 
-def _picture(simulation: "Simulation", pose: "SolvedPose", out: Path) -> list[Path]:
-    from hydrostat.plot import draw_pose, save_png
+def _print_places(found: "SolvedPose | Motion", robot: "Robot") -> None:
+    """Print where each marker is [mm], and how hard each cable pulls [N], with its winch."""
+    for name, place in found.markers.items():
+        print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")
+    for index, tension in enumerate(found.tensions):
+        print(f"cable {index + 1:<10} {tension:8.3f} N  {robot.cables[index].winch}")
 
-    return [save_png(draw_pose(simulation.robot, pose), out / "pose.png")]
+
+def _move(
+    simulation: "Simulation",
+    contractions: Mapping[str, float],
+    out: Path,
+    *,
+    duration: str | None,
+    step: str,
+    ramp: str,
+    play: Path | None,
+) -> list[Path]:
+    """Move a robot from where it rests at first, print how it ended, and write all files; returns their paths."""
+    from hydrostat import __version__
+    from hydrostat.plot import draw_motion, draw_pose, save_png
+    from hydrostat.simulation import write_motion, write_pose
+    from hydrostat.units import TIME
+
+    profile = _profile(simulation, contractions, ramp, play)
+    seconds = max(float(profile.times[-1]), 1.0) if duration is None else positive("--duration", duration, TIME)
+    dt = positive("--step", step, TIME)
+    start = simulation.still(simulation.solve(profile.at(0.0)))
+    began = time.process_time()
+    with progress_bar() as tell:
+        motions = _reported(simulation.play(profile, seconds, dt, start=start), seconds, tell)
+        files, table, last = write_motion(simulation.robot, motions, out)
+    spent = time.process_time() - began
+    extra = {"time": last.time, "kinetic": last.kinetic, "seconds": spent, "version": __version__}
+    files += write_pose(simulation, last.pose, out, extra=extra)
+    picture = draw_pose(simulation.robot, last.pose, note=f"after {last.time:g} s of motion")
+    files.append(save_png(picture, out / "pose.png"))
+    files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
+    _print_places(last, simulation.robot)
+    fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
+    steps = f"{counted(len(table.times) - 1, 'step')} to {last.time:g} s, {spent:.1f} s of work"
+    print(f"{steps}; no node is faster than {fastest:.2g} mm/s at the end")
+    return files
+
+
+def _profile(simulation: "Simulation", contractions: Mapping[str, float], ramp: str, play: Path | None) -> "Profile":
+    from hydrostat.simulation import Profile, read_profile
+    from hydrostat.units import TIME
+
+    if play is None:
+        return Profile.ramp(simulation.contractions(contractions), positive("--ramp", ramp, TIME))
+    if contractions:
+        raise InputError("--play and --contract: give one of them")
+    profile = read_profile(play, simulation.robot)
+    for extreme in (profile.values.max(axis=0), profile.values.min(axis=0)):
+        for winch, most in zip(simulation.robot.winches, extreme, strict=True):
+            check_contraction(simulation.robot, winch.name, float(most), option=f"--play {play}:")
+    return profile
+
+
+def _reported(motions: "Iterable[Motion]", seconds: float, tell: Callable[[str, int, int], None]) -> "Iterator[Motion]":
+    """The same motions, told to the progress bar in milliseconds."""
+    for motion in motions:
+        tell("moving [ms]", round(1e3 * motion.time), round(1e3 * seconds))
+        yield motion

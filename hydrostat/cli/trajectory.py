@@ -3,29 +3,19 @@
 import json
 import time
 from collections.abc import Callable
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.arguments import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.prepare import prepared, read_robot
-from hydrostat.cli.progress import progress_bar
-from hydrostat.cli.quantities import positive, winch_groups
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.options import EqualWinches, MostTension, PictureWidth, check_width, one_of, pose_limits, positive
+from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
     from hydrostat.ik import Keyframe, Limits, Trajectory
     from hydrostat.simulation import Simulation
-
-
-class Way(StrEnum):
-    """What goes on a simple way."""
-
-    SMOOTH = "smooth"
-    LINEAR = "linear"
-    STRAIGHT = "straight"
 
 
 REST = "rest"
@@ -40,12 +30,12 @@ def trajectory(
         typer.Option(metavar="NAME,NAME...", help="Poses in their order, rest among them; all if left out."),
     ] = None,
     path: Annotated[
-        Way,
+        str,
         typer.Option(
             metavar="smooth|linear|straight",
             help="Contractions smooth, contractions along lines, or markers along lines.",
         ),
-    ] = Way.SMOOTH,
+    ] = "smooth",
     speed: Annotated[str, typer.Option(metavar="SPEED", help="The most of each winch.")] = "50 mm/s",
     acceleration: Annotated[
         str | None,
@@ -53,12 +43,9 @@ def trajectory(
     ] = None,
     hold: Annotated[str, typer.Option(metavar="TIME", help="How long to stay in each pose.")] = "0s",
     loop: Annotated[bool, typer.Option("--loop", help="Go back to rest at the end.")] = False,
-    tension: Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears in a pose.")] = None,
-    equal: Annotated[
-        list[str] | None,
-        typer.Option(metavar="WINCH,WINCH", help="Winches of one contraction; may be repeated."),
-    ] = None,
-    width: Annotated[int, typer.Option(metavar="PIXELS", help="Width of the animation.")] = 640,
+    tension: MostTension = None,
+    equal: EqualWinches = None,
+    width: PictureWidth = 640,
 ) -> None:
     """Go through poses one after another, within limits on the speed and acceleration of the winches.
 
@@ -68,20 +55,16 @@ def trajectory(
 
     Example: hydrostat trajectory examples/starfish --poses wave,star_jump --loop --out build/dance
     """
-    from hydrostat.ik import InverseReason, Limits, solve_ik_trajectory
-    from hydrostat.plot.animation import WIDTHS
-    from hydrostat.units import ACCELERATION, FORCE, SPEED, TIME
+    from hydrostat.ik import InverseReason, PathKind, solve_ik_trajectory
+    from hydrostat.units import ACCELERATION, SPEED, TIME
 
     require_folder(out)
     fastest = positive("--speed", speed, SPEED)
     hardest = None if acceleration is None else positive("--acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
-    limits = Limits(
-        tension=None if tension is None else positive("--tension", tension, FORCE),
-        equal=winch_groups("--equal", equal or []),
-    )
-    if not WIDTHS[0] <= width <= WIDTHS[1]:
-        raise InputError(f"--width {width}: must be {WIDTHS[0]} to {WIDTHS[1]}")
+    limits = pose_limits(tension, equal)
+    kind = one_of("--path", path, PathKind)
+    check_width(width)
     loaded = read_robot(robot)
     names = _names(loaded, poses)
     simulation = prepared(loaded)
@@ -93,7 +76,7 @@ def trajectory(
             speed=fastest,
             acceleration=hardest,
             limits=limits,
-            path=path.value,
+            path=kind,
             loop=loop,
             hold=stay,
             tell=tell,

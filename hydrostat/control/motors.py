@@ -1,5 +1,6 @@
 """`Motors`: what the winches shall take in, and what they have."""
 
+import math
 from collections.abc import Sequence
 from contextlib import suppress
 
@@ -9,6 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.control.link import SILENCE, Link
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
+from hydrostat.simulation import ProfileTable
 
 FASTEST = 0.15
 """Largest speed of the cables [m/s] unless told otherwise: brisk for a small geared motor, and knobs feel direct."""
@@ -78,6 +80,33 @@ class Motors:
             low, high = 1e3 * SPEEDS[0], 1e3 * SPEEDS[1]
             raise InputError(f"motors may turn from {low:g} to {high:g} mm/s, not {1e3 * speed:g}")
         self.fastest = speed
+
+    def check(self, table: ProfileTable, *, speed: float = 1.0) -> None:
+        """Refuse a table that these motors cannot play.
+
+        Args:
+            table: of their winches.
+            speed: at so many times its own.
+
+        Raises:
+            InputError: a row is beyond the limits of its winch, or too fast; the text names the line and the column.
+        """
+        times, values = table.profile.times, table.profile.values
+        if times[0] < 0:
+            raise InputError(f"{table.place(0)}, column time_s: times count from 0 s, not from {times[0]:g}")
+        for row, winch in np.argwhere((values < self.low - NEAR) | (values > self.high + NEAR)).tolist():
+            low, high = 1e3 * self.low[winch] + 0.0, 1e3 * self.high[winch]
+            raise InputError(
+                f"{table.place(row)}, column {self.names[winch]}: {1e3 * values[row, winch]:g} mm is beyond what the "
+                f"winch can take in, {low:g} to {high:g} mm"
+            )
+        speeds = speed * np.abs(np.diff(values, axis=0)) / np.diff(times)[:, None]
+        for row, winch in np.argwhere(speeds > self.fastest * (1 + 1e-6)).tolist():
+            slower = math.floor(100 * speed * self.fastest / speeds.max()) / 100
+            raise InputError(
+                f"{table.place(row + 1)}, column {self.names[winch]}: moves at {1e3 * speeds[row, winch]:.4g} mm/s, "
+                f"the motors at {1e3 * self.fastest:g} mm/s at most; play it at {slower:g} times its speed or slower"
+            )
 
     def ask(self, contractions: Vector) -> str:
         """Command as much of these contractions [m] as the winches can; says which cannot, "" if all can.

@@ -130,6 +130,10 @@ class ProfileTable:
             raise InputError(f"{path}: cannot be read as a table ({error.strerror or error})") from None
         return cls.read(content, robot, name=str(path))
 
+    def place(self, row: int) -> str:
+        """File and line of a row, for messages."""
+        return f"{self.name}, line {self.lines[row]}"
+
 
 def profile_text(robot: Robot, profile: Profile) -> bytes:
     """The bytes of a `ProfileTable` of a profile; a gentle one loses that."""

@@ -126,7 +126,7 @@ WRONG = [
     (("--nodes", 300, "--element-size", "5 mm"), "--nodes and --element-size: give one of them"),
     (("--element-size", "1 m"), "elements of 1000 mm are too large for a body of 36 cm^3: take "),
     (("--element-size", "0.1 mm"), "elements of 0.1 mm would be about "),
-    (("--element-size", "-1 mm"), "--element-size: must be above 0 and at most 20 m, not -1 mm"),
+    (("--element-size", "-1 mm"), "--element-size -1 mm: must be above 0, such as 12 mm"),
     (("--element-size", "12"), "--element-size: "),
     (("--size", "nan mm"), "--size: "),
     (("--thickness", "12 mm"), "--thickness: is only for drawings; leave it out"),

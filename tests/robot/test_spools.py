@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from builders import strip_robot
 
-from hydrostat.cli.contractions import check_contraction
+from hydrostat.cli.options import check_contraction
 from hydrostat.errors import InputError
 from hydrostat.fabrication.patterns.marks import winch_marks
 from hydrostat.fabrication.patterns.shape import Circle

@@ -1,4 +1,4 @@
-"""`result_folder`: results appear in their folder all at once, or not at all."""
+"""Folders that commands read from and write to: `RobotFolder`, `OutFolder`, `result_folder`."""
 
 import os
 import re
@@ -6,6 +6,25 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrostat.errors import InputError
+
+RobotFolder = Annotated[Path, typer.Argument(metavar="ROBOT", help="Folder of a robot, or its robot.toml.")]
+OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the results; made if need be.")]
+
+
+def require_folder(out: Path) -> None:
+    """Before long work begins: the results can go there.
+
+    Raises:
+        InputError: something that is no folder is in the way.
+    """
+    for folder in (out, *out.parents):
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file; name a folder")
 
 
 @contextmanager

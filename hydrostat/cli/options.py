@@ -1,0 +1,133 @@
+"""What options say as text: quantities with units, words of a few, limits, contractions."""
+
+from collections.abc import Sequence
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+import typer
+
+from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.ik import Limits
+    from hydrostat.robot import Robot
+    from hydrostat.units import Dimension
+
+Contract = Annotated[
+    list[str] | None, typer.Option(metavar="WINCH=LENGTH", help="Cable a winch takes in; may be repeated.")
+]
+MostTension = Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears in a pose.")]
+EqualWinches = Annotated[
+    list[str] | None, typer.Option(metavar="WINCH,WINCH", help="Winches of one contraction; may be repeated.")
+]
+PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the pictures of the animation.")]
+
+_Word = TypeVar("_Word", bound=StrEnum)
+
+
+def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = False) -> float:
+    """Value of an option in SI.
+
+    Args:
+        option: its name, for complaints.
+        text: such as "20 N".
+        dimension: what it measures.
+        zero: 0 is allowed as well.
+
+    Raises:
+        InputError: no such quantity, or one that is not above 0.
+    """
+    from hydrostat.units import parse_quantity
+
+    try:
+        value = parse_quantity(text, dimension)
+    except InputError as error:
+        raise InputError(f"{option} {text}: {error}") from None
+    if value < 0 or (value == 0 and not zero):
+        raise InputError(f"{option} {text}: must be {'0 or more' if zero else 'above 0'}, such as {dimension.example}")
+    return value
+
+
+def one_of(option: str, text: str, kind: type[_Word]) -> _Word:
+    """The word of a few that an option names.
+
+    Raises:
+        InputError: it is none of them.
+    """
+    allowed = [item.value for item in kind]
+    if text not in allowed:
+        raise InputError(f"{option} {text}: must be {' or '.join(allowed)}")
+    return kind(text)
+
+
+def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
+    """Limits on a pose, from --tension, and from --equal with texts such as "left,right".
+
+    Raises:
+        InputError: no such force, or a group of fewer than two winches.
+    """
+    from hydrostat.ik import Limits
+    from hydrostat.units import FORCE
+
+    groups = [[name.strip() for name in text.split(",") if name.strip()] for text in equal or []]
+    for text, names in zip(equal or [], groups, strict=True):
+        if len(names) < 2:
+            raise InputError(f'--equal {text}: name two winches or more, such as "left,right"')
+    return Limits(tension=None if tension is None else positive("--tension", tension, FORCE), equal=groups)
+
+
+def check_width(width: int) -> None:
+    """Refuse pictures of an animation that are too narrow or too wide.
+
+    Raises:
+        InputError: they are.
+    """
+    from hydrostat.plot.animation import WIDTHS
+
+    if not WIDTHS[0] <= width <= WIDTHS[1]:
+        raise InputError(f"--width {width}: must be {WIDTHS[0]} to {WIDTHS[1]}")
+
+
+def contractions(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
+    """Contractions [m] by winch, from texts such as "left=12mm"; a note is printed of what a winch cannot take in.
+
+    Raises:
+        InputError: no such text, no such winch, or it would take in all of a cable.
+    """
+    given = dict(_contraction(text) for text in texts or [])
+    for name, value in given.items():
+        check_contraction(robot, name, value)
+    return given
+
+
+def _contraction(text: str) -> tuple[str, float]:
+    """Name and length [m] from "left=12mm"."""
+    from hydrostat.units import LENGTH, parse_quantity
+
+    name, equals, length = text.partition("=")
+    if not equals:
+        raise InputError(f'--contract {text}: write WINCH=LENGTH, for example "left=12mm"')
+    sign = -1.0 if length.strip().startswith("-") else 1.0
+    try:
+        return name.strip(), sign * parse_quantity(length.strip().removeprefix("-"), LENGTH)
+    except InputError as error:
+        raise InputError(f"--contract {text}: {error}") from None
+
+
+def check_contraction(robot: "Robot", name: str, value: float, *, option: str = "--contract") -> None:
+    """Print a note if a winch cannot take in so much [m].
+
+    Raises:
+        InputError: there is no such winch, or it would take in all of a cable.
+    """
+    winch = robot.winch(name)
+    if not -winch.release <= value <= winch.travel:
+        print(
+            f"note: winch {name} can take in from {0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm, "
+            f"{1e3 * value:g} mm is beyond it"
+        )
+    for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
+        if cable.winch == name and ratio * value >= cable.length:
+            step = "" if ratio == 1 else f", by a spool {ratio:.3g} times that of the winch"
+            long = f"all of a cable that is {1e3 * cable.length:.3g} mm long"
+            raise InputError(f"{option} {name}: {1e3 * value:g} mm is {long}{step}")

@@ -1,0 +1,111 @@
+"""`hydrostat play`."""
+
+import shutil
+import signal
+import sys
+import time
+from collections.abc import Callable
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.folders import RobotFolder
+from hydrostat.cli.waiting import one_interrupt, read_robot
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.units import counted
+
+if TYPE_CHECKING:
+    from hydrostat.control import Motors, Player
+
+SHOWN, LISTED = 0.1, 2.0
+"""Time from one word on the progress to the next [s]: on a terminal, and where lines are kept."""
+
+
+def play(
+    robot: RobotFolder,
+    moves: Annotated[Path, typer.Argument(metavar="MOVES.csv", help="Columns time_s, WINCH ... [mm].")],
+    loop: Annotated[int, typer.Option(metavar="N", help="How many times; 0: until it is stopped.")] = 1,
+    speed: Annotated[float, typer.Option(metavar="TIMES", help="So many times the speed of the table.")] = 1.0,
+) -> None:
+    """Play a table of contractions on the motors of a robot, in real time.
+
+    The motors are simulated: nothing turns, and every line says so. The table is what `hydrostat trajectory` and the
+    studio write. Motors stop at its end, on Ctrl-C, on SIGTERM and on any error.
+
+    Example: hydrostat play examples/starfish build/dance/trajectory.csv --loop 3
+    """
+    import numpy as np
+
+    from hydrostat import control
+    from hydrostat.simulation import ProfileTable
+
+    if loop < 0:
+        raise InputError(f"--loop {loop}: must be a number of times, or 0 to play until it is stopped")
+    player = control.Player()
+    player.rounds = loop or inf
+    try:
+        player.set_speed(speed)
+    except InputError as error:
+        raise InputError(f"--speed {speed:g}: {error}") from None
+    loaded = read_robot(robot)
+    if not loaded.winches:
+        raise InputError(f"{robot}: has no winches; add some, or let `hydrostat design` find them")
+    motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))))
+    table = ProfileTable.open(moves, loaded)
+    motors.check(table, speed=speed)
+    seconds = float(table.profile.times[-1])
+    often = counted(loop, "time") if loop else "until it is stopped"
+    _say(f"{moves} on {loaded.name}, {counted(len(motors.names), 'winch')}: {seconds:g} s, {often}, at {speed:g}x")
+    back = float(np.abs(table.profile.values[-1] - table.profile.at(0.0)).max())
+    if loop != 1 and back > 1e-6:
+        _say(f"note: it does not end where it begins; each time anew a winch has {1e3 * back:.1f} mm to go at once")
+    tell, newline = _progress(motors, player, seconds)
+    try:
+        with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
+            control.play(motors, table.profile, player, tell=tell)
+    except (KeyboardInterrupt, SystemExit) as stop:
+        newline()
+        _say(f"stopped at {player.time:.2f} s; the motors hold at {_places(motors)}")
+        raise typer.Exit(130 if isinstance(stop, KeyboardInterrupt) else int(stop.code or 0)) from None
+    except HydrostatError as error:
+        newline()
+        raise HydrostatError(f"simulated: the motors stopped at {player.time:.2f} s: {error}") from None
+    newline()
+    _say(f"played; the motors hold at {_places(motors)}")
+
+
+def _progress(motors: "Motors", player: "Player", seconds: float) -> tuple[Callable[[], None], Callable[[], None]]:
+    """What to call after each command, and what to call before another line is printed."""
+    shown, terminal = -inf, sys.stdout.isatty()
+
+    def tell() -> None:
+        nonlocal shown
+        now = time.monotonic()
+        if now - shown < (SHOWN if terminal else LISTED):
+            return
+        shown = now
+        which = "" if player.rounds == 1 else f", round {min(player.done + 1, player.rounds):g}"
+        which += f" of {player.rounds:g}" if 1 < player.rounds < inf else ""
+        text = f"simulated: {player.time:6.2f} of {seconds:g} s{which}: {_places(motors)}"
+        if terminal:
+            width = shutil.get_terminal_size().columns - 1
+            print(f"\r{text[:width]:<{width}}", end="", flush=True)
+        else:
+            print(text, flush=True)
+
+    def newline() -> None:
+        if terminal and shown > -inf:
+            print(flush=True)
+
+    return tell, newline
+
+
+def _places(motors: "Motors") -> str:
+    """What each winch has taken in."""
+    return ", ".join(f"{name} {1e3 * taken:.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True))
+
+
+def _say(text: str) -> None:
+    print(f"simulated: {text}", flush=True)

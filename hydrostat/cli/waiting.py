@@ -1,0 +1,130 @@
+"""While a person waits: what takes long, how far it is, and what Ctrl-C does."""
+
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Timer, current_thread, main_thread
+from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hydrostat.robot import Robot
+    from hydrostat.simulation import Simulation
+
+PATIENCE = 3.0
+"""Seconds after which a person is told what takes so long."""
+
+
+@contextmanager
+def patiently(words: str) -> Iterator[None]:
+    """Say what is done if it takes long."""
+    word = Timer(PATIENCE, lambda: print(words, flush=True))
+    word.daemon = True
+    word.start()
+    try:
+        yield
+    finally:
+        word.cancel()
+
+
+def read_robot(path: Path) -> "Robot":
+    """Robot from its folder or robot.toml; a body from a surface is meshed."""
+    from hydrostat.robot import load_robot
+
+    with patiently("meshing the body: a second for each 2,000 nodes or so ..."):
+        return load_robot(path)
+
+
+def prepared(robot: "Robot") -> "Simulation":
+    """The physics of a robot, after one solve; the first time on a machine this compiles the kernels."""
+    from hydrostat.simulation import Simulation
+
+    with patiently("compiling, once for this machine: about 20 s ..."):
+        simulation = Simulation(robot)
+        simulation.solve({}, strict=False)
+    return simulation
+
+
+@contextmanager
+def progress_bar() -> Iterator[Callable[[str, int, int], None]]:
+    """A function to call with the stage, how much of it is done, and how much there is."""
+    if not sys.stderr.isatty():
+        yield _lines()
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description:<22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        tasks: dict[str, int] = {}
+
+        def tell(stage: str, done: int, total: int) -> None:
+            if stage not in tasks:
+                tasks[stage] = bar.add_task(stage, total=total)
+            bar.update(tasks[stage], completed=done, total=total)  # type: ignore[arg-type]
+
+        yield tell
+
+
+def _lines() -> Callable[[str, int, int], None]:
+    seen: set[str] = set()
+
+    def tell(stage: str, done: int, total: int) -> None:
+        if stage not in seen:
+            seen.add(stage)
+            print(f"{stage} ...", file=sys.stderr, flush=True)
+        if done == total:
+            print(f"{stage}: {total} of {total}", file=sys.stderr, flush=True)
+
+    return tell
+
+
+@contextmanager
+def one_interrupt(words: str, *, signals: Sequence[int] = (signal.SIGINT,)) -> Iterator[Callable[[], None]]:
+    """Let the first Ctrl-C stop the work, and no later one spoil how it ends.
+
+    The first signal raises KeyboardInterrupt, or SystemExit for another signal than SIGINT; every later one is passed
+    over until the block ends. Then signals do again what they did before, whatever that was. A handler that was not
+    set from Python cannot be put back by it, so where there is such a one it stays, and answers.
+
+    Gives what to call where the work is over: from there on every signal is passed over, so that results are whole.
+
+    Args:
+        words: printed when it stops; none if empty.
+        signals: that stop it.
+    """
+    before = {number: signal.getsignal(number) for number in signals}
+    ours = [number for number, handler in before.items() if handler is not None]
+    if current_thread() is not main_thread():  # where no signal arrives
+        ours = []
+
+    def pass_over() -> None:
+        for number in ours:
+            signal.signal(number, signal.SIG_IGN)
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        del frame
+        pass_over()
+        if words:
+            print(words, file=sys.stderr, flush=True)
+        raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
+
+    try:
+        for number in ours:
+            signal.signal(number, stop)
+        yield pass_over
+    finally:
+        for number in ours:
+            signal.signal(number, before[number])
+
+
+def heed_interrupts() -> None:
+    """Let SIGINT raise KeyboardInterrupt also where it came ignored.
+
+    A shell without job control starts `command &` with SIGINT ignored, and Python leaves that so; whoever sends it to
+    such a job means it. A handler that stands already stays.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN and current_thread() is main_thread():
+        signal.signal(signal.SIGINT, signal.default_int_handler)

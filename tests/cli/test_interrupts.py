@@ -1,0 +1,126 @@
+"""What signals do. Oracle: real signals in processes of their own, which begin with SIGINT as usual, or ignored."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+PROGRAM = """
+import os, signal
+from hydrostat.cli.waiting import heed_interrupts, one_interrupt
+
+def interrupt(number=signal.SIGINT):
+    os.kill(os.getpid(), number)
+
+heed_interrupts() if {heed} else None
+try:
+    with one_interrupt("stopping", signals=(signal.SIGINT, signal.SIGTERM)) as pass_over:
+        try:
+            {body}
+        except (KeyboardInterrupt, SystemExit) as stop:
+            print("stopped", *stop.args)
+        pass_over()
+        interrupt()
+        interrupt(signal.SIGTERM)
+        print("written")
+    interrupt()
+    print("ignored as before")
+except KeyboardInterrupt:
+    print("raised as before")
+"""
+
+IGNORED = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
+USUAL = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+
+HANDLER = """
+#include <signal.h>
+#include <unistd.h>
+static void answer(int number) { (void)number; if (write(1, "host\\n", 5)) {} }
+__attribute__((constructor)) static void set(void) { signal(SIGINT, answer); }
+"""
+
+
+def lines(*, body: str, heed: bool, begun: Callable[[], object], **environment: str) -> tuple[list[str], str]:
+    """What the program prints, and what it says beside."""
+    found = subprocess.run(
+        [sys.executable, "-uc", PROGRAM.format(body=body, heed=heed)],
+        capture_output=True,
+        text=True,
+        check=True,
+        preexec_fn=begun,
+        env=os.environ | environment,
+    )
+    return found.stdout.splitlines(), found.stderr
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [("interrupt()", ["stopped"]), ("interrupt(signal.SIGTERM)", ["stopped 143"]), ("pass", [])],
+)
+@pytest.mark.parametrize(
+    ("begun", "heed", "after"),
+    [
+        (USUAL, False, "raised as before"),
+        (USUAL, True, "raised as before"),
+        (IGNORED, False, "ignored as before"),
+        (IGNORED, True, "raised as before"),
+    ],
+)
+def test_one_signal_stops_and_then_all_is_as_before(
+    body: str, words: list[str], begun: Callable[[], object], heed: bool, after: str
+) -> None:
+    printed, beside = lines(body=body, heed=heed, begun=begun)
+    assert printed == [*words, "written", after]
+    assert ("stopping" in beside) == bool(words)
+
+
+@pytest.mark.parametrize("heed", [False, True])
+def test_a_handler_that_was_not_set_from_python_stays(tmp_path: Path, heed: bool) -> None:
+    """Oracle: a handler in C that stands before Python begins, which Python cannot put back."""
+    (tmp_path / "host.c").write_text(HANDLER)
+    subprocess.run(["gcc", "-shared", "-fPIC", "-o", tmp_path / "host.so", tmp_path / "host.c"], check=True)
+    printed, beside = lines(body="interrupt()", heed=heed, begun=USUAL, LD_PRELOAD=str(tmp_path / "host.so"))
+    assert printed == ["host", "host", "written", "host", "ignored as before"]
+    assert beside == ""
+
+
+def test_elsewhere_than_in_the_main_thread_nothing_is_changed() -> None:
+    code = """
+from threading import Thread
+from hydrostat.cli.waiting import heed_interrupts, one_interrupt
+def work():
+    heed_interrupts()
+    with one_interrupt("stopping") as pass_over:
+        pass_over()
+    print("written")
+Thread(target=work).start()
+"""
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "written\n"
+
+
+@pytest.mark.parametrize("begun", [USUAL, IGNORED])
+def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_path: Path) -> None:
+    """Oracle: exit code 130 and one line; in the background of a script, too, where SIGINT comes ignored."""
+    code = "from hydrostat.cli.main import main; main()"
+    words = ["simulate", "examples/starfish", "--dynamic", "--duration", "1000s", "--out", str(tmp_path / "out")]
+    work = subprocess.Popen(
+        [sys.executable, "-c", code, *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=begun,
+    )
+    assert work.stderr is not None
+    assert "moving" in work.stderr.readline()
+    time.sleep(0.1)
+    work.send_signal(signal.SIGINT)
+    printed, beside = work.communicate(timeout=60)
+    assert work.returncode == 130
+    assert beside == "hydrostat: stopped; what had been written is whole\n"
+    assert "Wrote" not in printed

@@ -1,0 +1,136 @@
+"""`hydrostat play`. Oracles: exit codes, a clock that waits for nobody, real signals, and what each line says."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Run = Callable[..., tuple[int, str, str]]
+
+WAVE = "time_s,left,feet\n0,3,0\n0.3,9,4.5\n0.6,3,0\n"
+
+
+@pytest.fixture
+def wave(tmp_path: Path) -> Path:
+    path = tmp_path / "wave.csv"
+    path.write_text(WAVE)
+    return path
+
+
+def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish: Path, wave: Path) -> None:
+    began = time.monotonic()
+    code, out, err = run("play", starfish, wave, "--loop", 2, "--speed", 0.5)
+    assert time.monotonic() - began > 2.4
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert all(line.startswith("simulated: ") for line in lines)
+    assert lines[0] == f"simulated: {wave} on starfish, 3 winches: 0.6 s, 2 times, at 0.5x"
+    assert "round 1 of 2" in lines[1]
+    assert lines[-1] == "simulated: played; the motors hold at right 0.0 mm, left 3.0 mm, feet 0.0 mm"
+
+
+def test_on_a_terminal_one_line_is_updated(starfish: Path, wave: Path) -> None:
+    import pty
+
+    ours, theirs = pty.openpty()
+    words = ["play", str(starfish), str(wave)]
+    work = subprocess.Popen([sys.executable, "-c", PROGRAM, *words], stdout=theirs, stderr=theirs)
+    os.close(theirs)
+    told = b""
+    while work.poll() is None or told.count(b"\n") < 3:
+        try:
+            told += os.read(ours, 4096)
+        except OSError:  # the other end is closed
+            break
+    os.close(ours)
+    assert work.wait(60) == 0
+    words = [line.strip() for line in re.split(r"[\r\n]+", told.decode()) if line.strip()]
+    assert all(line.startswith("simulated: ") for line in words)
+    assert words[-1].startswith("simulated: played")
+    assert told.count(b"\rsimulated: ") >= 3
+
+
+PROGRAM = "from hydrostat.cli.main import main; main()"
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["interrupt", "terminate"]
+)
+@pytest.mark.parametrize("ignored", [False, True])
+def test_a_signal_stops_the_motors(starfish: Path, wave: Path, number: int, code: int, ignored: bool) -> None:
+    """Also in the background of a script, where SIGINT comes ignored."""
+    before = signal.SIG_IGN if ignored else signal.SIG_DFL
+    work = subprocess.Popen(
+        [sys.executable, "-uc", PROGRAM, "play", str(starfish), str(wave), "--loop", "0"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, before),
+    )
+    assert work.stdout is not None
+    lines = [work.stdout.readline() for _ in range(2)]
+    assert "round 1:" in lines[1]
+    time.sleep(0.3)
+    work.send_signal(number)
+    printed, beside = work.communicate(timeout=60)
+    assert (work.returncode, beside) == (code, "")
+    last = printed.splitlines()[-1]
+    assert re.fullmatch(r"simulated: stopped at \d\.\d\d s; the motors hold at right 0\.0 mm, left .*", last)
+
+
+def test_an_error_while_playing_stops_the_motors(
+    run: Run, starfish: Path, wave: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from hydrostat.control import SimulatedLink
+    from hydrostat.errors import HydrostatError
+
+    stops = []
+
+    def refuse(*arguments: object, **options: object) -> None:
+        raise HydrostatError("the line is broken")
+
+    monkeypatch.setattr(SimulatedLink, "send", refuse)
+    monkeypatch.setattr(SimulatedLink, "stop", lambda self: stops.append(self))
+    code, _, err = run("play", starfish, wave)
+    assert code == 1
+    assert err == "hydrostat: simulated: the motors stopped at 0.00 s: the line is broken\n"
+    assert stops
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "words"),
+    [
+        (None, (), "wave.csv: cannot be read as a table (No such file or directory)"),
+        ("time_s,tail\n0,1\n", (), 'wave.csv, line 1: there is no winch "tail"; winches are: right, left, feet'),
+        ("time_s,left\n0,1\n1,\n", (), 'wave.csv, line 3, column left: write a number of millimetres, not ""'),
+        ("time_s,left\n0,1\n1,99\n", (), "wave.csv, line 3, column left: 99 mm is beyond what the winch can take in"),
+        ("time_s,left\n0,0\n1,50\n", ("--speed", 4), "line 3, column left: moves at 200 mm/s, the motors at 150 mm/s"),
+        (WAVE, ("--speed", 9), "--speed 9: the speed must be from 0.1 to 4 times, not 9"),
+        (WAVE, ("--loop", -1), "--loop -1: must be a number of times, or 0"),
+    ],
+)
+def test_one_clear_line(
+    run: Run, starfish: Path, tmp_path: Path, text: str | None, options: tuple[object, ...], words: str
+) -> None:
+    path = tmp_path / "wave.csv"
+    if text is not None:
+        path.write_text(text)
+    code, out, err = run("play", starfish, path, *options)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert words in err
+
+
+def test_a_robot_without_winches_is_refused(run: Run, tmp_path: Path, wave: Path) -> None:
+    drawing = tmp_path / "box.svg"
+    drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path d="M0 0H60V40H0Z"/></svg>')
+    assert run("new", tmp_path / "box", "--from", drawing, "--size", "60 mm")[0] == 0
+    code, _, err = run("play", tmp_path / "box", wave)
+    assert code == 2
+    assert "has no winches" in err

@@ -1,0 +1,163 @@
+"""Oracles: the commands that arrive at a link, and what a motor that goes at its speed has taken in by then."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.arrays import Vector
+from hydrostat.control import SILENCE, Link, Motors, SimulatedLink
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Robot, Winch
+from hydrostat.simulation import ProfileTable
+
+WINCHES = (Winch(name="left", at=(0.0, 0.0), travel=0.06, release=0.01), Winch(name="feet", at=(0.0, 0.0), travel=0.04))
+
+
+class Noted(Link):
+    """Motors that are at once where they shall be; they note what they hear, and fail when told to."""
+
+    def __init__(self) -> None:
+        self.heard: list[tuple[list[float], float, float]] = []
+        self.stops = 0
+        self.send_error: BaseException | None = None
+        self.places: Vector | None = None
+
+    def send(self, contractions: Vector, now: float, *, speed: float) -> None:
+        if self.send_error is not None:
+            raise self.send_error
+        self.heard.append((contractions.tolist(), now, speed))
+
+    def read(self, now: float) -> Vector:
+        return np.array(self.heard[-1][0]) if self.places is None else self.places
+
+    def stop(self) -> None:
+        self.stops += 1
+
+    def close(self) -> None:
+        self.stop()
+
+
+def test_commands_keep_to_the_limits_and_the_speed() -> None:
+    link = Noted()
+    motors = Motors(WINCHES, link, fastest=0.05)
+    assert motors.ask(np.array([0.09, -0.01])) == "left is at its limit of 60.0 mm and was asked for 90.0 mm"
+    assert motors.moving
+    assert motors.drive(3.0)
+    motors.turn("left", -1.0)
+    motors.set_fastest(0.02)
+    motors.drive(3.1)
+    assert link.heard == [([0.06, 0.0], 3.0, 0.05), ([-0.01, 0.0], 3.1, 0.02)]
+    assert not motors.moving
+    assert motors.ask(np.array([0.06, 0.04])) == ""
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.9e-3, 1.1, float("nan")])
+def test_speeds_out_of_range_are_refused(speed: float) -> None:
+    with pytest.raises(InputError, match="from 1 to 1000 mm/s"):
+        Motors(WINCHES, Noted()).set_fastest(speed)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_what_is_no_number_changes_no_command(value: float) -> None:
+    motors = Motors(WINCHES, Noted(), places=np.array([0.02, 0.0]))
+    with pytest.raises(InputError, match="feet: the contraction must be a finite number"):
+        motors.ask(np.array([0.01, value]))
+    with pytest.raises(InputError, match="left: the contraction"):
+        motors.turn("left", value)
+    assert motors.command.tolist() == [0.02, 0.0]
+
+
+def test_in_silence_they_hold_and_must_be_asked_anew() -> None:
+    link = SimulatedLink(np.zeros(2))
+    motors = Motors(WINCHES, link, fastest=0.1)
+    motors.ask(np.array([0.06, 0.0]))
+    motors.drive(10.0)
+    motors.drive(10.1)
+    with pytest.raises(HydrostatError, match=r"told nothing for 0\.6 s, longer than 0\.5 s, and hold"):
+        motors.drive(10.7)
+    assert motors.command.tolist() == pytest.approx([0.01, 0.0])
+    motors.drive(11.5)  # nothing is asked: the silence is over
+    assert motors.places == pytest.approx([0.01, 0.0])
+    motors.ask(np.array([0.02, 0.0]))
+    motors.drive(11.6)
+    motors.drive(11.65)
+    assert motors.places == pytest.approx([0.015, 0.0])
+
+
+def test_just_before_the_silence_they_go_on() -> None:
+    motors = Motors(WINCHES, Noted())
+    motors.drive(0.0)
+    motors.drive(SILENCE)
+    motors.hold()
+    motors.drive(99.0)
+
+
+def test_with_patience_gaps_are_no_silence() -> None:
+    motors = Motors(WINCHES, Noted(), patience=inf)
+    motors.drive(0.0)
+    motors.drive(99.0)
+
+
+@pytest.mark.parametrize("error", [HydrostatError("unplugged"), ZeroDivisionError(), KeyboardInterrupt()])
+def test_on_any_error_they_hold(error: BaseException) -> None:
+    link = Noted()
+    motors = Motors(WINCHES, link, places=np.array([0.01, 0.0]))
+    motors.ask(np.array([0.05, 0.0]))
+    link.send_error = error
+    with pytest.raises(type(error)):
+        motors.drive(0.0)
+    assert link.stops == 1
+    assert motors.command.tolist() == motors.places.tolist() == [0.01, 0.0]
+
+
+@pytest.mark.parametrize("places", [[0.0], [0.0, float("nan")]])
+def test_motors_that_do_not_tell_where_they_are_hold(places: list[float]) -> None:
+    link = Noted()
+    link.places = np.array(places)
+    motors = Motors(WINCHES, link)
+    with pytest.raises(HydrostatError, match="do not tell where each of them is"):
+        motors.drive(0.0)
+    assert link.stops == 1
+    assert motors.places.tolist() == [0.0, 0.0]
+
+
+@pytest.fixture(scope="module")
+def strip() -> Robot:
+    robot = strip_robot(columns=4, rows=2)
+    up, down = robot.winches
+    return replace(robot, winches=(replace(up, release=0.01), replace(down, travel=0.04)))
+
+
+@pytest.mark.parametrize(
+    ("rows", "speed", "words"),
+    [
+        ("0,0\n1,60", 1.0, ""),
+        ("0,0\n1,-10", 1.0, ""),
+        (
+            "0,0\n\n1,60.1",
+            1.0,
+            "line 4, column up: 60.1 mm is beyond what the winch can take in, -10 to 60 mm",
+        ),
+        ("0,-10.1\n1,0", 1.0, "moves.csv, line 2, column up: -10.1 mm is beyond"),
+        ("0,0\n1,10\n1.1,40", 0.5, ""),
+        (
+            "0,0\n1,10\n1.1,40",
+            0.6,
+            "moves at 180 mm/s, the motors at 150 mm/s at most; play it at 0.5 times",
+        ),
+        ("0,0\n1,30\n1.1,0", 1.0, "line 4, column up: moves at 300 mm/s"),
+        ("-1,0\n1,10", 1.0, "moves.csv, line 2, column time_s: times count from 0 s, not from -1"),
+    ],
+)
+def test_tables_are_checked_row_by_row(strip: Robot, rows: str, speed: float, words: str) -> None:
+    table = ProfileTable.read(f"time_s,up\n{rows}\n".encode(), strip, name="moves.csv")
+    motors = Motors(strip.winches, Noted())
+    if words:
+        with pytest.raises(InputError) as caught:
+            motors.check(table, speed=speed)
+        assert words in str(caught.value)
+    else:
+        motors.check(table, speed=speed)
