@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Simulation
 
 LONGEST = 60.0
-"""Of a film [s]."""
+"""Longest film [s]."""
 
 EACH_WAY, USUAL, LEAST_WAY = 2.0, 12.0, 0.5
 """Time from one pose to the next, most of a whole film, and least of a way in it [s], unless told otherwise."""
 
 
 class Format(StrEnum):
-    """What a film can be written as."""
+    """Kind of file that a film is written to."""
 
     GIF = "gif"
     GLB = "glb"
@@ -84,7 +84,7 @@ def animate(
 
 
 def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int, int], None]) -> "list[Stop]":
-    """What the winches reach of each pose; without poses one winch after the other."""
+    """Find what the winches reach of each pose; without poses one winch after the other."""
     from hydrostat.ik import solve_ik
     from hydrostat.plot import pose_stops, winch_stops
 

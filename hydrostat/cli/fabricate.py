@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import one_of, positive
+from hydrostat.cli.options import positive
 from hydrostat.cli.waiting import progress_bar, read_robot
+from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -67,10 +68,10 @@ def fabricate(
 
     require_folder(out)
     options = KitOptions(
-        method=None if method is None else one_of("--method", method, Method),
+        method=None if method is None else member(Method, method, what="--method"),
         motor=motor,
-        mould=MouldOptions(kind=one_of("--mould", mould or "printed", MouldKind), bed=_lengths("--bed", bed)),
-        paper=one_of("--paper", paper, Paper),
+        mould=MouldOptions(kind=member(MouldKind, mould or "printed", what="--mould"), bed=_lengths("--bed", bed)),
+        paper=member(Paper, paper, what="--paper"),
         pattern=PatternOptions(seam_allowance=_millimetres("--seam", seam)),
         parts=PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
         step=step,

@@ -48,7 +48,7 @@ def young_text(material: "Material") -> str:
 
 
 def range_text(material: "Material") -> str:
-    """How far it may be squeezed and stretched, in percent of its length."""
+    """Range in which it may be squeezed and stretched, in percent of its length, such as "-30 to +50 %"."""
     squeeze = "" if material.largest_squeeze is None else f"{-100 * material.largest_squeeze:.0f}"
     stretch = "" if material.largest_stretch is None else f"{100 * (material.largest_stretch - 1):+.0f}"
     return f"{squeeze or '?'} to {stretch or '?'} %"

@@ -77,7 +77,7 @@ def new(
 
 @dataclass(frozen=True)
 class _Wish:
-    """What the options ask for, lengths in metres; None where nothing is asked."""
+    """Wishes of the options, lengths in metres; None where nothing is asked."""
 
     robot_name: str
     size: float | None

@@ -1,8 +1,7 @@
-"""What options say as text: quantities with units, words of a few, limits, contractions."""
+"""What options say as text: quantities with units, limits, contractions."""
 
 from collections.abc import Sequence
-from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,8 +20,6 @@ EqualWinches = Annotated[
     list[str] | None, typer.Option(metavar="WINCH,WINCH", help="Winches of one contraction; may be repeated.")
 ]
 PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the pictures of the animation.")]
-
-_Word = TypeVar("_Word", bound=StrEnum)
 
 
 def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = False) -> float:
@@ -46,18 +43,6 @@ def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = Fal
     if value < 0 or (value == 0 and not zero):
         raise InputError(f"{option} {text}: must be {'0 or more' if zero else 'above 0'}, such as {dimension.example}")
     return value
-
-
-def one_of(option: str, text: str, kind: type[_Word]) -> _Word:
-    """The word of a few that an option names.
-
-    Raises:
-        InputError: it is none of them.
-    """
-    allowed = [item.value for item in kind]
-    if text not in allowed:
-        raise InputError(f"{option} {text}: must be {' or '.join(allowed)}")
-    return kind(text)
 
 
 def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":

@@ -77,7 +77,7 @@ def play(
 
 
 def _progress(motors: "Motors", player: "Player", seconds: float) -> tuple[Callable[[], None], Callable[[], None]]:
-    """What to call after each command, and what to call before another line is printed."""
+    """Give what to call after each command, and what to call before another line is printed."""
     shown, terminal = -inf, sys.stdout.isatty()
 
     def tell() -> None:
@@ -103,7 +103,7 @@ def _progress(motors: "Motors", player: "Player", seconds: float) -> tuple[Calla
 
 
 def _places(motors: "Motors") -> str:
-    """What each winch has taken in."""
+    """Contractions of the winches, in words."""
     return ", ".join(f"{name} {1e3 * taken:.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True))
 
 

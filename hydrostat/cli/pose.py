@@ -125,7 +125,7 @@ def _write(
 
 
 def _tell(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -> None:
-    """What was reached, and what keeps it from more."""
+    """Print what was reached, and what keeps it from more."""
     print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.reason} ({1e3 * seconds:.0f} ms)")
     text = ", ".join(f"{winch} {1e3 * value:.1f} mm" for winch, value in _taken(loaded, reached).items())
     print(f"  contractions: {text}")

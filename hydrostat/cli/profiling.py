@@ -1,4 +1,4 @@
-"""Where time went, for `--profile`."""
+"""Time of each part of the work, for `--profile`."""
 
 import cProfile
 import pstats
@@ -41,7 +41,7 @@ PARTS = {
     "read": "robot.toml",
     "schema": "robot.toml",
 }
-"""What the files of hydrostat are about; the time of anything else counts to the parts that called for it."""
+"""Parts of the work by the files of hydrostat; the time of anything else counts to the parts that called for it."""
 
 Place = tuple[str, int, str]
 """File, line and name of a function."""

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import EqualWinches, MostTension, PictureWidth, check_width, one_of, pose_limits, positive
+from hydrostat.cli.options import EqualWinches, MostTension, PictureWidth, check_width, pose_limits, positive
 from hydrostat.cli.waiting import prepared, progress_bar, read_robot
+from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def trajectory(
     hardest = None if acceleration is None else positive("--acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
     limits = pose_limits(tension, equal)
-    kind = one_of("--path", path, PathKind)
+    kind = member(PathKind, path, what="--path")
     check_width(width)
     loaded = read_robot(robot)
     names = _names(loaded, poses)
@@ -140,7 +141,7 @@ def _write(
 
 
 def _facts(simulation: "Simulation", made: "Trajectory", limits: "Limits", seconds: float) -> dict[str, Any]:
-    """What trajectory.json holds, in SI units: markers and tensions at the samples of trajectory.csv."""
+    """Facts of trajectory.json, in SI units: markers and tensions at the samples of trajectory.csv."""
     from hydrostat import __version__
     from hydrostat.robot import robot_hash
 

@@ -9,7 +9,9 @@ SILENCE = 0.5
 
 
 class Link(ABC):
-    """What lies between commands and motors. A new kind of motor is one class, and its caller passes an instance.
+    """Contract of what lies between commands and motors.
+
+    A new kind of motor is one class; whoever drives passes an instance of it.
 
     Contractions are what each winch takes in [m], beyond its length at rest, in the order of the robot's winches;
     speeds are those of the cables [m/s]; times are of one clock that only runs forward, such as `time.monotonic` [s].
@@ -27,7 +29,7 @@ class Link(ABC):
 
     @abstractmethod
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
-        """Go there; it returns at once.
+        """Let the motors go there; return at once.
 
         Args:
             contractions: of each winch [m].
@@ -48,8 +50,8 @@ class Link(ABC):
 
     @abstractmethod
     def stop(self) -> None:
-        """Stay where it is. It may be called at any time and never raises."""
+        """Let the motors stay where they are. It may be called at any time and never raises."""
 
     @abstractmethod
     def close(self) -> None:
-        """Stop, and let the motors go for good. It may be called twice and never raises."""
+        """Stop the motors, and let them go for good. It may be called twice and never raises."""

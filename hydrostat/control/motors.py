@@ -67,7 +67,7 @@ class Motors:
 
     @property
     def moving(self) -> bool:
-        """Whether they are not yet where they shall be."""
+        """Tell whether they are not yet where they shall be."""
         return bool(np.abs(self.places - self.command).max(initial=0.0) > NEAR)
 
     def set_fastest(self, speed: float) -> None:
@@ -109,7 +109,7 @@ class Motors:
             )
 
     def ask(self, contractions: Vector) -> str:
-        """Command as much of these contractions [m] as the winches can; says which cannot, "" if all can.
+        """Command as much of these contractions [m] as the winches can; give in words which cannot, "" if all can.
 
         Raises:
             InputError: one is no finite number; the command stays.
@@ -133,7 +133,7 @@ class Motors:
         self.command = self._within(command)
 
     def drive(self, now: float) -> bool:
-        """Send the command and read where the motors are; whether any has moved. On any error they hold.
+        """Send the command, read where the motors are, and tell whether any has moved. On any error they hold.
 
         Args:
             now: time of a clock that only runs forward, such as `time.monotonic` [s].

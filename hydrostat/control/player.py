@@ -22,7 +22,7 @@ LATE = 2.0
 
 
 class Player:
-    """The playhead follows a clock; whoever looks seldom misses what was between, so nothing is ever late.
+    """Playhead that follows a clock; whoever looks seldom misses what was between, so nothing is ever late.
 
     Attributes:
         time: of the playhead [s].
@@ -42,7 +42,7 @@ class Player:
 
     @property
     def loop(self) -> bool:
-        """Whether it begins anew at the end until it is stopped."""
+        """Tell whether it begins anew at the end until it is stopped."""
         return self.rounds == inf
 
     def play(self, seconds: float) -> None:

@@ -7,7 +7,7 @@ from hydrostat.control.link import SILENCE, Link
 
 
 class SimulatedLink(Link):
-    """Each motor goes straight to its newest command; its watchdog is like that of a real one."""
+    """Motors that go straight to their newest command, at its speed; their watchdog is like that of real ones."""
 
     def __init__(self, contractions: Vector) -> None:
         """Motors that have taken in so much [m] and stand still."""
@@ -21,7 +21,7 @@ class SimulatedLink(Link):
         self._goal, self._heard, self._speed = contractions.copy(), now, speed
 
     def read(self, now: float) -> Vector:
-        """Where they are by now [m]."""
+        """Contractions by now [m]."""
         self._move(now)
         return self._places.copy()
 

@@ -14,7 +14,7 @@ from hydrostat.simulation import Profile
 
 @dataclass(frozen=True, kw_only=True)
 class Key:
-    """What winches take in at one time.
+    """Contractions of winches at one time.
 
     Attributes:
         time: since the start [s].
@@ -57,7 +57,7 @@ class Timeline:
 
     @property
     def seconds(self) -> float:
-        """How long it is [s]."""
+        """Length in time [s]."""
         return max(self.length, self.keys[-1].time if self.keys else 0.0)
 
     def profile(self, winches: Sequence[str]) -> Profile:

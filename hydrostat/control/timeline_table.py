@@ -31,7 +31,7 @@ def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
 
 
 def read_timeline(robot: Robot, name: str, content: bytes) -> Timeline:
-    """A timeline from such a table, its times counted from its first row.
+    """Read a timeline from such a table, its times counted from its first row.
 
     Args:
         robot: whose winches it names.

@@ -19,7 +19,7 @@ from hydrostat.units import quote
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Profile:
-    """What each winch takes in at given times; in between along a line, or gently: at rest at each given time.
+    """Contractions of the winches at given times; in between along a line, or gently: at rest at each given time.
 
     Before the first time and after the last the contractions stand still.
 

@@ -25,9 +25,9 @@ def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
 
 
 BAD = {
-    ("--method", "clay"): "--method clay: must be plush or foam",
-    ("--mould", "sand"): "--mould sand: must be printed or silicone",
-    ("--paper", "a5"): "--paper a5: must be a4 or letter",
+    ("--method", "clay"): '--method must be one of plush, foam, not "clay"',
+    ("--mould", "sand"): '--mould must be one of printed, silicone, not "sand"',
+    ("--paper", "a5"): '--paper must be one of a4, letter, not "a5"',
     ("--bed", "220 mm"): '--bed 220 mm: must be three lengths and their unit, such as "220 x 220 x 250 mm"',
     ("--bed", "0x220x250mm"): "--bed 0 mm: must be above 0, such as 12 mm",
     ("--seam", "0 mm"): "--seam 0 mm: must be above 0, such as 12 mm",

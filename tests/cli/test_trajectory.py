@@ -64,6 +64,7 @@ def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> 
         (("--speed", "0 mm/s"), "--speed 0 mm/s: must be above 0"),
         (("--acceleration", "5 mm"), "--acceleration 5 mm: "),
         (("--hold", "-1s"), "--hold -1s: must be 0 or more"),
+        (("--path", "round"), '--path must be one of smooth, linear, straight, not "round"'),
         (("--poses", "wave,dance"), "dance"),
         (("--poses", ","), "--poses: names none"),
         (("--equal", "left"), "--equal left: name two winches"),

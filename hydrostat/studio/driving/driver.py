@@ -65,13 +65,13 @@ class Driver(Stage):
         return self._machine.strongest
 
     def commands(self) -> dict[str, float]:
-        """What each winch shall take in [m], by name."""
+        """Contractions that the winches are told [m], by name."""
         with self._lock:
             self._machine.meet()
             return dict(zip(self.motors.names, self.motors.command.tolist(), strict=True))
 
     def places(self) -> dict[str, float]:
-        """What each winch has taken in [m], by name."""
+        """Contractions that the winches have [m], by name."""
         with self._lock:
             self._machine.meet()
             return dict(zip(self.motors.names, self.motors.places.tolist(), strict=True))
@@ -191,7 +191,7 @@ class Driver(Stage):
         self._tell()
 
     def set_loop(self, loop: bool) -> None:
-        """Whether playing begins anew at the end."""
+        """Let playing begin anew at the end, or stop there."""
         self.player.rounds = inf if loop else 1
         self._tell()
 

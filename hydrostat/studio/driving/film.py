@@ -22,11 +22,11 @@ LONGEST_FILM = 60.0
 """No film is longer [s]."""
 
 WIDTH = 640
-"""Of its pictures [pixels]."""
+"""Width of its pictures [pixels]."""
 
 
 class FilmKind(StrEnum):
-    """What a film can be written as."""
+    """Kind of file that a film is written to."""
 
     GIF = "gif"
     MP4 = "mp4"
@@ -38,7 +38,7 @@ STEPS = {FilmKind.GIF: 0.05, FilmKind.MP4: 0.04, FilmKind.GLB: 0.05}
 
 
 def check_film(timeline: Timeline, kind: FilmKind) -> None:
-    """Before long work begins: it can be filmed.
+    """Refuse, before long work begins, what cannot be filmed.
 
     Raises:
         InputError: there are no keyframes, it is too long, or an MP4 is asked for and there is no ffmpeg.
@@ -52,7 +52,7 @@ def check_film(timeline: Timeline, kind: FilmKind) -> None:
 
 
 def film_kinds() -> list[FilmKind]:
-    """What can be written on this machine; an MP4 only where ffmpeg is."""
+    """Kinds that can be written on this machine; an MP4 only where ffmpeg is."""
     try:
         find_ffmpeg()
     except InputError:
@@ -137,7 +137,7 @@ class Recorder:
 
     @property
     def state(self) -> JobState | None:
-        """How far the film is that was asked for last; None if other work has begun since."""
+        """Progress of the film that was asked for last; None if other work has begun since."""
         state = self._jobs.state
         return state if state is not None and state.title == self._title else None
 

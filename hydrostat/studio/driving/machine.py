@@ -159,7 +159,7 @@ class Machine:
         return new or playing != self.player.playing or time != self.player.time
 
     def due(self, now: float) -> bool:
-        """Whether it is time for the next `run`."""
+        """Tell whether it is time for the next `run`."""
         return not 0 <= now - self._ran < TICK
 
     def fail(self, error: Exception) -> bool:
@@ -173,7 +173,7 @@ class Machine:
 
     @property
     def busy(self) -> bool:
-        """Whether there is more to do."""
+        """Tell whether there is more to do."""
         return self.player.playing or self.motors.moving
 
     def _motors_of(self, robot: Robot, before: Motors) -> Motors:
@@ -235,7 +235,7 @@ class Machine:
 
 
 def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
-    """What cables bear that they should not."""
+    """Sentences on cables that bear what they should not."""
     return tuple(
         f"a cable of {robot.cables[index].winch} pulls {tensions[index]:.1f} N, more than {most:g} N"
         for index in np.flatnonzero(tensions > most)[:3]
@@ -243,6 +243,6 @@ def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
 
 
 def upright(robot: Robot, pose: SolvedPose) -> bool:
-    """Whether no element is inverted."""
+    """Tell whether no element is inverted."""
     corners = pose.nodes[robot.body.mesh.elements]
     return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())
