@@ -12,7 +12,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount, Robot
-from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, Table, Torque
+from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
 from hydrostat.robot.tables_file import TablesFile, read_text
 
 Count = Annotated[int, Strict()]
@@ -27,7 +27,7 @@ class Axis(StrEnum):
     Z = "z"
 
 
-class ZoneTable(Table):
+class ZoneTable(TomlTable):
     """[[winch_zone]], [[keep_out]], [[still]]."""
 
     at: Coordinates | None = None
@@ -36,7 +36,7 @@ class ZoneTable(Table):
     outline: Annotated[list[Coordinates], Field(min_length=3, max_length=1000)] | None = None
 
 
-class ConstraintsTable(Table):
+class ConstraintsTable(TomlTable):
     """The whole file: the fields of `Constraints`, zones as tables of one zone each."""
 
     winch_zone: list[ZoneTable] = Field(default_factory=list)
@@ -95,7 +95,7 @@ class _ConstraintsReader(TablesFile):
         super().__init__(file, text)
         self.robot, self.unit = robot, robot.length_unit
 
-    def form(self) -> type[Table]:
+    def form(self) -> type[TomlTable]:
         return ConstraintsTable
 
     def constraints(self) -> Constraints:

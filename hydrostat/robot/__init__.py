@@ -2,16 +2,14 @@
 
 from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.checks import Point
 from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.gravity import STANDARD_GRAVITY
-from hydrostat.robot.marker import Marker
-from hydrostat.robot.material import Material
+from hydrostat.robot.marker import Marker, Pose
+from hydrostat.robot.material import Material, Relaxation
 from hydrostat.robot.materials import MATERIALS, find_material
 from hydrostat.robot.pin import Pin
-from hydrostat.robot.point import Point
-from hydrostat.robot.pose import Pose
 from hydrostat.robot.read import load_robot
-from hydrostat.robot.relaxation import Relaxation
 from hydrostat.robot.risks import find_risks
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.sketch import sketch_robot

@@ -7,9 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import check_not_negative, check_point, check_positive
-from hydrostat.robot.name import LONGEST_NAME
-from hydrostat.robot.point import Point
+from hydrostat.robot.checks import LONGEST_NAME, Point, check_not_negative, check_point, check_positive
 
 LARGEST_FRICTION = 2.0
 """No coefficient of friction is larger: one half turn would then hold 500 times the tension."""

@@ -1,10 +1,10 @@
-"""`Marker`: a tracked point, such as a fingertip."""
+"""`Marker`: a tracked point, such as a fingertip; `Pose`: where markers should go."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import check_point
-from hydrostat.robot.point import Point
+from hydrostat.robot.checks import Point, check_point
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,3 +23,24 @@ class Marker:
         if not self.name:
             raise InputError("name must not be empty")
         check_point("at", self.at)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pose:
+    """Targets for some markers.
+
+    Attributes:
+        name: unique in the robot.
+        targets: place for each named marker [m].
+    """
+
+    name: str
+    targets: Mapping[str, Point]
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            raise InputError("name must not be empty")
+        if not self.targets:
+            raise InputError("targets must name at least one marker")
+        for name, target in self.targets.items():
+            check_point(f"targets.{name}", target)

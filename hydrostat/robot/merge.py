@@ -1,7 +1,7 @@
 """`merged_text`: a robot put into the text of a robot.toml that was there, so that its comments and its form stay."""
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import MISSING, dataclass, fields, replace
 from decimal import Decimal
@@ -12,13 +12,11 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.marker import Marker
-from hydrostat.robot.match import matched
+from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.pin import Pin
-from hydrostat.robot.pose import Pose
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
-from hydrostat.robot.toml_blocks import Block, comments, split_blocks
+from hydrostat.robot.toml_blocks import TomlBlock, comments, split_blocks
 from hydrostat.robot.winch import Winch
 from hydrostat.robot.write import robot_text
 
@@ -73,7 +71,7 @@ class _Check(RobotReader):
 class _Side:
     """A text with what it says: entries of each kind as they stand in it and as they mean."""
 
-    blocks: list[Block]
+    blocks: list[TomlBlock]
     tail: str
     data: dict[str, Any]
     means: dict[str, list[dict[str, Any]]]
@@ -118,7 +116,7 @@ def _merged(text: str, fresh: str) -> str | None:
     counts = {kind: len(old.means[kind]) for kind in _ORDER}
     if any(counts[kind] != len(old.blocks_of(kind)) for kind in _ORDER) or not all(b.whole for b in old.blocks):
         return None
-    blocks: list[tuple[Block, int] | None] = [None] * len(old.blocks)
+    blocks: list[tuple[TomlBlock, int] | None] = [None] * len(old.blocks)
     added: list[tuple[str, int]] = []
     for kind in _ORDER:
         places, wanted = old.blocks_of(kind), new.blocks_of(kind)
@@ -131,16 +129,16 @@ def _merged(text: str, fresh: str) -> str | None:
         added += [(kind, number) for number in range(len(wanted)) if number not in pairs]
     laid = _kept(old.blocks, blocks)
     for kind, number in added:
-        block = Block(name=kind, free="\n", text=new.blocks[new.blocks_of(kind)[number]].text)
+        block = TomlBlock(name=kind, free="\n", text=new.blocks[new.blocks_of(kind)[number]].text)
         laid.insert(_place(laid, kind, number), (block, number))
     tail = "".join(_remarks(block.free) for block, kept in zip(old.blocks, blocks, strict=True) if kept is None)
     whole = "".join(block.free + block.lead + block.text for block, _ in laid)
     return whole + tail + old.tail
 
 
-def _kept(before: Sequence[Block], blocks: Sequence[tuple[Block, int] | None]) -> list[tuple[Block, int]]:
+def _kept(before: Sequence[TomlBlock], blocks: Sequence[tuple[TomlBlock, int] | None]) -> list[tuple[TomlBlock, int]]:
     """The blocks that stay; what is said above the first of a kind speaks of them all and stays with the next."""
-    laid: list[tuple[Block, int]] = []
+    laid: list[tuple[TomlBlock, int]] = []
     seen: set[str] = set()
     inherited: dict[str, str] = {}
     for old, kept in zip(before, blocks, strict=True):
@@ -161,7 +159,7 @@ def _remarks(free: str) -> str:
     return free if "#" in free else ""
 
 
-def _place(laid: Sequence[tuple[Block, int]], kind: str, number: int) -> int:
+def _place(laid: Sequence[tuple[TomlBlock, int]], kind: str, number: int) -> int:
     """Where in the file a new table goes: after the one before it, else before the one after it, else in its order."""
     before = [place for place, (block, other) in enumerate(laid) if block.name == kind and other < number]
     if before:
@@ -173,7 +171,7 @@ def _place(laid: Sequence[tuple[Block, int]], kind: str, number: int) -> int:
     return max(place for place, (block, _) in enumerate(laid) if block.name in earlier) + 1
 
 
-def _updated(block: Block, old: _Side, new: _Side, kind: str, before: int, number: int) -> str:
+def _updated(block: TomlBlock, old: _Side, new: _Side, kind: str, before: int, number: int) -> str:
     """The text of a table with what is new in it."""
     was, now = old.means[kind][before], new.means[kind][number]
     changed = [key for key in dict.fromkeys([*was, *now]) if was.get(key) != now.get(key)]
@@ -237,3 +235,61 @@ def _update_points(points: Any, fresh: Any, was: Sequence[Any], now: Sequence[An
         points.pop(start + new)
     for place in range(start + old, start + new):
         points.insert(place, deepcopy(fresh[place]))
+
+
+def matched(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> dict[int, int]:
+    """Number of the old entry of each new one that has one: by name, else the same, else the most alike.
+
+    Args:
+        old: what the keys of each entry meant.
+        new: what they mean now.
+    """
+    pairs: dict[int, int] = {}
+    for likeness in (_same_name, _same, _alike):
+        ranked = sorted(_ranked(old, new, pairs, likeness))
+        for _, _, after, before in ranked:
+            if after not in pairs and before not in pairs.values():
+                pairs[after] = before
+    return pairs
+
+
+def _ranked(
+    old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]], pairs: Mapping[int, int], likeness: Any
+) -> Iterator[tuple[float, int, int, int]]:
+    """Pairs that may belong together, the most likely and then the nearest in order first."""
+    taken = set(pairs.values())
+    for after, entry in enumerate(new):
+        for before, other in enumerate(old):
+            if after not in pairs and before not in taken:
+                share = likeness(other, entry)
+                if share > 0:
+                    yield -share, abs(after - before), after, before
+
+
+def _same_name(old: Mapping[str, Any], new: Mapping[str, Any]) -> float:
+    return float(bool(new.get("name")) and old["name"] == new["name"])
+
+
+def _same(old: Mapping[str, Any], new: Mapping[str, Any]) -> float:
+    return float(old == new)
+
+
+def _alike(old: Mapping[str, Any], new: Mapping[str, Any]) -> float:
+    """Share of what two entries have in common; places weigh most, as many entries have the same numbers."""
+    both = [key for key in new if new[key] is not None and old.get(key) is not None]
+    places = [key for key in both if key in ("at", "box", "points", "targets")]
+    if not places:
+        return 0.0 if ("at" in new or "box" in new) else 1.0
+    common = [_overlap(old[key], new[key]) for key in places]
+    others = [key for key in new if key not in places]
+    equal = sum(old.get(key) == new[key] for key in others) / max(len(others), 1)
+    return sum(common) / len(common) + 0.1 * equal
+
+
+def _overlap(old: Any, new: Any) -> float:
+    """Share of the numbers or points of two values that are the same."""
+    if isinstance(new, Mapping):
+        return sum(old.get(key) == value for key, value in new.items()) / max(len(old), len(new), 1)
+    if old == new:
+        return 1.0
+    return sum(entry in old for entry in new) / max(len(old), len(new), 1)

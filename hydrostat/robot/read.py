@@ -12,18 +12,16 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.gravity import gravity_along
-from hydrostat.robot.marker import Marker
-from hydrostat.robot.material import Material
+from hydrostat.robot.marker import Marker, Pose
+from hydrostat.robot.material import Material, Relaxation
 from hydrostat.robot.materials import find_material
 from hydrostat.robot.pin import Pin
-from hydrostat.robot.pose import Pose
-from hydrostat.robot.relaxation import Relaxation
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.tables_file import TablesFile, read_bytes, read_text
 from hydrostat.robot.winch import Winch
 
 if TYPE_CHECKING:
-    from hydrostat.robot.schema import Table
+    from hydrostat.robot.schema import TomlTable
 
 FILE = "robot.toml"
 LARGEST_FILE = 200_000_000
@@ -54,7 +52,7 @@ class RobotReader(TablesFile):
         super().__init__(file, text)
         self.unit = self.table.length_unit
 
-    def form(self) -> "type[Table]":
+    def form(self) -> "type[TomlTable]":
         """The tables of robot.toml."""
         from hydrostat.robot.schema import RobotTable
 

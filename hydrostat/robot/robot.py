@@ -11,11 +11,10 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
+from hydrostat.robot.checks import Point
 from hydrostat.robot.gravity import check_gravity, gravity_along
-from hydrostat.robot.marker import Marker
+from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.pin import Pin
-from hydrostat.robot.point import Point
-from hydrostat.robot.pose import Pose
 from hydrostat.robot.winch import Mount, Winch
 
 _Part = TypeVar("_Part", Winch, Cable)

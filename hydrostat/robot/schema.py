@@ -1,18 +1,30 @@
-"""The form of robot.toml: its tables, keys and units, as pydantic models."""
+"""The form of robot.toml: its tables, keys and units, as pydantic models; what is wrong with a file, in our words."""
 
 from collections.abc import Callable
 from decimal import Decimal
-from typing import Annotated
+from difflib import get_close_matches
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Strict, Tag
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Strict,
+    Tag,
+    ValidationError,
+)
 
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Volume
+from hydrostat.robot.checks import check_name
 from hydrostat.robot.gravity import DIRECTIONS
-from hydrostat.robot.name import check_name
-from hydrostat.robot.relaxation import MOST_BRANCHES
+from hydrostat.robot.material import MOST_BRANCHES
 from hydrostat.robot.winch import Mount
+from hydrostat.units import quote
 
 LARGEST = 10**12
 """No number of robot.toml is larger, whether bare or in SI."""
@@ -25,7 +37,7 @@ def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
         except InputError as error:
             raise ValueError(str(error)) from None
         if abs(value) > LARGEST:
-            raise ValueError(f"{units.quote(text)} is too large")
+            raise ValueError(f"{quote(text)} is too large")
         return value
 
     return parse
@@ -34,11 +46,11 @@ def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
 def _number(value: object) -> Decimal:
     """A bare number; tomllib hands over int or Decimal."""
     if isinstance(value, bool) or not isinstance(value, int | Decimal):
-        raise ValueError(f"{units.quote(value)} is not a number")
+        raise ValueError(f"{quote(value)} is not a number")
     if isinstance(value, Decimal) and not value.is_finite():
-        raise ValueError(f"{units.quote(value)} is not a finite number")
+        raise ValueError(f"{quote(value)} is not a finite number")
     if abs(value) > LARGEST:
-        raise ValueError(f"{units.quote(value)} is too large; write a number between -1e12 and 1e12")
+        raise ValueError(f"{quote(value)} is too large; write a number between -1e12 and 1e12")
     return Decimal(value)
 
 
@@ -52,7 +64,7 @@ def _name(value: object) -> object:
 def _direction(value: str) -> str:
     if value not in DIRECTIONS:
         raise ValueError(
-            f"{units.quote(value)} is no direction; allowed are: {', '.join(DIRECTIONS)}; "
+            f"{quote(value)} is no direction; allowed are: {', '.join(DIRECTIONS)}; "
             'or an acceleration for each axis: ["0 m/s^2", "-9.81 m/s^2"]'
         )
     return value
@@ -60,7 +72,7 @@ def _direction(value: str) -> str:
 
 def _format(value: object) -> object:
     if type(value) is not int or value != 1:
-        raise ValueError(f"{units.quote(value)} is not known; this version reads format = 1")
+        raise ValueError(f"{quote(value)} is not known; this version reads format = 1")
     return value
 
 
@@ -83,13 +95,13 @@ Components = Annotated[list[Acceleration], Field(min_length=2, max_length=3)]
 Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=2)]
 
 
-class Table(BaseModel):
+class TomlTable(BaseModel):
     """A table of the file; a key that it does not know is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class RelaxationTable(Table):
+class RelaxationTable(TomlTable):
     """A Maxwell branch."""
 
     modulus: Pressure
@@ -99,7 +111,7 @@ class RelaxationTable(Table):
 Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
 
 
-class NamedMaterialTable(Table):
+class NamedMaterialTable(TomlTable):
     """A material known by name, with its viscosity."""
 
     name: Text
@@ -107,7 +119,7 @@ class NamedMaterialTable(Table):
     relaxation: Branches | None = None
 
 
-class MaterialTable(Table):
+class MaterialTable(TomlTable):
     """A material by its numbers."""
 
     young: Pressure
@@ -132,7 +144,7 @@ Gravity = Annotated[
 ]
 
 
-class BodyTable(Table):
+class BodyTable(TomlTable):
     """[body]."""
 
     outline: Text | None = None
@@ -150,7 +162,7 @@ class BodyTable(Table):
     volume: Volume | None = None
 
 
-class PinTable(Table):
+class PinTable(TomlTable):
     """[[pin]]."""
 
     at: Coordinates | None = None
@@ -159,7 +171,7 @@ class PinTable(Table):
     stiffness: Stiffness | None = None
 
 
-class WinchTable(Table):
+class WinchTable(TomlTable):
     """[[winch]]."""
 
     name: Name
@@ -170,7 +182,7 @@ class WinchTable(Table):
     mount: Mount | None = None
 
 
-class CableTable(Table):
+class CableTable(TomlTable):
     """[[cable]]."""
 
     name: Name | None = None
@@ -184,21 +196,21 @@ class CableTable(Table):
     spool_radius: Length | None = None
 
 
-class MarkerTable(Table):
+class MarkerTable(TomlTable):
     """[[marker]]."""
 
     name: Name
     at: Coordinates
 
 
-class PoseTable(Table):
+class PoseTable(TomlTable):
     """[[pose]]."""
 
     name: Name
     targets: dict[str, Coordinates]
 
 
-class RobotTable(Table):
+class RobotTable(TomlTable):
     """The whole file."""
 
     format: Annotated[int, BeforeValidator(_format)]
@@ -211,3 +223,110 @@ class RobotTable(Table):
     cable: list[CableTable] = []
     marker: list[MarkerTable] = []
     pose: list[PoseTable] = []
+
+
+_NAMED = "a material with a name has its own; remove this key, or the name"
+_VISCOUS = 'material = { name = "polyester fibre", viscosity = "40 Pa s" }'
+REFUSED = {
+    "body.gravity": "gravity stands at the top of the file, before [body]; move it there",
+    "body.viscosity": "it belongs to the material; write " + _VISCOUS,
+    "body.relaxation": "it belongs to the material; write " + _VISCOUS,
+    "body.material.young": _NAMED,
+    "body.material.poisson": _NAMED,
+    "body.material.density": _NAMED,
+}
+"""Known keys where they may not stand, and why."""
+
+_EXAMPLES = {
+    "format": "format = 1",
+    "body": "[body]",
+    "name": 'name = "left"',
+    "gravity": 'gravity = ["0 m/s^2", "-9.81 m/s^2"]',
+    "material": 'material = "polyester fibre"',
+    "young": 'young = "30 kPa"',
+    "poisson": "poisson = 0.3",
+    "density": 'density = "40 kg/m^3"',
+    "relaxation": 'relaxation = [{ modulus = "10 kPa", time = "2 s" }]',
+    "modulus": 'modulus = "10 kPa"',
+    "time": 'time = "2 s"',
+    "at": "at = [0, 0]",
+    "box": "box = [[0, 0], [10, 20]]",
+    "winch": 'winch = "left"',
+    "points": "points = [[0, 0], [10, 20]]",
+    "sheathed": "sheathed = [[0, 1]]",
+    "targets": "targets = { tip = [40, 90] }",
+    "outline": "outline = [[0, 0], [10, 0], [10, 20]]",
+    "cables_per_winch": "cables_per_winch = 4",
+    "locked_cables": "locked_cables = [1, 2]",
+    "locked_winches": 'locked_winches = ["left"]',
+}
+
+
+_SENTENCES = {
+    "missing": "the key {key} is missing; write {example}",
+    "enum": "{value} is not known; allowed are: {expected}",
+    "string_type": '{value} is not text; write it in quotes: "..."',
+    "string_too_short": "must not be empty",
+    "string_too_long": "{value} is too long; at most {max_length} characters are allowed",
+    "bool_type": "{value} is neither true nor false",
+    "int_type": "{value} is not a whole number; write for example {example}",
+    "list_type": "{value} is not a list; write for example {example}",
+    "too_short": "has {actual_length} entries, at least {min_length} are needed",
+    "too_long": "has more than {max_length} entries",
+}
+"""Our sentence for each of pydantic's kinds of errors."""
+
+
+def first_complaint(error: ValidationError, form: type[TomlTable] = RobotTable) -> tuple[str, str]:
+    """Key such as cable[1].points[0], and what is wrong with it; unknown keys first, for they explain missing ones."""
+    errors = error.errors()
+    worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
+    location = tuple(step for step in worst["loc"] if not str(step).startswith("<"))
+    return _dotted(location), _message(worst, location, form)
+
+
+def allowed_keys(key: str, form: type[TomlTable] = RobotTable) -> list[str]:
+    """Keys that the table at a key such as cable[1], in any of its forms, may have; none if it is no table."""
+    tables = [form]
+    for step in filter(None, key.split(".")):
+        name = step.partition("[")[0]
+        fields = [table.model_fields[name] for table in tables if name in table.model_fields]
+        tables = [inner for field in fields for inner in _tables(field.annotation)]
+    return list(dict.fromkeys(name for table in tables for name in table.model_fields))
+
+
+def _message(error: Any, location: tuple[Any, ...], form: type[TomlTable]) -> str:
+    names = [step for step in location if isinstance(step, str)]
+    key, kind = names[-1] if names else "", error["type"]
+    if kind == "extra_forbidden":
+        return REFUSED.get(".".join(names)) or _unknown(key, _dotted(location[:-1]), form)
+    if kind == "list_type" and len(location) == 1 and allowed_keys(key, form):
+        return f"begin each with [[{key}]], in two pairs of brackets"
+    if kind in ("model_type", "dict_type"):
+        if len(location) == 1:
+            return f"must be one table, begun with [{key}] in one pair of brackets"
+        hint = f"; write for example {_EXAMPLES[key]}" if key == "targets" else ""
+        return f"{quote(error['input'])} is not a table{hint}"
+    if kind not in _SENTENCES:
+        return error["msg"].removeprefix("Value error, ")
+    limits = {name: str(limit).replace("'", "") for name, limit in error.get("ctx", {}).items()}
+    example = _EXAMPLES.get(key, "[0, 0]")
+    return _SENTENCES[kind].format(key=quote(key), value=quote(error["input"]), example=example, **limits)
+
+
+def _unknown(key: str, table: str, form: type[TomlTable]) -> str:
+    allowed = allowed_keys(table, form)
+    similar = get_close_matches(key[:60], allowed, n=1)
+    hint = f", did you mean {similar[0]}?" if similar else ";"
+    return f"unknown key {quote(key)}{hint} allowed here are: {', '.join(allowed)}"
+
+
+def _dotted(location: tuple[Any, ...]) -> str:
+    text = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in location)
+    return text.removeprefix(".")
+
+
+def _tables(annotation: Any) -> list[type[TomlTable]]:
+    if isinstance(annotation, type) and issubclass(annotation, TomlTable):
+        return [annotation]
+    return [table for part in getattr(annotation, "__args__", ()) for table in _tables(part)]

@@ -7,10 +7,9 @@ from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.sizing import size_for
 from hydrostat.geometry.triangles.triangulate import triangulate
 from hydrostat.robot.body import outline_body
-from hydrostat.robot.marker import Marker
+from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import find_material
 from hydrostat.robot.pin import Pin
-from hydrostat.robot.pose import Pose
 from hydrostat.robot.robot import Robot
 
 

@@ -4,16 +4,25 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 
 import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components, dijkstra
 
+from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import clearance, locate
 from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.sizing import size_for
-from hydrostat.geometry.surface import Surface
+from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot.body import Body, Source, mesh_body
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.checks import Point
+from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import find_material
-from hydrostat.robot.rig import rigged
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.winch import Winch
 
 NODES = 900
 """Of a sketch, if neither a number nor an element size is asked for: as many as the thesis's hand (N3)."""
@@ -88,7 +97,7 @@ def sketch_surface(
         mesh=meshes[length] if length in meshes else fill(length),
         healing=healing,
     )
-    return SurfaceSketch(rigged(body, name), before, healing)
+    return SurfaceSketch(_first_robot(body, name), before, healing)
 
 
 def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: str = "flexfoam-it x") -> Robot:
@@ -99,7 +108,7 @@ def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: s
     """
     body = mesh_body(path, unit=1e-3, material=find_material(material), size=size)
     _check_scale(body.mesh.size, size)
-    return rigged(body, name)
+    return _first_robot(body, name)
 
 
 def _check_scale(length: float, size: float | None) -> None:
@@ -115,3 +124,162 @@ def _guess(surface: Surface, nodes: int) -> float:
     """Element size [m] for a number of nodes in a surface that may be open."""
     box = float(np.prod(np.ptp(surface.box, axis=0)))
     return float((max(min(abs(surface.volume), box), 0.05 * box, 1e-3 * surface.size**3) / nodes) ** (1 / 3))
+
+
+_END = 0.12
+"""An end is as much of the longest side."""
+
+_STOUT = 0.35
+"""An end with such a share of the largest cross section is a good place to hold: a wrist, not the tip of an arm."""
+
+_STATIONS = np.linspace(0.04, 0.9, 12)
+_BAND = 0.05
+_SMOOTHINGS = 3
+_OFFS = (0.3, 0.2, 0.1, 0.0)
+"""How far a cable may lie from the middle of a limb towards its skin, the best first."""
+
+_COVER = 0.004
+"""A cable should be as deep [m]."""
+
+_SPOOL, _LEAST_SPOOL = 0.006, 0.002
+
+
+def _first_robot(body: Body, name: str) -> Robot:
+    """A body with first boundary conditions (a pin) and one tendon: a cable along its longest limb, a marker.
+
+    It is held at the stouter end of its longest side, or, if both ends are slender as of a starfish, round its deepest
+    point. The limb is the longest way through the body from there; the cable lies on one side of it.
+    """
+    mesh = body.mesh
+    solid = Solid(Surface(mesh.nodes, mesh.boundary) if body.healing is None else body.healing.surface)
+    pin = _hold(mesh)
+    limb = _limb(mesh, pin.holds(mesh))
+    middles = _smoothed(np.array([limb.middle(mesh, share) for share in _STATIONS]))
+    side = _side(mesh, middles[-1] - middles[0])
+    ways = [limb.reach(mesh, share, side) * side for share in _STATIONS]
+    route = _spaced([_covered(mesh, solid, middle, way) for middle, way in zip(middles, ways, strict=True)])
+    tip = _covered(mesh, solid, limb.middle(mesh, 0.97), 0 * side)
+    spool = min(_SPOOL, max(_LEAST_SPOOL, -0.9 * float(solid.distances(route[:1])[0])))
+    cable = Cable(winch="pull", points=tuple(map(_point, route)))
+    travel = max(round(0.4 * cable.length, 3), 1e-3)
+    winch = Winch(name="pull", at=cable.points[0], spool_radius=round(spool, 4), travel=travel)
+    arm = tip - middles[0]
+    bent = middles[0] + 0.95 * (np.cos(0.4) * arm + np.sin(0.4) * np.linalg.norm(arm) * side)
+    return Robot(
+        name=name,
+        body=body,
+        pins=(pin,),
+        winches=(winch,),
+        cables=(cable,),
+        markers=(Marker(name="tip", at=_point(tip)),),
+        poses={"bend": Pose(name="bend", targets={"tip": _point(bent)})},
+    )
+
+
+def _hold(mesh: Mesh) -> Pin:
+    """A box about the stouter end, or a ball about the deepest node."""
+    low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
+    axis = int(np.argmax(high - low))
+    along = (mesh.nodes[mesh.elements].mean(axis=1)[:, axis] - low[axis]) / (high[axis] - low[axis])
+    slabs = np.bincount(np.minimum(along / _END, 1 / _END - 1).astype(int), weights=mesh.volumes)
+    ends = [float(mesh.volumes[chosen].sum()) for chosen in (along < _END, along > 1 - _END)]
+    if max(ends) < _STOUT * slabs.max():
+        inner = np.setdiff1d(np.arange(len(mesh.nodes)), mesh.boundary_nodes)
+        depths = clearance(mesh, mesh.nodes[inner])
+        return Pin(at=_point(mesh.nodes[inner[np.argmax(depths)]]), radius=round(0.8 * float(depths.max()), 4))
+    box = np.array([low, high]) + 0.05 * (high - low) * [[-1.0], [1.0]]
+    last = ends[1] > ends[0]
+    box[0 if last else 1, axis] = (high if last else low)[axis] + (-1 if last else 1) * _END * (high - low)[axis]
+    return Pin(box=(_point(box[0]), _point(box[1])))
+
+
+@dataclass(frozen=True, eq=False)
+class _Limb:
+    """The longest way through a body from where it is held.
+
+    Attributes:
+        away: of each node from there, along edges, as a share of the longest way.
+        path: nodes on the longest way, from its end.
+    """
+
+    away: Vector
+    path: Int[np.ndarray, " path"]
+
+    def part(self, mesh: Mesh, share: float) -> Bool[np.ndarray, " elements"]:
+        """The elements across the limb at a share of its length: those that hang together with the way there."""
+        away = self.away[mesh.elements].mean(axis=1)
+        width = _BAND
+        while not np.isin(self.path, mesh.elements[near := np.abs(away - share) < width]).any():
+            width *= 2  # in a stout body the way has few nodes, with none in a narrow band
+        ends = mesh.elements[near]
+        joins = coo_array(
+            (np.ones(3 * len(ends)), (np.repeat(ends[:, 0], 3), ends[:, 1:].ravel())), shape=2 * (len(mesh.nodes),)
+        )
+        group = connected_components(joins, directed=False)[1]
+        there = self.path[np.argsort(np.abs(self.away[self.path] - share))]
+        own = next(group[node] for node in there if np.isin(node, ends))
+        near[near] = group[ends[:, 0]] == own
+        return near
+
+    def middle(self, mesh: Mesh, share: float) -> Vector:
+        """Centre of the limb at a share of its length [m]."""
+        part = self.part(mesh, share)
+        return np.average(mesh.nodes[mesh.elements[part]].mean(axis=1), axis=0, weights=mesh.volumes[part])
+
+    def reach(self, mesh: Mesh, share: float, side: Vector) -> float:
+        """How far the limb goes from its middle to a side [m]."""
+        nodes = mesh.nodes[np.unique(mesh.elements[self.part(mesh, share)])]
+        return float(((nodes - self.middle(mesh, share)) @ side).max())
+
+
+def _limb(mesh: Mesh, held: Bool[np.ndarray, " nodes"]) -> _Limb:
+    one, two = mesh.edges.T
+    lengths = np.linalg.norm(mesh.nodes[one] - mesh.nodes[two], axis=1)
+    graph = coo_array((lengths, (one, two)), shape=2 * (len(mesh.nodes),)).tocsr()
+    away, before, _ = dijkstra(
+        graph, directed=False, indices=np.flatnonzero(held), min_only=True, return_predecessors=True
+    )
+    path = [int(np.argmax(np.where(np.isfinite(away), away, -1.0)))]
+    while before[path[-1]] >= 0:
+        path.append(int(before[path[-1]]))
+    return _Limb(away / away[path[0]], np.array(path))
+
+
+def _side(mesh: Mesh, arm: Vector) -> Vector:
+    """The axis across an arm along which the body is thinnest, so that it bends easily."""
+    spread = np.var(mesh.nodes, axis=0)
+    spread[int(np.argmax(np.abs(arm)))] = np.inf
+    return np.eye(3)[int(np.argmin(spread))]
+
+
+def _smoothed(points: Points) -> Points:
+    """A line without its zigzag, which is that of the elements; its ends stay."""
+    for _ in range(_SMOOTHINGS):
+        points = np.concatenate([points[:1], (points[:-2] + 2 * points[1:-1] + points[2:]) / 4, points[-1:]])
+    return points
+
+
+def _covered(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
+    """A place off the middle of a limb, towards its skin, as far as there is cover; the best there is if there is none.
+
+    It is inside the solid, so that it stays inside the body with finer elements.
+    """
+    places = middle + np.multiply.outer(_OFFS, way)
+    found = locate(mesh, np.concatenate([places, middle[None]]))
+    places = np.concatenate([places, mesh.nodes[found.stencils[-1:]].mean(axis=1)])
+    depths = np.where(np.append(found.inside[:-1], True), -solid.distances(places), -np.inf)
+    return places[int(np.argmax(depths > _COVER))] if (depths > _COVER).any() else places[int(np.argmax(depths))]
+
+
+def _spaced(points: list[Vector]) -> Points:
+    """Points that are at least a millimetre apart."""
+    kept = [points[0]]
+    for point in points[1:]:
+        if np.linalg.norm(point - kept[-1]) > 1e-3:
+            kept.append(point)
+    return np.array(kept)
+
+
+def _point(place: Float[np.ndarray, " 3"]) -> Point:
+    """To a hundredth of a millimetre."""
+    return tuple(round(float(value), 5) for value in place)

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.robot.lines import find_line
 
 if TYPE_CHECKING:
-    from hydrostat.robot.schema import Table
+    from hydrostat.robot.schema import TomlTable
+
 
 LARGEST_TEXT = 1_000_000
 """The file may have this many bytes."""
@@ -44,7 +44,7 @@ class TablesFile(ABC):
         self.table = self._parse()
 
     @abstractmethod
-    def form(self) -> "type[Table]":
+    def form(self) -> "type[TomlTable]":
         """The tables and keys that the file may have."""
 
     def records(self, key: str, make: Callable[[Any], _Record]) -> tuple[_Record, ...]:
@@ -58,7 +58,7 @@ class TablesFile(ABC):
 
     def at(self, key: str, make: Callable[[], _Record], *, otherwise: str | None = None) -> _Record:
         """What `make` makes; its complaint is located at the field it begins with, else at `otherwise`."""
-        from hydrostat.robot.schema_error import allowed_keys
+        from hydrostat.robot.schema import allowed_keys
 
         try:
             return make()
@@ -84,7 +84,7 @@ class TablesFile(ABC):
     def _parse(self) -> Any:
         from pydantic import ValidationError
 
-        from hydrostat.robot.schema_error import first_complaint
+        from hydrostat.robot.schema import first_complaint
 
         if self.empty is not None and not self.text.strip():
             self.fail("", self.empty)
@@ -139,3 +139,42 @@ def read_bytes(file: Path, name: str, most: int) -> bytes:
         return file.read_bytes()
     except OSError as error:
         raise InputError(f"{name}: cannot be read ({error.strerror})") from None
+
+
+_HEADER = re.compile(r"\s*\[\[?\s*([A-Za-z_][\w.]*)\s*\]")
+_KEY = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\.(\w+))?(?:\[\d+\])*(?:\.(\w+))?(?:\[(\d+)\])?")
+
+
+def find_line(text: str, key: str) -> int | None:
+    """Line of a key such as cable[1].points[0], as near as headers and names of keys tell; None if it stands nowhere.
+
+    A key that is missing from its table stands at the table's header.
+    """
+    match = _KEY.match(key)
+    if not match:
+        return None
+    table, index, entry, inner = match[1], int(match[2] or 0), match[3], match[4]
+    lines = text.split("\n")
+    headers = [(number, found[1]) for number, line in enumerate(lines) if (found := _HEADER.match(line))]
+    starts = [number for number, name in headers if name == table]
+    if len(starts) <= index:
+        top = range(headers[0][0] if headers else len(lines))
+        return _find(lines, top, rf"{table}\s*\.\s*{entry}") or _find(lines, top, table)
+    start = starts[index]
+    later = (number for number, name in headers if number > start and not name.startswith(f"{table}."))
+    block = range(start + 1, next(later, len(lines)))
+    inside = [(number, name) for number, name in headers if number in block]
+    own = range(start + 1, inside[0][0] if inside else block.stop)
+    deep = [number for number, name in inside if name == f"{table}.{entry}.{inner}"]
+    if deep:
+        return deep[min(int(match[5] or 0), len(deep) - 1)] + 1
+    line = _find(lines, own, rf"{entry}(?:\s*\.\s*{inner})?") if entry else None
+    for number, name in inside:
+        if line is None and name == f"{table}.{entry}":
+            line = _find(lines, range(number + 1, block.stop), str(inner)) or number + 1
+    return line or start + 1
+
+
+def _find(lines: list[str], places: range, key: str) -> int | None:
+    pattern = re.compile(rf"""\s*["']?{key}["']?\s*[=.]""")
+    return next((number + 1 for number in places if pattern.match(lines[number])), None)

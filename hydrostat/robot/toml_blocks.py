@@ -12,7 +12,7 @@ _TOKEN = re.compile(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Block:
+class TomlBlock:
     """One table with its sub-tables, or what stands before the first.
 
     Attributes:
@@ -30,23 +30,23 @@ class Block:
     text: str = ""
 
 
-def split_blocks(text: str) -> tuple[list[Block], str]:
+def split_blocks(text: str) -> tuple[list[TomlBlock], str]:
     """The blocks of a TOML file in order, and what comes after the last; together they are all of the text.
 
     Args:
         text: that tomllib can read.
     """
     starts = [(0, "", True), *_headers(text)]
-    blocks: list[Block] = []
+    blocks: list[TomlBlock] = []
     free = lead = ""
     for (start, name, whole), (end, _, _) in zip(starts, [*starts[1:], (len(text), "", True)], strict=True):
         own, apart, above = _parted(text[start:end], last=end == len(text))
         if blocks and not whole and name == blocks[-1].name:
             before = blocks.pop()
             own = before.text + free + lead + own
-            blocks.append(Block(name=name, whole=before.whole, free=before.free, lead=before.lead, text=own))
+            blocks.append(TomlBlock(name=name, whole=before.whole, free=before.free, lead=before.lead, text=own))
         else:
-            blocks.append(Block(name=name, whole=whole, free=free, lead=lead, text=own))
+            blocks.append(TomlBlock(name=name, whole=whole, free=free, lead=lead, text=own))
         free, lead = apart, above
     return blocks, free + lead
 

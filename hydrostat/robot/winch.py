@@ -5,8 +5,7 @@ from enum import StrEnum
 
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import check_not_negative, check_point, check_positive
-from hydrostat.robot.point import Point
+from hydrostat.robot.checks import Point, check_not_negative, check_point, check_positive
 
 
 class Mount(StrEnum):

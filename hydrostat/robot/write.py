@@ -11,13 +11,11 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.checks import Point, check_name
 from hydrostat.robot.gravity import direction_of
-from hydrostat.robot.material import Material
+from hydrostat.robot.material import Material, Relaxation
 from hydrostat.robot.materials import MATERIALS
-from hydrostat.robot.name import check_name
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
-from hydrostat.robot.point import Point
-from hydrostat.robot.relaxation import Relaxation
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Mount
 
@@ -114,27 +112,25 @@ class _Writer:
     """Turns records into plain values for the file, coordinates in its length unit."""
 
     def __init__(self, robot: Robot) -> None:
+        import tomlkit
+
+        self._toml = tomlkit
         self.unit = robot.length_unit
 
     def number(self, value: float) -> Any:
         """A bare number that reads back to the very same length [m]."""
-        import tomlkit
-
         text = units.plain(units.scale_down(value, self.unit, units.LENGTH))
-        return tomlkit.value(text)
+        return self._toml.value(text)
 
     def point(self, point: Point) -> Any:
-        import tomlkit
-
-        array = tomlkit.array()
-        array.extend(self.number(value) for value in point)
-        return array
+        return self._array(self.number(value) for value in point)
 
     def points(self, points: Iterable[Point]) -> Any:
-        import tomlkit
+        return self._array(self.point(point) for point in points)
 
-        array = tomlkit.array()
-        array.extend(self.point(point) for point in points)
+    def _array(self, values: Iterable[Any]) -> Any:
+        array = self._toml.array()
+        array.extend(values)
         return array
 
     def body(self, body: Body) -> dict[str, Any]:
@@ -144,11 +140,9 @@ class _Writer:
 
     def material(self, material: Material) -> Any:
         """A name of the table, or an inline table of the name or the numbers, then the viscosity."""
-        import tomlkit
-
         if MATERIALS.get(material.name) == material:
             return material.name
-        table = tomlkit.inline_table()
+        table = self._toml.inline_table()
         if MATERIALS.get(material.name) == material.elastic:
             table["name"] = material.name
         else:
@@ -162,15 +156,13 @@ class _Writer:
         return table
 
     def relaxation(self, branches: Iterable[Relaxation]) -> Any:
-        import tomlkit
-
-        array = tomlkit.array()
+        tables = []
         for branch in branches:
-            table = tomlkit.inline_table()
+            table = self._toml.inline_table()
             table["modulus"] = units.format_quantity(branch.modulus, units.PRESSURE)
             table["time"] = units.format_quantity(branch.time, units.TIME)
-            array.append(table)
-        return array
+            tables.append(table)
+        return self._array(tables)
 
     def gravity(self, gravity: tuple[float, ...]) -> Any:
         """A direction such as "-y", or one acceleration for each axis."""
@@ -209,9 +201,7 @@ class _Writer:
         return entry
 
     def pose(self, pose: Any) -> dict[str, Any]:
-        import tomlkit
-
-        targets = tomlkit.inline_table()
+        targets = self._toml.inline_table()
         for name, point in pose.targets.items():
             targets[name] = self.point(point)
         return {"name": pose.name, "targets": targets}

@@ -14,10 +14,9 @@ from hydrostat.shapes.field import (
     union,
 )
 from hydrostat.shapes.gripper import BASE, SIDES, caging_gripper
-from hydrostat.shapes.hand import CUPPING, EXTENDED, FOREARM, Posture, cupping_hand, extended_hand, hand
+from hydrostat.shapes.hand import CUPPING, EXTENDED, FOREARM, HandPosture, cupping_hand, extended_hand, hand
 from hydrostat.shapes.hydrostats import fish_tail, octopus_arm, tongue, trunk
-from hydrostat.shapes.limb import Limb, limb
-from hydrostat.shapes.shape import Shape
+from hydrostat.shapes.limb import Limb, Shape, limb
 
 __all__ = [
     "BASE",
@@ -26,9 +25,9 @@ __all__ = [
     "FOREARM",
     "SIDES",
     "Field",
+    "HandPosture",
     "Limb",
     "Place",
-    "Posture",
     "Shape",
     "caging_gripper",
     "chain",

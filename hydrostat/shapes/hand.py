@@ -28,8 +28,7 @@ from hydrostat.shapes.hand_sizes import (
     THUMB_BREADTH,
     THUMB_THICKNESS,
 )
-from hydrostat.shapes.limb import Limb, limb
-from hydrostat.shapes.shape import Shape
+from hydrostat.shapes.limb import Limb, Shape, limb
 
 FOREARM = 20e-3
 """How much of the forearm stands below the crease of the wrist, to be held by [m]."""
@@ -46,7 +45,7 @@ _SIZES = MappingProxyType({"index": 1.0, "middle": 1.0, "ring": 0.95, "little": 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Posture:
+class HandPosture:
     """How a hand holds its fingers.
 
     Attributes:
@@ -66,7 +65,7 @@ class Posture:
     thumb_bends: tuple[float, float]
 
 
-CUPPING = Posture(
+CUPPING = HandPosture(
     fans=(11, 2, -7, -18),
     bends=((28, 34, 18), (32, 36, 20), (36, 38, 20), (38, 38, 20)),
     arch=(3e-3, 0.0, 3e-3, 9e-3),
@@ -76,7 +75,7 @@ CUPPING = Posture(
 )
 """Half way between open and closed, as a hand at rest: it can both open and close."""
 
-EXTENDED = Posture(
+EXTENDED = HandPosture(
     fans=(12, 2, -8, -20),
     bends=((2, 3, 2),) * 4,
     arch=(1e-3, 0.0, 1e-3, 4e-3),
@@ -87,7 +86,7 @@ EXTENDED = Posture(
 """Fingers straight and spread, thumb out."""
 
 
-def hand(posture: Posture) -> Shape:
+def hand(posture: HandPosture) -> Shape:
     """A right hand of human size in a posture; its limbs are thumb, index, middle, ring and little.
 
     The joints of a finger are base and head of its metacarpal (the knuckle), its middle and last joint and the tip of
@@ -113,7 +112,7 @@ def extended_hand() -> Shape:
     return hand(EXTENDED)
 
 
-def _finger(name: str, place: int, posture: Posture) -> Limb:
+def _finger(name: str, place: int, posture: HandPosture) -> Limb:
     """A finger with its metacarpal, through its joints."""
     knuckle = np.array(
         [_SPREAD * (1.5 - place), -posture.arch[place], _LENGTH_TO_KNUCKLE - (3e-3, 0.0, 6e-3, 15e-3)[place]]
@@ -147,7 +146,7 @@ def _metacarpal_base(knuckle: Direction, name: str) -> Direction:
     return knuckle + lean
 
 
-def _thumb(posture: Posture) -> Limb:
+def _thumb(posture: HandPosture) -> Limb:
     """The thumb with its metacarpal, through its joints."""
     way = _unit(posture.thumb)
     pad = np.array(posture.thumb_pad)

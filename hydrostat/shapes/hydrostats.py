@@ -6,8 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.shapes.field import Field, half_space, intersection, round_cone, union
-from hydrostat.shapes.limb import Limb, limb
-from hydrostat.shapes.shape import Shape
+from hydrostat.shapes.limb import Limb, Shape, limb
 
 
 def trunk() -> Shape:

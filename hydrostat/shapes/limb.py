@@ -1,6 +1,6 @@
-"""`Limb`: a soft limb along a curve, its sections ellipses with a back and a belly of their own depth."""
+"""`Limb`: a soft limb along a curve, sections ellipses with their own back and belly; `Shape`: a body of limbs."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -9,7 +9,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.shapes.field import Place, ellipsoidal
+from hydrostat.geometry.contour import contour
+from hydrostat.geometry.surface import Surface
+from hydrostat.shapes.field import Field, Place, ellipsoidal
 
 _SPACING = 4e-3
 """Stations along the spine of a limb are about this far apart [m]."""
@@ -183,3 +185,27 @@ def _smooth(corners: Float[np.ndarray, "joints 3"], bend: float) -> Float[np.nda
         count = max(round(float(np.linalg.norm(end - start)) / _SPACING), 1)
         stations.extend(start + share * (end - start) for share in np.arange(1, count + 1) / count)
     return np.array(stations)
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A body in space.
+
+    Attributes:
+        field: about how far points are outside [m], negative inside.
+        box: lowest and highest coordinates that hold the whole body [m].
+        limbs: by name; their landmarks are the joints.
+    """
+
+    field: Field
+    box: Float[np.ndarray, "2 3"]
+    limbs: Mapping[str, Limb]
+
+    def surface(self, spacing: float) -> Surface:
+        """The closed surface, drawn on a grid [m]; details smaller than the spacing are lost.
+
+        Raises:
+            SurfaceError: the spacing is not above 0, too fine for the memory or so coarse that nothing is left.
+        """
+        # Halved, for the distance from a flat section can change by more than the way, though by less than twice.
+        return contour(lambda points: self.field(points) / 2, self.box, spacing, distance=True)

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from hydrostat.shapes import CUPPING, EXTENDED, Posture, Shape, hand
+from hydrostat.shapes import CUPPING, EXTENDED, HandPosture, Shape, hand
 from hydrostat.shapes.hand_sizes import (
     FINGERS,
     HAND_BREADTH,
@@ -23,7 +23,7 @@ from hydrostat.shapes.hand_sizes import (
 POSTURES = {
     "cupping": CUPPING,
     "extended": EXTENDED,
-    "straight": Posture(
+    "straight": HandPosture(
         fans=(0, 0, 0, 0),
         bends=((0, 0, 0),) * 4,
         arch=(0, 0, 0, 0),

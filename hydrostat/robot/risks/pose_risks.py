@@ -1,4 +1,4 @@
-"""Risks of poses."""
+"""Risks of pins, markers and poses."""
 
 from collections.abc import Iterator
 
@@ -7,10 +7,60 @@ from jaxtyping import Float
 from scipy.sparse import coo_array
 
 from hydrostat.arrays import Points
+from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.thickness import spacings
-from hydrostat.robot.risks.words import Found, known_up_to, mm, told_together
+from hydrostat.robot.risks.words import Risk, known_up_to, mm, told_together
 from hydrostat.robot.robot import Robot
+from hydrostat.units import counted
+
+
+def pin_risks(robot: Robot) -> Iterator[str]:
+    """Pins that hold all or hardly anything. None at all is an error, which `Robot` raises."""
+    mesh = robot.body.mesh
+    held = [pin.holds(mesh) for pin in robot.pins]
+    if np.any(held, axis=0).all():
+        yield "pin: every node of the body is held, nothing can move; make a radius or a box smaller"
+    reach = 1.5 * float(np.median(spacings(mesh)))
+    found = []
+    for index, nodes in enumerate(held):
+        count = int(nodes.sum())
+        if count < mesh.dim:
+            grip = f"holds only {counted(count, 'node')}" if count else "reaches no node and holds a single point"
+            text = f"{grip}, about which the body can turn and tear; a radius of {mm(reach)} would grip it"
+            found.append(Risk(f"pin[{index}]", -count, text))
+    yield from told_together(found)
+
+
+FAR = 1.5
+"""A marker is far from any node at this many times the usual length of an element."""
+
+
+def marker_risks(robot: Robot) -> Iterator[str]:
+    """Markers that cannot move, and markers that the mesh knows badly."""
+    if not robot.markers:
+        return
+    mesh = robot.body.mesh
+    places = np.array([marker.at for marker in robot.markers], dtype=float)
+    anchors = locate(mesh, places)
+    held = np.any([pin.holds(mesh) for pin in robot.pins], axis=0)
+    stuck = (held[anchors.stencils] | (anchors.weights < 1e-6)).all(axis=1) & ~held.all()
+    yield from told_together(
+        Risk(f"marker[{index}] {robot.markers[index].name}", 0.0, "held by a pin, cannot move")
+        for index in np.flatnonzero(stuck)
+    )
+    usual = float(np.median(spacings(mesh)))
+    gaps = np.linalg.norm(mesh.nodes[None] - places[:, None], axis=2).min(axis=1)
+    yield from told_together(
+        Risk(
+            f"marker[{index}] {robot.markers[index].name}",
+            float(gaps[index]),
+            f"{mm(float(gaps[index]))} from the nearest node, where elements are {mm(usual)} long elsewhere: it moves "
+            f"only as a coarse mesh does; make the mesh finer there",
+        )
+        for index in np.flatnonzero(gaps > FAR * usual)
+    )
+
 
 _SHORT = 2.0
 """Ways of fewer elements than this tell nothing of a stretch."""
@@ -24,17 +74,17 @@ def pose_risks(robot: Robot) -> Iterator[str]:
     yield from told_together(risk for risk in _stretching(robot) if risk.part not in told)
 
 
-def _far(robot: Robot) -> Iterator[Found]:
+def _far(robot: Robot) -> Iterator[Risk]:
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
     for pose in robot.poses.values():
         for name, target in pose.targets.items():
             moved = float(np.linalg.norm(places[name] - target))
             if moved > robot.body.mesh.size:
                 text = f"{name} should move {mm(moved)}, farther than the body is long"
-                yield Found(f"pose {pose.name}", moved, text)
+                yield Risk(f"pose {pose.name}", moved, text)
 
 
-def _stretching(robot: Robot) -> Iterator[Found]:
+def _stretching(robot: Robot) -> Iterator[Risk]:
     """An estimate from below: the way through the body from a pin to a marker must grow to the straight line at least.
 
     At rest it is measured along edges, which makes it up to a tenth too long, never too short.
@@ -58,7 +108,7 @@ def _stretching(robot: Robot) -> Iterator[Found]:
                     f"{name} should be {mm(float(straight[pin]))} from a pinned place, at rest it is {mm(before)} "
                     f"through the body: {stretch:.2f} times as long; {limit}"
                 )
-                yield Found(f"pose {pose.name}", stretch, text)
+                yield Risk(f"pose {pose.name}", stretch, text)
 
 
 def _ways(mesh: Mesh, places: Points) -> Float[np.ndarray, "places nodes"]:

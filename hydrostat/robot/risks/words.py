@@ -10,7 +10,7 @@ from hydrostat.robot.material import Material
 
 
 @dataclass(frozen=True)
-class Found:
+class Risk:
     """One part with a risk.
 
     Attributes:
@@ -24,7 +24,7 @@ class Found:
     text: str
 
 
-def told_together(found: Iterable[Found]) -> Iterator[str]:
+def told_together(found: Iterable[Risk]) -> Iterator[str]:
     """One line for all parts with the same risk, in the words of the worst; none if there is none."""
     found = list(found)
     if not found:

@@ -10,8 +10,8 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot import Cable, Mount, Robot, Source, find_material, outline_body
 from hydrostat.robot.body import Body, surface_body
+from hydrostat.robot.checks import check_name
 from hydrostat.robot.gravity import gravity_along
-from hydrostat.robot.name import check_name
 from hydrostat.studio.editing.part import Kind, find_part
 
 FIELDS = {

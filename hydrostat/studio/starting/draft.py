@@ -8,7 +8,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES
 from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
 from hydrostat.robot import Material, find_material
-from hydrostat.robot.name import check_name
+from hydrostat.robot.checks import check_name
 from hydrostat.units import quote
 
 UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)

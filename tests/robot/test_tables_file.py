@@ -1,6 +1,6 @@
 import pytest
 
-from hydrostat.robot.lines import find_line
+from hydrostat.robot.tables_file import find_line
 
 TEXT = """\
 name = "a"          # 1

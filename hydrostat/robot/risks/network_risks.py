@@ -1,4 +1,4 @@
-"""Risks of cables."""
+"""Risks of winches and cables."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -7,13 +7,89 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Points
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.anchors import clearance, locate
 from hydrostat.geometry.thickness import spacings
+from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.risks.winch_risks import cover
-from hydrostat.robot.risks.words import Found, known_up_to, mm, place, told_together
+from hydrostat.robot.risks.words import Risk, known_up_to, mm, place, told_together
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Mount
+
+
+def winch_risks(robot: Robot) -> Iterator[str]:
+    """Winches that pull nothing or too far, collide, or stick out."""
+    yield from told_together(_idle(robot))
+    yield from told_together(_too_far(robot))
+    yield from told_together(_collisions(robot))
+    yield from told_together(_sticking_out(robot))
+
+
+def cover(body: Body, points: Points) -> Float[np.ndarray, " points"]:
+    """How far points are from the edge of a flat body, as drawn, or from the surface of a body in space [m]."""
+    if body.outline is None:
+        return clearance(body.mesh, points)
+    from shapely import distance
+    from shapely import points as shapely_points
+
+    return np.asarray(distance(body.outline.polygon.boundary, shapely_points(points)))
+
+
+def _name(robot: Robot, index: int) -> str:
+    return f"winch[{index}] {robot.winches[index].name}"
+
+
+def _cable_name(robot: Robot, index: int) -> str:
+    """Number of a cable in its file, with its name if one was given."""
+    return f"cable[{index}] {robot.given_cable_names[index]}".rstrip()
+
+
+def _idle(robot: Robot) -> Iterator[Risk]:
+    for index, winch in enumerate(robot.winches):
+        if not any(cable.winch == winch.name for cable in robot.cables):
+            yield Risk(_name(robot, index), 0.0, "pulls no cable")
+
+
+def _too_far(robot: Robot) -> Iterator[Risk]:
+    """Travel or release longer than a cable is."""
+    for index, winch in enumerate(robot.winches):
+        pulled = [
+            (ratio, float(cable.segments[cable.bare].sum()))
+            for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
+            if cable.winch == winch.name
+        ]
+        if not pulled:
+            continue
+        ratio, length = min(pulled, key=lambda one: one[1] / one[0])
+        for key, far in (("travel", winch.travel), ("release", winch.release)):
+            if ratio * far > length:
+                step = "" if ratio == 1 else f", {mm(ratio * far)} at its spool,"
+                text = (
+                    f"the {key} of {mm(far)}{step} is longer than a cable that it pulls ({mm(length)} outside sheaths)"
+                )
+                yield Risk(_name(robot, index), ratio * far / length, text)
+
+
+def _collisions(robot: Robot) -> Iterator[Risk]:
+    for index, winch in enumerate(robot.winches):
+        for other in robot.winches[:index]:
+            gap = float(np.linalg.norm(np.subtract(winch.at, other.at)))
+            if gap < robot.largest_spool(winch) + robot.largest_spool(other):
+                text = f"only {mm(gap)} from winch {other.name}, the spools collide"
+                yield Risk(_name(robot, index), -gap, text)
+
+
+def _sticking_out(robot: Robot) -> Iterator[Risk]:
+    inside = [index for index, winch in enumerate(robot.winches) if winch.mount is Mount.BODY]
+    if not inside:
+        return
+    depths = cover(robot.body, np.array([robot.winches[index].at for index in inside], dtype=float))
+    for index, depth in zip(inside, depths, strict=True):
+        radius = robot.largest_spool(robot.winches[index])
+        if depth < radius:
+            edge = "edge" if robot.body.mesh.dim == 2 else "surface"
+            text = f"a spool of radius {mm(radius)} sticks out, the {edge} is {mm(float(depth))} away; move it inward"
+            yield Risk(_name(robot, index), radius - depth, text)
+
 
 LEAST_COVER = 0.003
 """A cable nearer to the edge or the surface than this [m] tears out."""
@@ -51,7 +127,7 @@ def _sampled(points: Points) -> Float[np.ndarray, "places dim"]:
     return np.concatenate(places)
 
 
-def _leaving(robot: Robot) -> Iterator[Found]:
+def _leaving(robot: Robot) -> Iterator[Risk]:
     """Cables of which a straight piece lies outside: of a drawing however little, of a mesh more than a corner."""
     for index, cable in enumerate(robot.cables):
         inside = _points_in_body(robot, cable)
@@ -72,10 +148,10 @@ def _leaving(robot: Robot) -> Iterator[Found]:
         if leaves:
             where = place(places[np.argmax(out)])
             text = f"leaves the body by {mm(float(out.max()))} at {where}; add a point to lead it round"
-            yield Found(f"cable[{index}]", float(out.max()), text)
+            yield Risk(_cable_name(robot, index), float(out.max()), text)
 
 
-def _near_the_surface(robot: Robot) -> Iterator[Found]:
+def _near_the_surface(robot: Robot) -> Iterator[Risk]:
     edge = "edge" if robot.body.mesh.dim == 2 else "surface"
     for index, cable in enumerate(robot.cables):
         places = _sampled(_points_in_body(robot, cable))
@@ -87,7 +163,7 @@ def _near_the_surface(robot: Robot) -> Iterator[Found]:
         if depths.min() < LEAST_COVER:
             nearest = int(np.argmin(depths))
             text = f"only {mm(float(depths[nearest]))} inside the {edge} at {place(places[nearest])}, it may tear out"
-            yield Found(f"cable[{index}]", -float(depths[nearest]), text)
+            yield Risk(_cable_name(robot, index), -float(depths[nearest]), text)
 
 
 def _length_inside(robot: Robot, cable: Cable) -> float:
@@ -99,7 +175,7 @@ def _length_inside(robot: Robot, cable: Cable) -> float:
     return length - float(cable.segments[0]) * float((robot.body.distances(way) > 0).mean())
 
 
-def _squeezing(robot: Robot) -> Iterator[Found]:
+def _squeezing(robot: Robot) -> Iterator[Risk]:
     """An estimate from lengths alone: what a winch takes in, the body along its cable must become shorter by."""
     material = robot.body.material
     if material.largest_squeeze is None:
@@ -115,4 +191,4 @@ def _squeezing(robot: Robot) -> Iterator[Found]:
                 f"the full travel of {mm(winch.travel)} would squeeze the body along the cable by "
                 f"{100 * squeeze:.0f} % on average; {limit}; a travel of {mm(most)} stays within"
             )
-            yield Found(f"cable[{index}]", squeeze, text)
+            yield Risk(_cable_name(robot, index), squeeze, text)
