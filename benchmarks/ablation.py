@@ -11,6 +11,7 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -26,7 +27,7 @@ from sofa_robots import ROBOTS, sofa_robots
 
 import hydrostat as hs
 from hydrostat.arrays import Vector
-from hydrostat.mechanics import newton
+from hydrostat.mechanics import TensionLaw, newton
 from hydrostat.robot import Robot
 
 
@@ -37,19 +38,19 @@ def whole(_simulation: hs.Simulation) -> Iterator[None]:
 
 @contextmanager
 def straight(simulation: hs.Simulation) -> Iterator[None]:
-    with patch.object(simulation, "_warp", None):
+    with patch.object(simulation, "solver", replace(simulation.solver, warp=None)):
         yield
 
 
 @contextmanager
 def linear(_simulation: hs.Simulation) -> Iterator[None]:
-    with patch.object(newton, "settle", lambda *_given: None):
+    with patch.object(TensionLaw, "balance", lambda *_given: None):
         yield
 
 
 @contextmanager
 def cold(simulation: hs.Simulation) -> Iterator[None]:
-    with patch.dict(simulation.__dict__, {"_rest_stiffness": None}):
+    with patch.dict(simulation.__dict__, {"rest_stiffness": None}):
         yield
 
 

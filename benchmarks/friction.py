@@ -14,7 +14,7 @@ import numpy as np  # isort: skip
 from robustness import EXAMPLES, example_folders
 
 from hydrostat.robot import Robot, load_robot
-from hydrostat.simulation import Simulation, SolvedPose, friction_path
+from hydrostat.simulation import Simulation, SolvedPose, loading_path
 
 REPEATS = 5
 COMMANDS = 4
@@ -64,7 +64,7 @@ def way(name: str, friction: float) -> str:
     goals = np.random.default_rng(1).uniform(0, 0.3, (COMMANDS, len(shortest))) * shortest
     runs = []
     for share in INCREMENTS:
-        friction_path._INCREMENT = share
+        loading_path._INCREMENT = share
         simulation, pose, run = Simulation(robot), None, []
         for goal in goals:
             pose = simulation.solve(goal, start=pose, strict=False)

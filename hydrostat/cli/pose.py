@@ -137,7 +137,7 @@ def _tell(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -
 
 def _warn(simulation: "Simulation", reached: "ReachedPose") -> None:
     """Say it if the contractions alone do not decide the pose (E20): at once from rest they may lead to another."""
-    from hydrostat.simulation.largest_distance import largest_distance
+    from hydrostat.simulation.solved_pose import largest_distance
 
     pose = simulation.solve(reached.pose.contractions, strict=False)
     away = largest_distance(pose.nodes, reached.pose.nodes)

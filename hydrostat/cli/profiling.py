@@ -21,7 +21,7 @@ PARTS = {
     "cable": "cables",
     "friction": "cables",
     "chain_law": "cables",
-    "friction_path": "cables",
+    "loading_path": "cables",
     "turns": "cables",
     "viscous": "viscous branches",
     "inertia": "inertia",

@@ -1,54 +1,120 @@
 """`Assembly`: the sum of energies as one function of all nodes, with a sparse pattern made once."""
 
 from collections.abc import Sequence
-from copy import copy
+from functools import cached_property
 from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float
 from numba import njit
+from scipy.linalg import block_diag
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.kernel import KERNEL
-from hydrostat.mechanics.energy import Energy
-from hydrostat.mechanics.factorisation import Analysis
+from hydrostat.mechanics.energy import Coupling, Energy
+from hydrostat.mechanics.pattern import Pattern
 from hydrostat.mechanics.stiffness import Stiffness
 
 
 class Assembly:
-    """Value, gradient and Hessian of a list of energies, with degrees of freedom node by node."""
+    """Value, gradient and Hessian of a list of energies, with degrees of freedom node by node.
 
-    def __init__(self, energies: Sequence[Energy], *, rest: Nodes, control_count: int) -> None:
-        """Energies of a body whose nodes are at `rest` [m] before it deforms; they read `control_count` controls.
+    Attributes:
+        energies: the terms of the sum.
+        pattern: sparsity of the Hessian.
+        control_count: how many controls they read.
+        token: what factors of its Hessian are known by; that of the assembly that it was made from, if it was.
+    """
 
-        Only the order of elimination depends on `rest`.
+    def __init__(
+        self, energies: Sequence[Energy], *, rest: Nodes, control_count: int, pattern: Pattern | None = None
+    ) -> None:
+        """Sum of energies of a body whose nodes are at `rest` [m] before it deforms.
+
+        Args:
+            energies: the terms; they read `control_count` controls.
+            rest: decides the order of elimination alone.
+            control_count: how many controls there are.
+            pattern: of the stencils of these energies, if it is at hand.
         """
-        self.energies = tuple(energies)
-        self.shape = rest.shape
-        self.size = rest.size
-        self.control_count = control_count
-        self._dofs = [
-            (stencils[:, :, None] * rest.shape[1] + np.arange(rest.shape[1])).reshape(
-                len(stencils), stencils.shape[1] * rest.shape[1]
-            )
-            for stencils in (energy.stencils for energy in self.energies)
-        ]
-        self._rest = rest
-        self._pattern()
-        self._quadratic = self._sum_of_quadratic()
-        self._analysis = Analysis(self._indptr, self._indices, dim=rest.shape[1], points=rest)
+        self.energies, self.control_count = tuple(energies), control_count
+        self.pattern = pattern or Pattern([energy.stencils for energy in energies], rest)
+        self.shape, self.size = rest.shape, rest.size
+        self.token = object()
+
+    def extended(self, energies: Sequence[Energy], *, control_count: int) -> "Assembly":
+        """Sum with more energies; all that is known of the pattern of this one serves it too."""
+        pattern = self.pattern.extended([energy.stencils for energy in energies])
+        return Assembly(
+            [*self.energies, *energies], rest=self.pattern.rest, control_count=control_count, pattern=pattern
+        )
 
     def with_energies(self, energies: Sequence[Energy]) -> "Assembly":
-        """The same with other energies on the same stencils, such as those of the next time step; costs nothing."""
+        """Sum of other energies on the same stencils, such as those of the next time step; costs next to nothing."""
         if [energy.stencils.shape for energy in energies] != [energy.stencils.shape for energy in self.energies]:
             raise ValueError("the energies must have the stencils of those they replace")
-        other = copy(self)
-        other.energies = tuple(energies)
-        pairs = zip(self.energies, other.energies, strict=True)
-        if any(old is not new and (old.quadratic or new.quadratic) for old, new in pairs):
-            other._quadratic = other._sum_of_quadratic()
+        other = self._like(energies, self.pattern)
+        pairs = zip(self.energies, energies, strict=True)
+        if not any(old is not new and (old.quadratic or new.quadratic) for old, new in pairs):
+            other.__dict__.update({name: value for name, value in self.__dict__.items() if name == "_quadratic"})
         return other
+
+    def near(self, nodes: Nodes) -> "Assembly":
+        """Sum with the terms that count near `nodes`; itself where none come and go.
+
+        The pattern is analysed anew only when a pair of nodes meets that never met before.
+        """
+        energies = [energy.near(nodes) for energy in self.energies]
+        if all(new is old for new, old in zip(energies, self.energies, strict=True)):
+            return self
+        pattern = self.pattern.changed([energy.stencils for energy in energies])
+        return self._like(energies, pattern)
+
+    def with_load(self, share: float) -> "Assembly":
+        """Sum with this share of all dead loads."""
+        return self.with_energies([energy.with_load(share) for energy in self.energies])
+
+    @property
+    def has_history(self) -> bool:
+        """Whether some energy depends on the loading path."""
+        return any(energy.has_history for energy in self.energies)
+
+    def largest_force(self, nodes: Nodes, controls: Vector) -> float:
+        """Largest force that is applied to the body [N]."""
+        return max((energy.largest_force(nodes, controls) for energy in self.energies), default=0.0)
+
+    def largest_step(self, nodes: Nodes, move: Nodes) -> float:
+        """Largest share of a straight move [m] that all energies admit, above 0, at most 1."""
+        return min((energy.largest_step(nodes, move) for energy in self.energies), default=1.0)
+
+    @property
+    def history(self) -> Vector:
+        """What all energies remember of the loading path."""
+        return np.concatenate([np.zeros(0), *(energy.history for energy in self.energies)])
+
+    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "Assembly":
+        """Sum of energies that remember `history`, at equilibrium in a given state."""
+        ends = np.cumsum([len(energy.history) for energy in self.energies])
+        parts = zip(self.energies, np.split(history, ends[:-1]), strict=True)
+        return self.with_energies([energy.resumed(part, nodes, controls) for energy, part in parts])
+
+    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+        """Largest force [N] by which what is held fixed while minimising is off."""
+        return max((energy.imbalance(nodes, controls) for energy in self.energies), default=0.0)
+
+    def corrected(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
+        """Sum in which that is nearer to what it should be; by Newton's method if the stiffness is given."""
+        energies, end = [], 0
+        for energy, part in zip(self.energies, self.couplings(nodes, controls), strict=True):
+            begin, end = end, end + (0 if part is None else part.columns.shape[1])
+            compliance = None if stiffness is None else stiffness.compliance_of(slice(begin, end))
+            energies.append(energy.corrected(nodes, controls, compliance))
+        return self.with_energies(energies)
+
+    def after(self, nodes: Nodes, controls: Vector) -> "Assembly":
+        """Sum of what follows a state on the loading path."""
+        return self.with_energies([energy.after(nodes, controls) for energy in self.energies])
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Total energy [J]; infinite where one of the energies is not defined."""
@@ -66,72 +132,50 @@ class Assembly:
             _add_vectors(energy.stencils, energy.gradient(nodes, controls), total)
         return total.ravel()
 
-    def hessian(self, nodes: Nodes, controls: Vector, *, lift: float = 0.0) -> csc_array:
+    def hessian(self, nodes: Nodes, controls: Vector, *, projection: float = 0.0) -> csc_array:
         """d2E/dx2 [N/m], sparse, less its part of low rank.
 
-        `lift` is the share, 0 to 1, of what is negative in the blocks that is taken out (E6).
+        `projection` is the share, 0 to 1, of what is negative in the blocks that is taken out (E6).
         """
-        data = self._hessian_values(nodes, controls, lift)
-        return csc_array((data, self._indices, self._indptr), shape=(self.size, self.size))
+        values = self._values(nodes, controls, projection)
+        return csc_array((values, self.pattern.indices, self.pattern.indptr), shape=(self.size, self.size))
 
-    def _hessian_values(self, nodes: Nodes, controls: Vector, lift: float) -> Vector:
-        data = self._quadratic.copy()
-        for energy, slots in zip(self.energies, self._slots, strict=True):
-            if energy.quadratic:
-                continue
-            if lift and not energy.convex:
-                blocks = energy.lifted_hessian(nodes, controls, lift)
-            else:
-                blocks = energy.hessian(nodes, controls)
-            _add_blocks(energy.stencils, slots, self._strides, blocks, data)
-        return data
+    def coupling(self, nodes: Nodes, controls: Vector) -> Coupling:
+        """Springs of all energies together: the part G D G^T of d2E/dx2 that `hessian` leaves out.
 
-    def _sum_of_quadratic(self) -> Vector:
-        """Values of the Hessian of the energies in which it is constant."""
-        data = np.zeros(len(self._indices))
-        rest, idle = np.zeros(self.shape), np.zeros(self.control_count)
-        for energy, slots in zip(self.energies, self._slots, strict=True):
-            if energy.quadratic:
-                _add_blocks(energy.stencils, slots, self._strides, energy.hessian(rest, idle), data)
-        return data
-
-    def low_rank(
-        self, nodes: Nodes, controls: Vector
-    ) -> tuple[Float[np.ndarray, "dofs rank"], Float[np.ndarray, "rank rank"]]:
-        """G and D of the part G D G^T of d2E/dx2 that `hessian` leaves out."""
-        parts = [part for energy in self.energies if (part := energy.low_rank(nodes, controls)) is not None]
+        Their law is known if one energy alone has any.
+        """
+        parts = [part for part in self.couplings(nodes, controls) if part is not None]
         if not parts:
-            return np.zeros((self.size, 0)), np.zeros((0, 0))
+            return Coupling(columns=np.zeros((self.size, 0)), weights=np.zeros((0, 0)))
         if len(parts) == 1:
             return parts[0]
-        ranks = np.cumsum([0, *(len(weights) for _, weights in parts)])
-        joint = np.zeros((ranks[-1], ranks[-1]))
-        for start, end, (_, weights) in zip(ranks, ranks[1:], parts, strict=False):
-            joint[start:end, start:end] = weights
-        return np.concatenate([columns for columns, _ in parts], axis=1), joint
+        columns = np.concatenate([part.columns for part in parts], axis=1)
+        return Coupling(columns=columns, weights=block_diag(*(part.weights for part in parts)))
 
-    def stiffness(self, nodes: Nodes, controls: Vector, *, lift: float = 0.0, shift: float = 0.0) -> Stiffness:
+    def couplings(self, nodes: Nodes, controls: Vector) -> list[Coupling | None]:
+        """Springs of each energy that couple many nodes; None where it has none."""
+        return [energy.coupling(nodes, controls) for energy in self.energies]
+
+    def stiffness(self, nodes: Nodes, controls: Vector, *, projection: float = 0.0, shift: float = 0.0) -> Stiffness:
         """The whole of d2E/dx2, ready to be solved with.
 
-        `lift` is as in `hessian`; `shift`, a share of the largest diagonal entry, is added to the diagonal.
+        `projection` is as in `hessian`; `shift`, a share of the largest diagonal entry, is added to the diagonal.
         """
-        values = self._hessian_values(nodes, controls, lift)
+        values = self._values(nodes, controls, projection)
         if shift:
-            values[self._diagonal] += shift * values[self._diagonal].max()
-        return Stiffness(self._analysis.factorise(values), *self.low_rank(nodes, controls))
-
-    def hessian_product(
-        self, nodes: Nodes, controls: Vector, columns: Float[np.ndarray, "dofs columns"]
-    ) -> Float[np.ndarray, "dofs columns"]:
-        """d2E/dx2 times some columns."""
-        vectors, weights = self.low_rank(nodes, controls)
-        return self.hessian(nodes, controls) @ columns + vectors @ (weights @ (vectors.T @ columns))
+            values[self.pattern.diagonal] += shift * values[self.pattern.diagonal].max()
+        factors = self.pattern.analysis.factorise(values)
+        return Stiffness(factors, self.coupling(nodes, controls), token=self.token)
 
     def control_derivative(self, nodes: Nodes, controls: Vector) -> csc_array:
         """d2E/dx da, sparse, (nodes x dim, controls)."""
         rows, columns, data = [], [], []
-        for energy, dofs in zip(self.energies, self._dofs, strict=True):
+        for energy in self.energies:
             if energy.controls is not None:
+                dofs = (energy.stencils[:, :, None] * self.shape[1] + np.arange(self.shape[1])).reshape(
+                    len(energy.stencils), -1
+                )
                 rows.append(dofs.ravel())
                 columns.append(np.repeat(energy.controls, dofs.shape[1]))
                 data.append(energy.control_gradient(nodes, controls).ravel())
@@ -140,32 +184,34 @@ class Assembly:
             return csc_array(shape)
         return csc_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
 
-    def _pattern(self) -> None:
-        """Columns and rows of the Hessian, and where each dim x dim block of each term goes."""
-        count, dim = self.shape
-        keys = [
-            (energy.stencils[:, None, :].astype(np.int64) * count + energy.stencils[:, :, None]).ravel()
-            for energy in self.energies
-        ]
-        diagonal = np.arange(count, dtype=np.int64) * (count + 1)
-        entries, places = np.unique(np.concatenate([*keys, diagonal]), return_inverse=True)
-        columns, rows = np.divmod(entries, count)
-        starts = np.searchsorted(columns, np.arange(count + 1))
-        heights = np.diff(starts)
-        self._strides = heights * dim
-        below = (rows[:, None] * dim + np.arange(dim)).astype(np.int32)
-        self._indices = np.concatenate(
-            [np.tile(below[starts[node] : starts[node + 1]].ravel(), dim) for node in range(count)]
-        )
-        self._indptr = np.concatenate([[0], np.cumsum(np.repeat(self._strides, dim))]).astype(np.int32)
-        own = np.repeat(np.arange(self.size), np.diff(self._indptr))
-        self._diagonal = np.flatnonzero(self._indices == own)
-        first = starts[columns] * dim * dim + (np.arange(len(entries)) - starts[columns]) * dim
-        slots = np.split(first[places], np.cumsum([len(key) for key in keys]))
-        self._slots = [
-            slot.reshape(*energy.stencils.shape, energy.stencils.shape[1])
-            for slot, energy in zip(slots, self.energies, strict=False)
-        ]
+    def _like(self, energies: Sequence[Energy], pattern: Pattern) -> "Assembly":
+        """Assembly that factors of this one serve too."""
+        other = Assembly(energies, rest=pattern.rest, control_count=self.control_count, pattern=pattern)
+        other.token = self.token
+        return other
+
+    def _values(self, nodes: Nodes, controls: Vector, projection: float) -> Vector:
+        """Values of the sparse part of the Hessian."""
+        data = self._quadratic.copy()
+        for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
+            if energy.quadratic:
+                continue
+            if projection and not energy.convex:
+                blocks = energy.projected_hessian(nodes, controls, projection)
+            else:
+                blocks = energy.hessian(nodes, controls)
+            _add_blocks(energy.stencils, slots, self.pattern.strides, blocks, data)
+        return data
+
+    @cached_property
+    def _quadratic(self) -> Vector:
+        """Values of the Hessian of the energies in which it is constant."""
+        data = np.zeros(int(self.pattern.indptr[-1]))
+        rest, idle = np.zeros(self.shape), np.zeros(self.control_count)
+        for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
+            if energy.quadratic:
+                _add_blocks(energy.stencils, slots, self.pattern.strides, energy.hessian(rest, idle), data)
+        return data
 
 
 @njit(**KERNEL)

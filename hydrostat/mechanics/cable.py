@@ -9,7 +9,7 @@ from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.kernel import INNER, KERNEL
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
+from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 
 
@@ -91,10 +91,13 @@ class CableEnergy(Energy):
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.ratios * self.law.tangent(self.elongations(nodes, controls)))
 
-    def low_rank(
-        self, nodes: Nodes, controls: Vector
-    ) -> tuple[Float[np.ndarray, "dofs cables"], Float[np.ndarray, "cables cables"]]:
-        return self.columns(nodes), np.diag(self.law.tangent(self.elongations(nodes, controls)))
+    def coupling(self, nodes: Nodes, controls: Vector) -> Coupling:
+        elongations = self.elongations(nodes, controls)
+        weights = np.diag(self.law.tangent(elongations))
+        return Coupling(columns=self.columns(nodes), weights=weights, elongations=elongations, law=self.law)
+
+    def largest_force(self, nodes: Nodes, controls: Vector) -> float:
+        return float(self.tensions(nodes, controls).max(initial=0.0))
 
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
         """dl/dx of each cable."""

@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from typing import no_type_check
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Int
 from numba import njit
 
 from hydrostat.arrays import Vector
 from hydrostat.kernel import INNER, KERNEL
+from hydrostat.mechanics.energy import Small
 from hydrostat.mechanics.tension_law import TensionLaw, spring
-
-Small = Float[np.ndarray, "spans spans"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,7 +66,7 @@ class ChainLaw(TensionLaw):
         return by_elongation, lowered - weights @ lowered / weights.sum(axis=1, keepdims=True)
 
     def _own(self, elongation: Vector, slips: Vector) -> Vector:
-        """Stretch of each span after the slips."""
+        """Elongation of each span after the slips."""
         after = np.append(slips[1:], 0.0)
         return elongation + slips - after
 
@@ -86,7 +85,7 @@ _RELAXATIONS = 500
 
 
 _NOISE = 1e-15
-"""A elongation is known to this fraction of the lengths that it is the sum of."""
+"""An elongation is known to this fraction of the lengths that it is the sum of."""
 
 
 @njit(**KERNEL)

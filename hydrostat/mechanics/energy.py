@@ -1,36 +1,92 @@
 """`Energy`: the contract of every term of the potential energy E(x; a)."""
 
 from abc import ABC, abstractmethod
-from typing import ClassVar
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Nodes, Points, Vector
 
 Stencils = Int[np.ndarray, "terms corners"]
 Blocks = Float[np.ndarray, "terms corners dim"]
 HessianBlocks = Float[np.ndarray, "terms size size"]
+Columns = Float[np.ndarray, "dofs rank"]
+Small = Float[np.ndarray, "rank rank"]
+
+
+@runtime_checkable
+class Law(Protocol):
+    """Forces of a few springs against their elongations s: T = dU/ds, with U convex."""
+
+    def tension(self, elongation: Vector) -> Vector:
+        """T [N] at these elongations [m]."""
+        ...
+
+    def tangent(self, elongation: Vector) -> Vector:
+        """dT/ds [N/m]."""
+        ...
+
+    def balance(self, elongations: Vector, compliance: Small) -> Vector | None:
+        """T = law(elongations - compliance @ T): forces on a linear body that gives way to them; None if not found."""
+        ...
+
+
+class Compliance(NamedTuple):
+    """How a body without the springs of a coupling, K, gives way to them.
+
+    Attributes:
+        moves: K^-1 G [m/N].
+        compliance: G^T K^-1 G [m/N].
+    """
+
+    moves: Columns
+    compliance: Small
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Coupling:
+    """Springs that couple many nodes through few elongations s(x): the part G D G^T of the Hessian, of low rank.
+
+    Attributes:
+        columns: G = ds/dx.
+        weights: D [N/m], positive semidefinite.
+        elongations: s [m]; None if only G and D are told.
+        law: forces of the springs, with D = diag(dT/ds); Newton then knows that a spring can go slack within a step.
+    """
+
+    columns: Columns
+    weights: Small
+    elongations: Vector | None = None
+    law: Law | None = None
 
 
 class Energy(ABC):
     """A sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
     A control is what an actuator commands: the contraction of a winch [m], the tension of a muscle fibre [N].
-    A new energy needs no more than this contract to be assembled, minimised and differentiated; run
+    A new energy needs value, gradient and Hessian to be assembled and minimised, and is given to a `Simulation` in a
+    list. All other methods have defaults; they tell what a solver may have to ask. Run
     `hydrostat.testing.check_energy` on it.
 
     Attributes:
         stencils: nodes of each term, (terms, corners).
         controls: index of the control of each term, (terms,); None for an energy without controls.
+        supports: index of the support that holds each term, (terms,); None for an energy that nothing outside holds.
         convex: whether every Hessian block is positive semidefinite wherever the energy is defined.
         quadratic: whether the Hessian is the same for all nodes and controls; then it is added up once.
+        has_history: whether it depends on the loading path, as friction does; then a solve follows the path by
+            `imbalance`, `corrected` and `after`, and `history` is kept with the pose.
     """
 
     stencils: Stencils
     controls: Int[np.ndarray, " terms"] | None = None
+    supports: Int[np.ndarray, " terms"] | None = None
     convex: ClassVar[bool] = True
     quadratic: ClassVar[bool] = False
+    has_history: ClassVar[bool] = False
 
     @abstractmethod
     def value(self, nodes: Nodes, controls: Vector) -> float:
@@ -42,26 +98,73 @@ class Energy(ABC):
 
     @abstractmethod
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), less what `low_rank` tells."""
+        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), less what `coupling` tells."""
 
-    def lifted_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        """The Hessian blocks with this share, 0 to 1, of what is negative in them taken out (E6)."""
+    def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+        """Hessian blocks with this share, 0 to 1, of what is negative in them taken out: projected Newton (E6)."""
         blocks = self.hessian(nodes, controls)
         return blocks if self.convex else blocks + share * (nearest_semidefinite(blocks) - blocks)
 
-    def low_rank(
-        self, nodes: Nodes, controls: Vector
-    ) -> tuple[Float[np.ndarray, "dofs rank"], Float[np.ndarray, "rank rank"]] | None:
-        """G and D of a part G D G^T of d2E/dx2 that couples many nodes; D is positive semidefinite. None for most."""
+    def coupling(self, nodes: Nodes, controls: Vector) -> Coupling | None:
+        """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""
         return None
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         """d2E/dx da of each term, (terms, corners, dim), a being the term's own control."""
         raise NotImplementedError(f"{type(self).__name__} has no controls")
 
+    def largest_force(self, nodes: Nodes, controls: Vector) -> float:
+        """Largest force that it applies to the body [N], to which a solver's tolerance is relative; 0 for none."""
+        return 0.0
+
+    def largest_step(self, nodes: Nodes, move: Nodes) -> float:
+        """Largest share of a straight move [m] that is admissible, above 0, at most 1: up to the first touch."""
+        return 1.0
+
+    def near(self, nodes: Nodes) -> "Energy":
+        """Energy with the terms that count near `nodes`, where these come and go; itself where they never change."""
+        return self
+
+    def with_load(self, share: float) -> "Energy":
+        """Energy with this share of its dead load, for load steps; itself if it has none."""
+        return self
+
+    def with_supports_moved(self, shifts: Points) -> "Energy":
+        """Energy with each support moved by its row of `shifts` [m]; itself if nothing outside holds it."""
+        return self
+
+    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+        """d(dE/dx . field) / dp for parameters p by name, each as a vector; those of energies with equal names add up.
+
+        `mu` and `lame` are Lame's parameters [Pa]; `load` is a factor of all dead loads, `thickness` one of what
+        grows with the thickness of a flat body; `support_stiffness` is that of each support [N/m].
+        """
+        return {}
+
+    @property
+    def history(self) -> Vector:
+        """What it remembers of the loading path, as numbers; empty for most."""
+        return np.zeros(0)
+
+    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> Self:
+        """Energy that remembers `history`, at equilibrium in a given state."""
+        return self
+
+    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+        """Force [N] by which what is held fixed while minimising is off what it should be at `nodes`; 0 for most."""
+        return 0.0
+
+    def corrected(self, nodes: Nodes, controls: Vector, compliance: Compliance | None) -> Self:
+        """Energy in which that is nearer to what it should be; by Newton's method if a compliance is given."""
+        return self
+
+    def after(self, nodes: Nodes, controls: Vector) -> Self:
+        """Energy of what follows a state on the loading path."""
+        return self
+
 
 def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
-    """Each symmetric block with its negative eigenvalues set to zero."""
+    """Symmetric blocks with their negative eigenvalues set to zero."""
     values, vectors = np.linalg.eigh(blocks)
     bad = values[:, 0] < 0
     if not bad.any():

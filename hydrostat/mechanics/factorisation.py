@@ -40,6 +40,12 @@ SHARES = np.array([0.4, 0.5, 0.6])
 DISTANCES = 3
 """How many distances in the graph serve as coordinates, beside the points if there are any."""
 
+ORDERING = 12e-6
+"""What it takes to find an order [s], for each node."""
+
+FACTORISATIONS = 200
+"""So many factorisations of one pattern are counted on, where an order that is known competes with one to be found."""
+
 
 @runtime_checkable
 class Factors(Protocol):
@@ -56,10 +62,11 @@ class Factors(Protocol):
 class Analysis:
     """What the factorisations of all matrices with one pattern have in common.
 
-    It owns the memory they work in, so one analysis serves one thread.
+    Threads may share it.
 
     Attributes:
         backend: which one factorises, "supernodal" or "superlu".
+        tree: supernodes of the order of elimination; only of the supernodal one.
     """
 
     def __init__(
@@ -69,6 +76,7 @@ class Analysis:
         *,
         dim: int,
         points: Nodes | None = None,
+        like: "Analysis | None" = None,
         backend: Backend = "auto",
     ) -> None:
         """Analyse the pattern of a symmetric matrix.
@@ -78,6 +86,7 @@ class Analysis:
             indices: rows of the entries, rising in each column; both triangles.
             dim: degrees of freedom of a node, side by side.
             points: where the nodes are, (nodes, any dimension).
+            like: of a pattern with fewer entries; its order is taken where a better one would not pay.
             backend: who factorises.
 
         Raises:
@@ -91,8 +100,9 @@ class Analysis:
         indptr, indices = (np.require(array, np.int32, ["C", "W"]) for array in (indptr, indices))
         self._indptr, self._indices, self._size = indptr, indices, size
         if self.backend == "supernodal":
-            tree = _cheapest_tree(indptr, indices, dim, points)
-            self._supernodal = SupernodalAnalysis(tree, indptr, indices, dim)
+            known = None if like is None or like.backend != self.backend else like.tree
+            self.tree = _cheapest_tree(indptr, indices, dim, points, known)
+            self._supernodal = SupernodalAnalysis(self.tree, indptr, indices, dim)
 
     def factorise(self, data: Vector) -> "Factorisation":
         """Factorise the matrix with these values, in the order of `indices`."""
@@ -160,9 +170,19 @@ class SuperLUFactors:
         return self._lu.solve(np.ascontiguousarray(right))
 
 
-def _cheapest_tree(indptr: np.ndarray, indices: np.ndarray, dim: int, points: Nodes | None) -> symbolic.Tree:
-    """Supernodes of the best of the orders that we know."""
+def _cheapest_tree(
+    indptr: np.ndarray,
+    indices: np.ndarray,
+    dim: int,
+    points: Nodes | None,
+    known: symbolic.EliminationTree | None,
+) -> symbolic.EliminationTree:
+    """Supernodes of the best of the orders that we know; of a known order where making others would not pay."""
     starts, neighbours = ordering.block_graph(indptr, indices, dim)
+    if known is not None:
+        tree = symbolic.supernodes(starts, neighbours, known.order, dim)
+        if FACTORISATIONS * (tree.seconds - known.seconds) <= ORDERING * len(tree.order):
+            return tree
     distances = ordering.graph_coordinates(starts, neighbours, DISTANCES)
     coordinates = distances if points is None else np.hstack([points, distances])
     orders = [

@@ -47,6 +47,9 @@ class FibreEnergy(Energy):
             terms, size, size
         )
 
+    def largest_force(self, nodes: Nodes, controls: Vector) -> float:
+        return float(controls.max(initial=0.0))
+
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         spans = self.spans(nodes)
         directions = spans / np.linalg.norm(spans, axis=1)[:, None]

@@ -8,9 +8,8 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics.cable import CableEnergy
-from hydrostat.mechanics.chain_law import ChainLaw, Small
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
-from hydrostat.mechanics.stiffness import Stiffness
+from hydrostat.mechanics.chain_law import ChainLaw
+from hydrostat.mechanics.energy import Blocks, Compliance, Coupling, Energy, HessianBlocks, Small, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 from hydrostat.mechanics.turns import Turns
 
@@ -21,14 +20,16 @@ class FrictionCableEnergy(Energy):
     A cable with friction is a chain of springs of its own material, a span for every segment that is not sheathed; one
     without friction is a single span, as in `CableEnergy`. Cable slips over the point between two spans against a force
     of at most `law.limits`. By the capstan law this belongs to the tensions and angles of the state that is found, so
-    there is no potential: whoever minimises brings it about, by `capstan_limits`, `corrected` and `with_limits`. The
-    slips of the past are in `slips`; `after` gives the energy of what comes next.
+    there is no potential: whoever minimises brings it about, by `imbalance` and `corrected`. The slips of the past are
+    its history; `after` gives the energy of what comes next.
 
     Attributes:
         slips: what has passed the point before each span [m], positive towards the winch.
         friction: coefficient mu at the point before each span.
         law: of the spans, with the limits of friction.
     """
+
+    has_history = True
 
     def __init__(
         self,
@@ -115,10 +116,12 @@ class FrictionCableEnergy(Energy):
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self._spans.bends(nodes, self.span_tensions(nodes, controls))
 
-    def low_rank(
-        self, nodes: Nodes, controls: Vector
-    ) -> tuple[Float[np.ndarray, "dofs spans"], Float[np.ndarray, "spans spans"]]:
-        return self._spans.columns(nodes), self.law.tangents(self.elongations(nodes, controls))
+    def coupling(self, nodes: Nodes, controls: Vector) -> Coupling:
+        tangents = self.law.tangents(self.elongations(nodes, controls))
+        return Coupling(columns=self._spans.columns(nodes), weights=tangents)
+
+    def largest_force(self, nodes: Nodes, controls: Vector) -> float:
+        return float(self.span_tensions(nodes, controls).max(initial=0.0))
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self._by_control(self.law.tangents(self.elongations(nodes, controls))))
@@ -133,13 +136,22 @@ class FrictionCableEnergy(Energy):
         larger = np.maximum(tensions, np.append(0.0, tensions[:-1]))
         return -np.expm1(-self.friction * self.angles(nodes)) * larger
 
+    @property
+    def history(self) -> Vector:
+        """Slips at the point before each span [m]."""
+        return self.slips
+
     def with_limits(self, limits: Vector) -> "FrictionCableEnergy":
-        """The same against other limits of friction [N]."""
+        """Energy against other limits of friction [N]."""
         return self._with(limits, self.slips)
 
-    def resumed(self, slips: Vector, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
-        """The same after other slips [m], at equilibrium with these in a given state."""
-        still = self._with(np.full_like(slips, _HELD), slips)
+    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+        """How far the limits of friction are from those of the capstan law [N]."""
+        return float(np.abs(self.capstan_limits(nodes, controls) - self.law.limits).max(initial=0.0))
+
+    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
+        """Energy after other slips [m], at equilibrium with these in a given state."""
+        still = self._with(np.full_like(history, _HELD), history)
         return still.with_limits(still.capstan_limits(nodes, controls))
 
     def after(self, nodes: Nodes, controls: Vector) -> "FrictionCableEnergy":
@@ -147,30 +159,32 @@ class FrictionCableEnergy(Energy):
         slips = self.slips + self.law.slips(self.elongations(nodes, controls))
         return self._with(self.capstan_limits(nodes, controls), slips)
 
-    def corrected(self, nodes: Nodes, controls: Vector, stiffness: Stiffness) -> Vector:
-        """Better limits [N] than those now: a step of Newton towards the capstan law.
+    def corrected(self, nodes: Nodes, controls: Vector, compliance: Compliance | None) -> "FrictionCableEnergy":
+        """Energy with better limits: those of the capstan law here, or where a step of Newton towards it leads.
 
         Args:
             nodes: equilibrium with the limits as they are [m].
             controls: contractions [m].
-            stiffness: the Hessian there.
+            compliance: of the body there.
         """
+        if compliance is None:
+            return self.with_limits(self.capstan_limits(nodes, controls))
         elongations = self.elongations(nodes, controls)
         tensions = self.law.tension(elongations)
         by_elongation, by_limit = self.law.locked(tensions, np.sign(self.law.slips(elongations)))
         unit = np.eye(len(tensions))
-        moved = np.linalg.solve(unit + by_elongation @ stiffness.compliance, by_limit)
-        slopes = unit - self._limit_slopes(nodes, tensions, stiffness) @ moved
+        moved = np.linalg.solve(unit + by_elongation @ compliance.compliance, by_limit)
+        slopes = unit - self._limit_slopes(nodes, tensions, compliance) @ moved
         miss = self.capstan_limits(nodes, controls) - self.law.limits
-        return np.maximum(self.law.limits + np.linalg.solve(slopes, miss), 0.0)
+        return self.with_limits(np.maximum(self.law.limits + np.linalg.solve(slopes, miss), 0.0))
 
-    def moves(self, nodes: Nodes, controls: Vector, stiffness: Stiffness) -> Float[np.ndarray, "dofs controls"]:
+    def moves(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Float[np.ndarray, "dofs controls"]:
         """D nodes / d controls while the capstan law holds and cable goes on slipping where it is about to.
 
         Args:
             nodes: an equilibrium [m].
             controls: contractions [m].
-            stiffness: the Hessian there.
+            compliance: of the body there.
         """
         tensions = self.span_tensions(nodes, controls)
         drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
@@ -180,17 +194,19 @@ class FrictionCableEnergy(Energy):
         pulled = np.zeros((len(tensions), len(controls)))
         pulled[np.arange(len(tensions)), self._spans.winches] = self._by_control(by_elongation)
         unit = np.eye(len(tensions))
-        slopes = unit + by_elongation @ stiffness.compliance - by_limit @ self._limit_slopes(nodes, tensions, stiffness)
-        return -stiffness.moves @ np.linalg.solve(slopes, pulled)
+        slopes = (
+            unit + by_elongation @ compliance.compliance - by_limit @ self._limit_slopes(nodes, tensions, compliance)
+        )
+        return -compliance.moves @ np.linalg.solve(slopes, pulled)
 
-    def _limit_slopes(self, nodes: Nodes, tensions: Vector, stiffness: Stiffness) -> Small:
+    def _limit_slopes(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> Small:
         """D capstan limits / d tensions, of the body that gives way to these too."""
         before = np.append(0.0, tensions[:-1])
         angles = self.friction * self.angles(nodes)
         slopes = np.zeros((len(tensions), len(tensions)))
         span = np.arange(len(tensions))
         slopes[span, span - (before > tensions)] = -np.expm1(-angles)
-        turned = self._turns.gradients(nodes, len(tensions)).T @ stiffness.moves
+        turned = self._turns.gradients(nodes, len(tensions)).T @ compliance.moves
         return slopes - (self.friction * np.exp(-angles) * np.maximum(tensions, before))[:, None] * turned
 
     def _pull(self, nodes: Nodes, forces: Vector) -> Blocks:

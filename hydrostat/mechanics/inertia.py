@@ -29,3 +29,6 @@ class InertiaEnergy(Energy):
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self._blocks
+
+    def largest_force(self, nodes: Nodes, controls: Vector) -> float:
+        return float(np.abs(self.gradient(nodes, controls)).max())

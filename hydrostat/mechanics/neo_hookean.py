@@ -1,6 +1,7 @@
 """`NeoHookean`: the elastic energy of the body."""
 
 import math
+from collections.abc import Mapping
 from typing import ClassVar, no_type_check
 
 import numpy as np
@@ -21,17 +22,20 @@ class NeoHookean(Energy):
 
     convex: ClassVar[bool] = False
 
-    def __init__(self, nodes: Nodes, elements: Elements, *, mu: float, lame: float, thickness: float = 1.0) -> None:
+    def __init__(
+        self, nodes: Nodes, elements: Elements, *, mu: float, lame: float | None, thickness: float = 1.0
+    ) -> None:
         """Material of Lame's parameters `mu` and `lame` [Pa] on the rest shape `nodes`.
 
-        `thickness` [m] is that of a flat body; leave it out in space.
+        `lame` is None where another energy resists a change of volume, such as `PatchVolume`. `thickness` [m] is that
+        of a flat body; leave it out in space.
         """
         dim = nodes.shape[1]
         corners = nodes[elements]
         spans = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
         inverse = np.linalg.inv(spans)
         self.stencils = np.ascontiguousarray(elements)
-        self.mu, self.lame = mu, lame
+        self.mu, self.lame, self.volumetric = mu, lame or 0.0, lame is not None
         self.volumes = np.linalg.det(spans) / (2.0 if dim == 2 else 6.0) * thickness
         self.shape_gradients = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
         self._rest = nodes
@@ -53,13 +57,26 @@ class NeoHookean(Energy):
         return blocks
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        return self.lifted_hessian(nodes, controls, 0.0)
+        return self.projected_hessian(nodes, controls, 0.0)
 
-    def lifted_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+    def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         size = self.stencils.shape[1] * nodes.shape[1]
         blocks = np.empty((len(self.stencils), size, size))
         _hessian(blocks, share, nodes - self._rest, *self._element_data)
         return blocks
+
+    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+        works = {"mu": self._work(nodes, field, 1.0, 0.0)}
+        if self.volumetric:
+            works["lame"] = self._work(nodes, field, 0.0, 1.0)
+        whole = self.mu * works["mu"] + self.lame * works.get("lame", 0.0)
+        return {**works, "thickness": whole}
+
+    def _work(self, nodes: Nodes, field: Nodes, mu: float, lame: float) -> Vector:
+        """Work of the forces along a field, were Lame's parameters these."""
+        blocks = np.empty((*self.stencils.shape, nodes.shape[1]))
+        _gradient(blocks, nodes - self._rest, self.stencils, self._padded, self.volumes, mu, lame, self._axes)
+        return np.array([float((blocks * field[self.stencils]).sum())])
 
     @property
     def _element_data(self) -> tuple:

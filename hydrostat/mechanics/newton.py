@@ -1,6 +1,5 @@
 """Newton's method with a safeguarded step: the statics solver."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import count
@@ -11,8 +10,6 @@ from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
-from hydrostat.mechanics.cable import CableEnergy
-from hydrostat.mechanics.settle import settle
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.warp import Warp
 
@@ -93,7 +90,6 @@ def minimise(
     start: Nodes,
     controls: Vector,
     *,
-    force_scale: Callable[[Nodes], float],
     round_off: RoundOff,
     options: NewtonOptions,
     warp: Warp | None = None,
@@ -103,14 +99,14 @@ def minimise(
     """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
     The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). The
-    step follows arcs and knows that a cable can go slack; it is halved until no element is inverted and the energy
-    falls. A saddle is left along a mode in which the energy falls.
+    step follows arcs and knows that a cable can go slack; it goes no further than all energies admit, and is halved
+    until no element is inverted and the energy falls. A saddle is left along a mode in which the energy falls. Forces
+    count as balanced relative to the largest one that an energy applies.
 
     Args:
         assembly: the energy.
         start: positions to begin at [m].
         controls: contractions [m] or tensions [N].
-        force_scale: largest applied force [N] at given nodes; `options.tolerance` is relative to it.
         round_off: forces and energies too small to be told apart.
         options: tolerance and limits.
         warp: bends steps along arcs; only straight ones without it.
@@ -118,18 +114,19 @@ def minimise(
             then costs no factorisation: it is the prediction dx/da, bent along arcs.
         exact: whether `stiffness` is that of `start` to rounding; then it may stand for the Hessian at an end nearby.
     """
-    return _Descent(assembly, controls, force_scale, round_off, options, warp, exact).run(start, stiffness)
+    return _EnergyDescent(assembly, controls, round_off, options, warp, exact).run(start, stiffness)
 
 
-class _Place(NamedTuple):
-    """Where Newton is."""
+class _Iterate(NamedTuple):
+    """Where Newton is, with the energies that count there."""
 
+    assembly: Assembly
     nodes: Nodes
     energy: float
     gradient: Vector
 
 
-class _Descent:
+class _EnergyDescent:
     """One minimisation; `run` is the loop, each method one part of it.
 
     Attributes:
@@ -143,7 +140,6 @@ class _Descent:
         self,
         assembly: Assembly,
         controls: Vector,
-        force_scale: Callable[[Nodes], float],
         round_off: RoundOff,
         options: NewtonOptions,
         warp: Warp | None,
@@ -151,8 +147,7 @@ class _Descent:
     ) -> None:
         self.exact = exact
         self.assembly, self.controls = assembly, controls
-        self.force_scale, self.noise, self.options, self.warp = force_scale, round_off, options, warp
-        self.cables = next((energy for energy in assembly.energies if isinstance(energy, CableEnergy)), None)
+        self.noise, self.options, self.warp = round_off, options, warp
         self.share = 0.0
         self.saddles = 0
         self.last: Stiffness | None = None
@@ -160,12 +155,14 @@ class _Descent:
 
     def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
         """Newton from `start` to a reason to stop."""
-        energy = self.assembly.value(start, self.controls)
+        assembly = self.assembly.near(start)
+        energy = assembly.value(start, self.controls)
         if not np.isfinite(energy):
-            return self._result(_Place(start, energy, np.full(start.size, np.inf)), Reason.BAD_START, 0.0, 0)
-        place = self._arrive(start, energy)
+            place = _Iterate(assembly, start, energy, np.full(start.size, np.inf))
+            return self._result(place, Reason.BAD_START, 0.0, 0)
+        place = self._arrive(assembly, start, energy)
         for iteration in count():
-            scale = self.force_scale(place.nodes)
+            scale = place.assembly.largest_force(place.nodes, self.controls)
             allowed = max(self.options.tolerance * scale, self.noise.force)
             residual = float(np.abs(place.gradient).max())
             if residual <= allowed:
@@ -180,30 +177,39 @@ class _Descent:
             place = found
         raise AssertionError("count() never ends")
 
-    def _arrive(self, nodes: Nodes, energy: float) -> _Place:
-        return _Place(nodes, energy, self.assembly.gradient(nodes, self.controls))
+    def _arrive(self, assembly: Assembly, nodes: Nodes, energy: float) -> _Iterate:
+        return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls))
 
-    def _advance(self, place: _Place, known: Stiffness | None, near: bool) -> _Place | None:
+    def _try(self, place: _Iterate, step: Vector) -> tuple[Assembly, Nodes, float, float]:
+        """Where a step leads as far as all energies admit, the energy there, and which share of the step that is."""
+        nodes = self.bend(place.nodes, step)
+        share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
+        if share < 1.0:
+            nodes = place.nodes + share * (nodes - place.nodes)
+        assembly = place.assembly.near(nodes)
+        return assembly, nodes, assembly.value(nodes, self.controls), share
+
+    def _advance(self, place: _Iterate, known: Stiffness | None, near: bool) -> _Iterate | None:
         """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones."""
         if self.last is not None and near:
             found = self._chord(place, self.last)
             if found is not None:
                 return found
-        reused = self._reuse(place.nodes, known)
-        stiffness = reused or self._definite(place.nodes)
+        reused = self._reuse(place, known)
+        stiffness = reused or self._definite(place)
         self.last, self.sharp = (
             (stiffness, near and (reused is None or self.exact)) if self.share == 0.0 else (None, False)
         )
         return None if stiffness is None else self._search(place, stiffness)
 
-    def _reuse(self, nodes: Nodes, known: Stiffness | None) -> Stiffness | None:
-        """What is known of the Hessian, with the cables as they are now; None if that is not definite."""
-        if known is None or known.singular:
+    def _reuse(self, place: _Iterate, known: Stiffness | None) -> Stiffness | None:
+        """What is known of the Hessian, with the springs as they are now; None if that is not definite."""
+        if known is None or known.singular or known.token is not self.assembly.token:
             return None
-        stiffness = known.with_weights(self.assembly.low_rank(nodes, self.controls)[1])
+        stiffness = known.with_weights(place.assembly.coupling(place.nodes, self.controls).weights)
         return stiffness if stiffness.definite else None
 
-    def _definite(self, nodes: Nodes) -> Stiffness | None:
+    def _definite(self, place: _Iterate) -> Stiffness | None:
         """The Hessian, or a definite matrix in its place where it is not definite.
 
         Near a buckling load the full Hessian is indefinite by a hair only. There the projected one is far too stiff: it
@@ -213,38 +219,36 @@ class _Descent:
         """
         self.share = self.share / 16 if self.share > _LEAST_SHARE else 0.0
         while True:
-            stiffness = self.assembly.stiffness(nodes, self.controls, lift=self.share)
+            stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=self.share)
             if stiffness.definite:
                 return stiffness
             if self.share == 1.0:
                 break
             self.share = min(16 * self.share, 1.0) if self.share else 1.0
         for shift in _SHIFTS:
-            stiffness = self.assembly.stiffness(nodes, self.controls, lift=1.0, shift=shift)
+            stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=1.0, shift=shift)
             if stiffness.definite:
                 return stiffness
         return None
 
-    def _search(self, place: _Place, stiffness: Stiffness) -> _Place | None:
+    def _search(self, place: _Iterate, stiffness: Stiffness) -> _Iterate | None:
         """The next place; None if no length of the step lowers the energy.
 
         Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
         """
-        nodes, energy, gradient = place
         step = self._step(place, stiffness)
-        slope = float(gradient @ step)
+        slope = float(place.gradient @ step)
         length = 1.0
         for _ in range(self.options.halvings):
-            gain = -length * slope
-            trial = self.bend(nodes, length * step)
-            value = self.assembly.value(trial, self.controls)
+            assembly, trial, value, share = self._try(place, length * step)
+            gain = -length * share * slope
             if gain > self.noise.energy:
-                if value <= energy - 1e-4 * gain:
-                    if self.share > 0.0 and length == 1.0:
-                        trial, value = self._stride(nodes, step, trial, value)
-                    return self._arrive(trial, value)
-            elif value <= energy + 10 * self.noise.energy:
-                found = self._arrive(trial, value)
+                if value <= place.energy - 1e-4 * gain:
+                    if self.share > 0.0 and length * share == 1.0:
+                        assembly, trial, value = self._stride(place, step, (assembly, trial, value))
+                    return self._arrive(assembly, trial, value)
+            elif value <= place.energy + 10 * self.noise.energy:
+                found = self._arrive(assembly, trial, value)
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
                     return found
             length *= 0.5
@@ -255,42 +259,44 @@ class _Descent:
         straight = step.reshape(nodes.shape)
         return nodes + straight if self.warp is None else self.warp(nodes, straight)
 
-    def _chord(self, place: _Place, last: Stiffness) -> _Place | None:
+    def _chord(self, place: _Iterate, last: Stiffness) -> _Iterate | None:
         """One more step with the factors of the last one; None if it does not pay."""
-        trial = self.bend(place.nodes, -last.solve(place.gradient))
-        value = self.assembly.value(trial, self.controls)
+        assembly, trial, value, _ = self._try(place, -last.solve(place.gradient))
         if not value <= place.energy + 10 * self.noise.energy:
             return None
-        found = self._arrive(trial, value)
+        found = self._arrive(assembly, trial, value)
         return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
-    def _step(self, place: _Place, stiffness: Stiffness) -> Vector:
+    def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
         """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
-        if self.cables is not None and stiffness.body_definite and stiffness.columns.size:
-            elongations = self.cables.elongations(place.nodes, self.controls)
-            pulled = stiffness.columns @ self.cables.law.tension(elongations)
-            free = -stiffness.solve_body(place.gradient - pulled)
-            tensions = settle(self.cables.law, elongations + stiffness.columns.T @ free, stiffness.compliance)
-            if tensions is not None:
-                return free - stiffness.moves @ tensions
+        if stiffness.body_definite and stiffness.columns.size:
+            springs = place.assembly.coupling(place.nodes, self.controls)
+            if springs.law is not None and springs.elongations is not None:
+                pulled = stiffness.columns @ springs.law.tension(springs.elongations)
+                free = -stiffness.solve_body(place.gradient - pulled)
+                elongations = springs.elongations + stiffness.columns.T @ free
+                tensions = springs.law.balance(elongations, stiffness.compliance)
+                if tensions is not None:
+                    return free - stiffness.moves @ tensions
         return -stiffness.solve(place.gradient)
 
-    def _stride(self, nodes: Nodes, step: Vector, trial: Nodes, value: float) -> tuple[Nodes, float]:
-        """A lifted Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
+    def _stride(
+        self, place: _Iterate, step: Vector, trial: tuple[Assembly, Nodes, float]
+    ) -> tuple[Assembly, Nodes, float]:
+        """A projected Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
         length = 2.0
         while True:
-            longer = self.bend(nodes, length * step)
-            lower = self.assembly.value(longer, self.controls)
-            if not lower < value:
-                return trial, value
-            trial, value = longer, lower
+            *longer, share = self._try(place, length * step)
+            if not (share == 1.0 and longer[2] < trial[2]):
+                return trial
+            trial = longer[0], longer[1], longer[2]
             length *= 2.0
 
-    def _leave_saddle(self, place: _Place) -> _Place | None:
+    def _leave_saddle(self, place: _Iterate) -> _Iterate | None:
         """A place of lower energy along a falling mode; None at a minimum, or where none is found."""
         if self.saddles == _SADDLES or self.options.tolerance > _SHARP:
             return None
-        stiffness = self._stiffness(place.nodes)
+        stiffness = self._stiffness(place)
         if stiffness.definite or stiffness.singular:
             return None
         try:
@@ -298,25 +304,24 @@ class _Descent:
         except ArpackError:
             return None
         size = float(np.ptp(place.nodes, axis=0).max())
-        trials = [self.bend(place.nodes, leap * size * mode) for leap in _LEAPS]
-        values = [self.assembly.value(trial, self.controls) for trial in trials]
-        least = int(np.argmin(values))
-        if not values[least] < place.energy - 10 * self.noise.energy:
+        trials = [self._try(place, leap * size * mode) for leap in _LEAPS]
+        assembly, nodes, value, _ = min(trials, key=lambda trial: trial[2])
+        if not value < place.energy - 10 * self.noise.energy:
             return None
         self.saddles += 1
         self.last = None
-        return self._arrive(trials[least], values[least])
+        return self._arrive(assembly, nodes, value)
 
-    def _stiffness(self, nodes: Nodes) -> Stiffness:
+    def _stiffness(self, place: _Iterate) -> Stiffness:
         """The Hessian at the end."""
         if self.last is None or not self.sharp:
-            self.last, self.sharp = self.assembly.stiffness(nodes, self.controls), True
+            self.last, self.sharp = place.assembly.stiffness(place.nodes, self.controls), True
         return self.last
 
-    def _result(self, place: _Place, reason: Reason, allowed: float, iterations: int) -> NewtonResult:
+    def _result(self, place: _Iterate, reason: Reason, allowed: float, iterations: int) -> NewtonResult:
         if reason is not Reason.CONVERGED:
             self.last = None
-        stiffness = None if reason is Reason.BAD_START else self._stiffness(place.nodes)
+        stiffness = None if reason is Reason.BAD_START else self._stiffness(place)
         return NewtonResult(
             nodes=place.nodes,
             reason=reason,

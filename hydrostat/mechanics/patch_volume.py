@@ -1,6 +1,7 @@
 """`PatchVolume`: resistance to a change of volume that is measured in patches of elements."""
 
 import math
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import ClassVar, no_type_check
 
@@ -73,13 +74,19 @@ class PatchVolume(Energy):
         return blocks
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        return self.lifted_hessian(nodes, controls, 0.0)
+        return self.projected_hessian(nodes, controls, 0.0)
 
-    def lifted_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+    def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         size = self.stencils.shape[1] * nodes.shape[1]
         blocks = np.zeros((len(self.stencils), size, size))
         _hessian(nodes - self._rest, self.lame * self.volumes, share, blocks, *self._patch_data)
         return blocks
+
+    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+        blocks = np.zeros((*self.stencils.shape, nodes.shape[1]))
+        _gradient(nodes - self._rest, self.volumes, blocks, *self._patch_data)
+        work = np.array([float((blocks * field[self.stencils]).sum())])
+        return {"lame": work, "thickness": self.lame * work}
 
     @property
     def _patch_data(self) -> tuple:

@@ -1,7 +1,10 @@
 """`PinEnergy`: springs of zero length between points of the body and points of the world."""
 
+from collections.abc import Mapping
+from copy import copy
+
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
@@ -19,9 +22,11 @@ class PinEnergy(Energy):
         weights: Float[np.ndarray, "terms corners"],
         targets: Points,
         stiffness: Float[np.ndarray, " terms"],
+        supports: Int[np.ndarray, " terms"] | None = None,
     ) -> None:
-        """Pins that pull each anchor to its target [m] with its own stiffness [N/m]."""
+        """Pins that pull anchors to their targets [m], with a stiffness each [N/m]; each a support if none is given."""
         self.stencils = stencils
+        self.supports: Int[np.ndarray, " terms"] = np.arange(len(stencils)) if supports is None else supports
         self.weights, self.targets, self.stiffness = weights, targets, stiffness
         pairs = stiffness[:, None, None] * weights[:, :, None] * weights[:, None, :]
         dim = targets.shape[1]
@@ -40,3 +45,13 @@ class PinEnergy(Energy):
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self._blocks
+
+    def with_supports_moved(self, shifts: Points) -> "PinEnergy":
+        other = copy(self)
+        other.targets = self.targets + shifts[self.supports]
+        return other
+
+    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+        works = (self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum(axis=(1, 2))
+        wholes = np.bincount(self.supports, self.stiffness)
+        return {"support_stiffness": np.bincount(self.supports, works, len(wholes)) / wholes}

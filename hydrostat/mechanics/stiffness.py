@@ -5,10 +5,8 @@ from copy import copy
 import numpy as np
 from jaxtyping import Float
 
+from hydrostat.mechanics.energy import Columns, Compliance, Coupling, Small
 from hydrostat.mechanics.factorisation import Factorisation
-
-Columns = Float[np.ndarray, "dofs rank"]
-Small = Float[np.ndarray, "rank rank"]
 
 
 class Stiffness:
@@ -21,19 +19,22 @@ class Stiffness:
     Attributes:
         definite: whether H is positive definite.
         singular: whether K or H cannot be solved with.
+        factors: of K.
         columns: G.
+        weights: D.
+        token: what the assembly is known by that it is the Hessian of; factors serve no other one.
         moves: Z [m/N]: how the nodes move when a cable pulls by 1 N more.
         compliance: M [m/N].
     """
 
-    def __init__(self, factors: Factorisation, columns: Columns, weights: Small) -> None:
+    def __init__(self, factors: Factorisation, coupling: Coupling, *, token: object = None) -> None:
         """Take the factors of K, and G and D."""
-        self._factors = factors
-        self.columns = columns
+        self.factors, self.token = factors, token
+        self.columns = columns = coupling.columns
         if not factors.singular:
             self.moves = factors.solve(columns) if columns.size else columns
             self.compliance = columns.T @ self.moves
-        self._weigh(weights)
+        self._weigh(coupling.weights)
 
     def with_weights(self, weights: Small) -> "Stiffness":
         """The same with another D, for next to nothing."""
@@ -44,7 +45,7 @@ class Stiffness:
     def _weigh(self, weights: Small) -> None:
         self.weights = weights
         self._root = None
-        self.singular, self.definite = self._factors.singular, self._factors.definite
+        self.singular, self.definite = self.factors.singular, self.factors.definite
         if self.singular or not weights.any():
             return
         self._root = _square_root(weights)
@@ -58,12 +59,16 @@ class Stiffness:
             self._inverse = axes * (1.0 / signs) @ axes.T
         size = np.abs(signs)
         self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
-        self.definite = not self.singular and self._factors.negative == int((signs < 0).sum())
+        self.definite = not self.singular and self.factors.negative == int((signs < 0).sum())
+
+    def compliance_of(self, columns: slice) -> Compliance:
+        """How the body gives way to some of the springs."""
+        return Compliance(self.moves[:, columns], self.compliance[columns, columns])
 
     @property
     def body_definite(self) -> bool:
         """Whether K alone is positive definite."""
-        return self._factors.definite
+        return self.factors.definite
 
     def response(self, weights: Small) -> Columns:
         """How x moves when each column's spring is taken in by 1 m, were D these weights: -H^-1 G D."""
@@ -72,11 +77,11 @@ class Stiffness:
 
     def solve_body(self, right: Float[np.ndarray, " dofs"]) -> Float[np.ndarray, " dofs"]:
         """Solution of K x = right."""
-        return self._factors.solve(right)
+        return self.factors.solve(right)
 
     def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
         """Solution of H x = right, for one or several right-hand sides."""
-        first = self._factors.solve(right)
+        first = self.factors.solve(right)
         if self._root is None:
             return first
         pulls = self._root.T @ (self.columns.T @ first)

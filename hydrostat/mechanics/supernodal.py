@@ -14,6 +14,7 @@ Own columns are kept in L ("panels": columns and rows together, column by column
 stacks, in turn with the depth in the tree: then the children of a front are always on top of the other stack.
 """
 
+import threading
 from typing import NamedTuple, no_type_check
 
 import numpy as np
@@ -28,7 +29,7 @@ from hydrostat.mechanics.blas import (
     subtract_product,
     subtract_square,
 )
-from hydrostat.mechanics.symbolic import Tree, children
+from hydrostat.mechanics.symbolic import EliminationTree, children
 
 BLOCK = 24
 """Columns eliminated together by plain loops, before BLAS applies them to the rest."""
@@ -67,7 +68,9 @@ class Fronts(NamedTuple):
     diagonal: np.ndarray
 
 
-def plan(tree: Tree, indptr: np.ndarray, indices: np.ndarray, dim: int) -> tuple[Fronts, np.ndarray, np.ndarray]:
+def plan(
+    tree: EliminationTree, indptr: np.ndarray, indices: np.ndarray, dim: int
+) -> tuple[Fronts, np.ndarray, np.ndarray]:
     """The fronts of a tree, the places of the degrees of freedom in the order, and the sizes of the two stacks."""
     place = np.empty(len(tree.order) * dim, np.int64)
     place[(tree.order[:, None] * dim + np.arange(dim)).ravel()] = np.arange(len(place))
@@ -446,25 +449,37 @@ def solve_matrix(fronts, lower, signs, values, work, call):
         divide_right(call, 1 - yes, sides, columns, place, height, own, sides)
 
 
-class SupernodalAnalysis:
-    """Fronts of a pattern, with the memory that every factorisation works in."""
+class _Workspace(threading.local):
+    """Memory that factorisations work in, for each thread its own; it is not sent to other processes."""
 
-    def __init__(self, tree: Tree, indptr: np.ndarray, indices: np.ndarray, dim: int) -> None:
+    def __init__(self, spare: int, stacks: tuple[int, int]) -> None:
+        self.sizes = spare, stacks
+        self.call: Scratch = scratch()
+        self.spare = np.empty(spare)
+        self.stacks = np.empty(stacks[0]), np.empty(stacks[1])
+
+    def __reduce__(self) -> tuple:
+        return _Workspace, self.sizes
+
+
+class SupernodalAnalysis:
+    """Fronts of a pattern; threads may share it."""
+
+    def __init__(self, tree: EliminationTree, indptr: np.ndarray, indices: np.ndarray, dim: int) -> None:
         """Fronts of the elimination `tree` of a pattern."""
         self.fronts, self.place, sizes = plan(tree, indptr, indices, dim)
         table = self.fronts.table
         self.entries = int(table[-1, PANEL])
         self.height = int((table[:, COLUMNS] + table[:, BELOW]).max(initial=1))
-        self.call: Scratch = scratch()
         widest = int(table[:, COLUMNS].max(initial=1))
-        self._spare = np.empty(max(widest * max(widest, BLOCK), 1))
-        self._stacks = np.empty(int(sizes[0])), np.empty(int(sizes[1]))
+        self.workspace = _Workspace(max(widest * max(widest, BLOCK), 1), (int(sizes[0]), int(sizes[1])))
 
     def factorise(self, data: np.ndarray, tiny: float) -> "SupernodalFactors":
         """Factors of the matrix with these values."""
         lower = np.empty(self.entries)
         signs = np.ones(len(self.place))
-        negative = factorise_fronts(self.fronts, data, lower, signs, *self._stacks, self._spare, self.call, tiny)
+        work = self.workspace
+        negative = factorise_fronts(self.fronts, data, lower, signs, *work.stacks, work.spare, work.call, tiny)
         return SupernodalFactors(self, lower, signs, int(negative))
 
 
@@ -491,5 +506,5 @@ class SupernodalFactors:
             solve_vector(analysis.fronts, self._lower, self._signs, values, np.empty(analysis.height))
         elif right.shape[1] > 0:
             work = np.empty((analysis.height, right.shape[1]))
-            solve_matrix(analysis.fronts, self._lower, self._signs, values, work, analysis.call)
+            solve_matrix(analysis.fronts, self._lower, self._signs, values, work, analysis.workspace.call)
         return values[analysis.place]

@@ -24,7 +24,7 @@ RAMP = 12.0
 front, whose rate is halved where a front has only RAMP columns. Set on one machine (docs/decisions/0007)."""
 
 
-class Tree(NamedTuple):
+class EliminationTree(NamedTuple):
     """Supernodes in the order of their elimination, children before parents.
 
     Attributes:
@@ -56,7 +56,7 @@ def front_seconds(columns, rows):
 _front_seconds = njit(**INNER)(front_seconds)
 
 
-def supernodes(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray, dim: int) -> Tree:
+def supernodes(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray, dim: int) -> EliminationTree:
     """The supernodes of eliminating a graph in a given order."""
     order = order[_postordered(_elimination(starts, neighbours, order))]
     parent = _elimination(starts, neighbours, order)
@@ -201,7 +201,7 @@ def _collected(
     count: np.ndarray,
     head: np.ndarray,
     dim: int,
-) -> Tree:
+) -> EliminationTree:
     """Number the supernodes given by their heads in postorder, and list their rows."""
     tops = np.flatnonzero(head == np.arange(len(head)))
     number = np.full(len(head) + 1, -1)  # the last for the parent -1 of a root
@@ -220,7 +220,7 @@ def _collected(
     rows = np.sort(owner + rows) - owner
     columns = dim * np.diff(first)
     seconds = front_seconds(columns, columns + dim * np.diff(begins)).sum()
-    return Tree(order, first, up, begins, rows, float(seconds))
+    return EliminationTree(order, first, up, begins, rows, float(seconds))
 
 
 @njit(**KERNEL)

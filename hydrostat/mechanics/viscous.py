@@ -51,8 +51,8 @@ class ViscousEnergy(Energy):
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self._solid.hessian(self._apart(nodes), controls)
 
-    def lifted_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        return self._solid.lifted_hessian(self._apart(nodes), controls, share)
+    def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+        return self._solid.projected_hessian(self._apart(nodes), controls, share)
 
     def _apart(self, nodes: Nodes) -> Float[np.ndarray, "apart dim"]:
         """The corners of each element for themselves."""

@@ -1,5 +1,7 @@
 """`WeightEnergy`: dead loads, such as gravity."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
@@ -25,3 +27,13 @@ class WeightEnergy(Energy):
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return np.zeros((len(nodes), nodes.shape[1], nodes.shape[1]))
+
+    def largest_force(self, nodes: Nodes, controls: Vector) -> float:
+        return float(np.abs(self.forces).max(initial=0.0))
+
+    def with_load(self, share: float) -> "WeightEnergy":
+        return WeightEnergy(self._rest, share * self.forces)
+
+    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+        work = np.array([float((self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum())])
+        return {"load": work, "thickness": work}

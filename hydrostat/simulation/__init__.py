@@ -1,8 +1,8 @@
 """The one bridge between robots and mechanics: `Simulation`."""
 
 from hydrostat.simulation.adjoint import Sensitivity
+from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
-from hydrostat.simulation.build import body_energies, cable_energy, round_off
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.motion import Motion
@@ -12,9 +12,10 @@ from hydrostat.simulation.pose_file import pose_facts, write_pose
 from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, read_profile, write_profile
 from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Contractions, Simulation
-from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.simulation.solved_pose import SolvedPose, largest_distance
 
 __all__ = [
+    "BodyPhysics",
     "Branch",
     "BranchOptions",
     "BranchPoint",
@@ -35,15 +36,13 @@ __all__ = [
     "Simulation",
     "SolvedPose",
     "StepOptions",
-    "body_energies",
-    "cable_energy",
     "follow_branch",
+    "largest_distance",
     "path_dependence",
     "pose_facts",
     "profile_text",
     "read_profile",
     "rig_slopes",
-    "round_off",
     "write_motion",
     "write_pose",
     "write_profile",

@@ -1,7 +1,6 @@
 """`sensitivity`: how a number that depends on a pose changes with all that the robot is made of, by the adjoint."""
 
 from collections.abc import Callable
-from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.mechanics import Assembly, CableEnergy, Energy, NeoHookean, PinEnergy, WeightEnergy
-from hydrostat.mechanics.patch_volume import PatchVolume
+from hydrostat.mechanics import Assembly, CableEnergy
 from hydrostat.robot import Material, Robot
 from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -90,13 +88,13 @@ def sensitivity(
     by_tension = tensions - columns.T @ field
     by_elongation = tangents * by_tension
     field = field.reshape(assembly.shape)
-    young, poisson, density, thickness = _by_body(robot, assembly, pose, field)
+    young, poisson, density, thickness, pins = _by_body(robot, assembly, pose, field)
     return Sensitivity(
         contractions=np.bincount(cables.winches, cables.ratios * by_elongation, len(robot.winches)).astype(float),
         slack=-by_elongation,
         routes=points.by_cable(by_routes(points, cables, pose.nodes, field, by_elongation, pulls)),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
-        pin_stiffness=_by_pins(robot, assembly, pose.nodes, field),
+        pin_stiffness=pins,
         young=young,
         poisson=poisson,
         density=density,
@@ -114,43 +112,28 @@ def _checked(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray
     return values
 
 
-def _work(energy: Energy, pose: SolvedPose, field: Nodes) -> float:
-    """Work of the forces of an energy along a field, dE/dx . u."""
-    return float((energy.gradient(pose.nodes, pose.contractions) * field[energy.stencils]).sum())
-
-
 def _by_body(
     robot: Robot, assembly: Assembly, pose: SolvedPose, field: Nodes
-) -> tuple[float, float, float, float | None]:
-    """By Young's modulus, Poisson's ratio, density and thickness.
-
-    The forces are linear in Lame's parameters, in density and in thickness.
-    """
+) -> tuple[float, float, float, float | None, Vector]:
+    """By Young's modulus, Poisson's ratio, density, thickness and the stiffness of pins."""
     body = robot.body
-    solids = [energy for energy in assembly.energies if isinstance(energy, NeoHookean | PatchVolume)]
-    weights = [energy for energy in assembly.energies if isinstance(energy, WeightEnergy)]
-    shear = sum(_work(_with_moduli(energy, 1.0, 0.0), pose, field) for energy in solids)
-    # With volume = "patch" lambda acts in the patches alone, so the body's own forces must not be counted with it.
-    holders = [energy for energy in solids if isinstance(energy, PatchVolume)] or solids
-    squeeze = sum(_work(_with_moduli(energy, 0.0, 1.0), pose, field) for energy in holders)
-    weight = sum(_work(energy, pose, field) for energy in weights)
+    works: dict[str, Vector] = {}
+    for energy in assembly.energies:
+        for name, work in energy.parameter_work(pose.nodes, field).items():
+            works[name] = works[name] + work if name in works else work
+    shear, squeeze, load, whole = (float(works.get(name, np.zeros(1))[0]) for name in _BODY)
     (mu_by_young, lame_by_young), (mu_by_poisson, lame_by_poisson) = _lame_slopes(body.material)
-    mu, lame = body.material.lame
-    whole = mu * shear + lame * squeeze + weight
     return (
         -(mu_by_young * shear + lame_by_young * squeeze),
         -(mu_by_poisson * shear + lame_by_poisson * squeeze),
-        -weight / body.material.density,
+        -load / body.material.density,
         None if body.thickness is None else -whole / body.thickness,
+        -works.get("support_stiffness", np.zeros(len(robot.pins))),
     )
 
 
-def _with_moduli(energy: NeoHookean | PatchVolume, mu: float, lame: float) -> Energy:
-    other = copy(energy)
-    other.lame = lame
-    if isinstance(other, NeoHookean):
-        other.mu = mu
-    return other
+_BODY = ("mu", "lame", "load", "thickness")
+"""Parameters of the body: see `Energy.parameter_work`."""
 
 
 def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -159,15 +142,6 @@ def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, 
     mu, lame = material.lame
     product = (1 + poisson) * (1 - 2 * poisson)
     return (mu / young, lame / young), (-mu / (1 + poisson), young * (1 + 2 * poisson**2) / product**2)
-
-
-def _by_pins(robot: Robot, assembly: Assembly, nodes: Nodes, field: Nodes) -> Vector:
-    """By the stiffness of each whole pin, which all that it holds share."""
-    energy = next(energy for energy in assembly.energies if isinstance(energy, PinEnergy))
-    counts = [len(pin.anchors(robot.body.mesh).stencils) for pin in robot.pins]
-    works = (energy.gradient(nodes, np.zeros(0)) * field[energy.stencils]).sum(axis=(1, 2))
-    owners = np.repeat(np.arange(len(counts)), counts)
-    return -np.bincount(owners, works, len(counts)) / np.array([pin.stiffness for pin in robot.pins])
 
 
 def by_routes(

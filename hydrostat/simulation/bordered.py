@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import NeoHookean, PinEnergy, Stiffness
-from hydrostat.simulation.build import round_off, warp
+from hydrostat.mechanics import Stiffness
 from hydrostat.simulation.simulation import Simulation
 
 
@@ -24,7 +23,7 @@ class Tangent:
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class PathPoint:
     """An equilibrium on a branch.
 
     Attributes:
@@ -47,7 +46,7 @@ class Place:
     distance: float
     iterations: int
 
-    def turned(self) -> "Place":
+    def turned(self) -> "PathPoint":
         """The same place in the other direction."""
         return replace(self, tangent=Tangent(-self.tangent.move, -self.tangent.rate))
 
@@ -71,11 +70,6 @@ class Bordered:
         self._simulation, self._begin, self._way = simulation, begin, goal - begin
         self._size = mesh.size
         self._weight = 1.0 / (len(mesh.nodes) * mesh.size**2)
-        self._noise = round_off(simulation.robot)
-        body, pins = simulation.assembly.energies[:2]
-        assert isinstance(body, NeoHookean)
-        assert isinstance(pins, PinEnergy)
-        self._warp = warp(simulation.robot, body, pins)
 
     def controls(self, share: float) -> Vector:
         """Contractions at a share of the way [m]."""
@@ -83,7 +77,7 @@ class Bordered:
 
     def bend(self, nodes: Nodes, step: Vector) -> Nodes:
         """Where a step leads, along arcs."""
-        return self._warp(nodes, step.reshape(nodes.shape))
+        return self._simulation.body.warp(nodes, step.reshape(nodes.shape))
 
     def dot(self, one: Tangent, other: Tangent) -> float:
         """Cosine of the angle between two directions."""
@@ -106,7 +100,7 @@ class Bordered:
         reach: float = np.inf,
         iterations: int = 20,
         before: Tangent | None = None,
-    ) -> Place | None:
+    ) -> PathPoint | None:
         """The equilibrium in the plane through a place, across a direction; None if it is not within reach.
 
         Args:
@@ -129,7 +123,7 @@ class Bordered:
                 return None
             pulled = assembly.control_derivative(nodes, controls) @ self._way
             back, ahead = stiffness.solve(np.column_stack([gradient, pulled])).T
-            arrived = float(np.abs(gradient).max()) <= self._allowed(nodes, controls)
+            arrived = float(np.abs(gradient).max()) <= self._simulation.allowed(nodes, controls)
             missing = self._weight * (across.move @ (nodes - first_nodes).ravel()) + across.rate * (share - first_share)
             slope = across.rate - self._weight * (across.move @ ahead)
             change = -(missing - self._weight * (across.move @ back)) / slope
@@ -147,18 +141,14 @@ class Bordered:
 
     def _place(
         self, nodes: Nodes, share: float, stiffness: Stiffness, tangent: Tangent, distance: float, iterations: int
-    ) -> Place | None:
+    ) -> PathPoint | None:
         """An equilibrium with its forces; None if there is none."""
         controls = self.controls(share)
-        allowed = self._allowed(nodes, controls)
+        allowed = self._simulation.allowed(nodes, controls)
         residual = float(np.abs(self._simulation.assembly.gradient(nodes, controls)).max())
         if not residual <= allowed:
             return None
-        return Place(nodes, share, stiffness, tangent, residual, allowed, distance, iterations)
-
-    def _allowed(self, nodes: Nodes, controls: Vector) -> float:
-        scale = float(self._simulation.tensions(nodes, controls).max(initial=0.0))
-        return max(self._simulation.options.tolerance * scale, self._noise.force)
+        return PathPoint(nodes, share, stiffness, tangent, residual, allowed, distance, iterations)
 
     def _tangent(self, ahead: Vector, before: Tangent) -> Tangent:
         """Direction of the branch where H y = g_r, on the same side as the one before."""

@@ -14,7 +14,6 @@ from hydrostat.mechanics import (
     Energy,
     NewtonOptions,
     NewtonResult,
-    PinEnergy,
     RoundOff,
     minimise,
 )
@@ -22,7 +21,7 @@ from hydrostat.mechanics.inertia import InertiaEnergy
 from hydrostat.mechanics.time_scheme import SCHEMES
 from hydrostat.mechanics.viscous import Memory, Metrics
 from hydrostat.robot import Robot
-from hydrostat.simulation.build import elastic_energy, node_masses, round_off
+from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.motion import Motion
 
 PinShifts = Mapping[int, Vector]
@@ -56,15 +55,15 @@ class StepOptions:
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
+class _MotionState:
     """What changes in time, or its rate of change."""
 
     nodes: Nodes
     velocities: Nodes
     metrics: Metrics
 
-    def plus(self, step: float, rate: "_State") -> "_State":
-        return _State(
+    def plus(self, step: float, rate: "_MotionState") -> "_MotionState":
+        return _MotionState(
             self.nodes + step * rate.nodes,
             self.velocities + step * rate.velocities,
             self.metrics + step * rate.metrics,
@@ -75,32 +74,34 @@ class Dynamics:
     """Steps in time as minimisations, from a state of motion to the next (E4, E5)."""
 
     def __init__(
-        self, robot: Robot, statics: Assembly, cables: CableEnergy, markers: Anchors, options: NewtonOptions
+        self,
+        robot: Robot,
+        body: BodyPhysics,
+        statics: Assembly,
+        cables: CableEnergy,
+        markers: Anchors,
+        options: NewtonOptions,
     ) -> None:
         """The robot's physics at rest, where its markers are, and how far Newton goes."""
         mesh, material = robot.body.mesh, robot.body.material
-        self.robot, self.masses = robot, node_masses(robot)
+        self.robot, self.masses = robot, body.masses
         self._statics, self._cables, self._markers, self._options = statics, cables, markers, options
         branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
         branches += [(material.viscosity, 0.0)] if material.viscosity else []
         viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
-        self.memory = Memory(mesh.nodes, elastic_energy(robot), viscosities=viscosities, times=times)
-        self._pin_of = np.repeat(np.arange(len(robot.pins)), [len(pin.anchors(mesh).stencils) for pin in robot.pins])
-        self._weight = float((self.masses[:, None] * np.abs(robot.gravity or 0.0)).max())
-        self._round_off = round_off(robot)
+        self.memory = Memory(mesh.nodes, body.elastic, viscosities=viscosities, times=times)
+        self._round_off = body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
         rest = self.still(mesh.nodes, np.zeros(len(robot.winches)), None)
-        self._assembly = Assembly(
-            self._energies(_State(rest.nodes, rest.velocities, rest.metrics), 1.0, 0.0, rest.pin_shifts),
-            rest=mesh.nodes,
-            control_count=len(robot.winches),
-        )
+        begin = _MotionState(rest.nodes, rest.velocities, rest.metrics)
+        moving = self._energies(begin, 1.0, 0.0, rest.pin_shifts)[len(statics.energies) :]
+        self._assembly = statics.extended(moving, control_count=len(robot.winches))
 
     def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None) -> Motion:
         """A motion that begins at `nodes`, with all viscous branches settled there."""
         still = np.zeros_like(nodes)
         if velocities is not None and not (velocities.shape == nodes.shape and np.isfinite(velocities).all()):
             raise InputError(f"velocities must be finite, {nodes.shape}, not {velocities.shape}")
-        state = _State(nodes, still if velocities is None else velocities, self.memory.settled(nodes))
+        state = _MotionState(nodes, still if velocities is None else velocities, self.memory.settled(nodes))
         shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
         return self._motion(0.0, contractions, shifts, state, still, None)
 
@@ -140,7 +141,7 @@ class Dynamics:
         self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
     ) -> tuple[Motion, NewtonResult]:
         """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
-        begin = _State(motion.nodes, motion.velocities, motion.metrics)
+        begin = _MotionState(motion.nodes, motion.velocities, motion.metrics)
         end, rates, acceleration = begin, [], motion.accelerations
         result, iterations = None, 0
         for *weights, diagonal in SCHEMES[options.scheme].table:
@@ -156,27 +157,19 @@ class Dynamics:
             if not result.converged:
                 return motion, replace(result, iterations=iterations)
             velocities = (result.nodes - base.nodes) / step
-            end = _State(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
+            end = _MotionState(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
             acceleration = (velocities - base.velocities) / step
-            rates.append(_State(velocities, acceleration, (end.metrics - base.metrics) / step))
+            rates.append(_MotionState(velocities, acceleration, (end.metrics - base.metrics) / step))
         assert result is not None
         counted = replace(result, iterations=iterations, stiffness=None)
         return self._motion(motion.time + dt, goal, shifts, end, acceleration, counted), counted
 
     def _at_rest(self, shifts: Points) -> list[Energy]:
         """The energies of statics, with the pins where they are."""
-        energies = list(self._statics.energies)
-        for index, energy in enumerate(energies):
-            if isinstance(energy, PinEnergy) and shifts.any():
-                energies[index] = PinEnergy(
-                    stencils=energy.stencils,
-                    weights=energy.weights,
-                    targets=energy.targets + shifts[self._pin_of],
-                    stiffness=energy.stiffness,
-                )
-        return energies
+        energies = self._statics.energies
+        return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else list(energies)
 
-    def _energies(self, base: _State, step: float, drag: float, shifts: Points) -> list[Energy]:
+    def _energies(self, base: _MotionState, step: float, drag: float, shifts: Points) -> list[Energy]:
         """Those of statics, inertia, and the viscous branches if there are any."""
         energies = self._at_rest(shifts)
         braked = 1 + drag * step
@@ -189,28 +182,22 @@ class Dynamics:
         self,
         energies: list[Energy],
         controls: Vector,
-        base: _State,
+        base: _MotionState,
         before: Nodes,
         acceleration: Nodes,
         step: float,
     ) -> NewtonResult:
         """One stage, from whichever guess has the least energy."""
         assembly = self._assembly.with_energies(energies)
-        inertia = next(energy for energy in energies if isinstance(energy, InertiaEnergy))
         flown = base.nodes + step * base.velocities
         guesses = [flown + step**2 * acceleration, flown, before]
         values = [assembly.value(guess, controls) for guess in guesses]
         start = guesses[int(np.argmin(values))]
 
-        def force_scale(nodes: Nodes) -> float:
-            tension = float(self._cables.tensions(nodes, controls).max(initial=0.0))
-            return max(tension, self._weight, float(np.abs(inertia.gradient(nodes, controls)).max()))
-
         return minimise(
             assembly,
             start,
             controls,
-            force_scale=force_scale,
             round_off=self._noise(step),
             options=self._options,
         )
@@ -242,7 +229,7 @@ class Dynamics:
         time: float,
         contractions: Vector,
         shifts: Points,
-        state: _State,
+        state: _MotionState,
         accelerations: Nodes,
         result: NewtonResult | None,
     ) -> Motion:

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult, Reason
-from hydrostat.simulation.bordered import Bordered, Place, Tangent
+from hydrostat.simulation.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -128,7 +128,7 @@ class _Follower:
             place, step = trial, self._next_step(trial, step)
         return self._branch(reason)
 
-    def _begin(self, nodes: Nodes) -> Place:
+    def _begin(self, nodes: Nodes) -> PathPoint:
         """The start as a place on the branch, in the direction of growing share."""
         still = Tangent(np.zeros(nodes.size), 1.0)
         place = self.system.correct(nodes, 0.0, still)
@@ -136,25 +136,25 @@ class _Follower:
             raise InputError("start must be an equilibrium at its own contractions; solve for it first")
         return place if place.tangent.rate > 0 else place.turned()
 
-    def _step(self, place: Place, step: float) -> Place | None:
+    def _step(self, place: PathPoint, step: float) -> PathPoint | None:
         """The equilibrium one step on; None if it is not where it was predicted."""
         trial = self._raw_step(place, step)
         if trial is None or self.system.dot(place.tangent, trial.tangent) < self.options.turn:
             return None
         return trial
 
-    def _raw_step(self, place: Place, step: float) -> Place | None:
+    def _raw_step(self, place: PathPoint, step: float) -> PathPoint | None:
         nodes = self.system.bend(place.nodes, step * place.tangent.move)
         share = place.share + step * place.tangent.rate
         reach, iterations = self.options.distance * step, self.options.iterations
         return self.system.correct(nodes, share, place.tangent, reach=reach, iterations=iterations)
 
-    def _next_step(self, trial: Place, step: float) -> float:
+    def _next_step(self, trial: PathPoint, step: float) -> float:
         """Longer where the branch is straight, shorter where it bends."""
         bent = trial.distance / (self.options.distance * step)
         return min(step * float(np.clip(np.sqrt(0.3 / max(bent, 1e-9)), 0.4, 2.0)), self.options.largest_step)
 
-    def _advance(self, place: Place, trial: Place, step: float) -> BranchReason | None:
+    def _advance(self, place: PathPoint, trial: PathPoint, step: float) -> BranchReason | None:
         """Keep what is found between two places, and the second one; a reason if the branch ends."""
         found = self._find_critical(place, trial, step)
         if found is not None:
@@ -170,7 +170,7 @@ class _Follower:
         self._keep(trial)
         return None
 
-    def _land(self, place: Place, beyond: Place) -> BranchReason:
+    def _land(self, place: PathPoint, beyond: PathPoint) -> BranchReason:
         """End the branch at the share that lies between two places, 0 or 1."""
         share = 1.0 if beyond.share > 1.0 else 0.0
         part = (share - place.share) / (beyond.share - place.share)
@@ -185,7 +185,7 @@ class _Follower:
         self._keep(landed)
         return BranchReason.ARRIVED if share == 1.0 else BranchReason.BACK
 
-    def _find_critical(self, place: Place, trial: Place, step: float) -> tuple[CriticalKind, Place] | None:
+    def _find_critical(self, place: PathPoint, trial: PathPoint, step: float) -> tuple[CriticalKind, PathPoint] | None:
         """A fold where the share turns back, else a bifurcation where stability changes."""
         if place.tangent.rate * trial.tangent.rate < 0:
             return CriticalKind.FOLD, self._find_fold(place, trial, step)
@@ -193,7 +193,7 @@ class _Follower:
             return CriticalKind.BIFURCATION, self._find_change(place, trial, step)
         return None
 
-    def _find_fold(self, place: Place, trial: Place, step: float) -> Place:
+    def _find_fold(self, place: PathPoint, trial: PathPoint, step: float) -> PathPoint:
         """Where d share / d length is 0, by Brent's method."""
         known = {0.0: place, step: trial}
 
@@ -204,7 +204,7 @@ class _Follower:
         brentq(rate, 0.0, step, xtol=_SHARP * step, maxiter=60)
         return min(known.values(), key=lambda found: abs(found.tangent.rate))
 
-    def _find_change(self, place: Place, trial: Place, step: float) -> Place:
+    def _find_change(self, place: PathPoint, trial: PathPoint, step: float) -> PathPoint:
         """Where the Hessian ceases or begins to be definite, by bisection."""
         low, high, there = 0.0, step, trial
         while high - low > _SHARP * step:
@@ -216,11 +216,11 @@ class _Follower:
                 low = middle
         return there
 
-    def _mark(self, kind: CriticalKind, place: Place) -> None:
+    def _mark(self, kind: CriticalKind, place: PathPoint) -> None:
         self.critical.append(CriticalPoint(kind=kind, share=float(place.share), index=len(self.points)))
         self._keep(place)
 
-    def _keep(self, place: Place) -> None:
+    def _keep(self, place: PathPoint) -> None:
         self.points.append(
             BranchPoint(share=float(place.share), pose=_solved(self.simulation, self.system.controls, place))
         )
@@ -235,7 +235,7 @@ class _Follower:
         )
 
 
-def _solved(simulation: Simulation, controls: Callable[[float], Vector], place: Place) -> SolvedPose:
+def _solved(simulation: Simulation, controls: Callable[[float], Vector], place: PathPoint) -> SolvedPose:
     """A place on a branch as a pose like any other."""
     contractions = controls(place.share)
     positions = simulation.marker_anchors.positions(place.nodes)

@@ -9,10 +9,9 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.simulation.largest_distance import largest_distance
+from hydrostat.simulation.approaches import Approach, approaches_to, follow_approach
 from hydrostat.simulation.simulation import Contractions, Simulation
-from hydrostat.simulation.solved_pose import SolvedPose
-from hydrostat.simulation.ways import Way, go, ways_to
+from hydrostat.simulation.solved_pose import SolvedPose, largest_distance
 from hydrostat.units import counted
 
 
@@ -103,7 +102,7 @@ def path_dependence(
 ) -> PathDependence:
     """Solve the same contractions from different starts, and tell the poses found apart.
 
-    The ways are those of `ways_to`. One pose is no proof that there is no other: it is what so many ways found.
+    The ways are those of `approaches_to`. One pose is no proof that there is no other: it is what so many ways found.
 
     Args:
         simulation: the robot's physics.
@@ -126,9 +125,9 @@ def path_dependence(
     near = tolerance * simulation.robot.body.mesh.size
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
         raise InputError(f"seed must be a whole number of 0 or more, not {seed!r}")
-    ways = ways_to(simulation.robot, goal, count, seed)
+    ways = approaches_to(simulation, goal, count, seed)
     for done, way in enumerate(ways, 1):
-        _sort(go(simulation, way), way, goal, groups, lost, near)
+        _sort(follow_approach(simulation, way), way, goal, groups, lost, near)
         if progress is not None:
             progress("trying ways", done, len(ways))
     groups.sort(key=lambda group: group[0].energy)
@@ -146,7 +145,7 @@ def path_dependence(
 
 def _sort(
     pose: SolvedPose,
-    way: Way,
+    way: Approach,
     goal: Vector,
     groups: list[tuple[SolvedPose, list[str]]],
     lost: list[str],

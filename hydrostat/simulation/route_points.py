@@ -44,6 +44,21 @@ class RoutePoints:
     cables: Int[np.ndarray, " segments"]
     counts: tuple[int, ...]
 
+    def segments(
+        self, starts: Int[np.ndarray, " segments"]
+    ) -> tuple[
+        Int[np.ndarray, "segments corners"], Float[np.ndarray, "segments corners"], Float[np.ndarray, "segments dim"]
+    ]:
+        """Stencils, signed weights and what is fixed in space [m] of the segments that begin at these points."""
+        weights = np.where(self.world[:, None], 0.0, self.anchors.weights)
+        offsets = np.where(self.world[:, None], self.places, 0.0)
+        ends, stencils = starts + 1, self.anchors.stencils
+        return (
+            np.concatenate([stencils[starts], stencils[ends]], axis=1),
+            np.concatenate([-weights[starts], weights[ends]], axis=1),
+            offsets[ends] - offsets[starts],
+        )
+
     def positions(self, nodes: Nodes) -> Points:
         """Where the points are when the nodes are at `nodes` [m]."""
         return np.where(self.world[:, None], self.places, self.anchors.positions(nodes))

@@ -1,7 +1,6 @@
 """`Simulation`: the physics of one robot."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from math import ceil
 
@@ -11,44 +10,71 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, Stiffness, WeightEnergy, minimise
+from hydrostat.mechanics import Assembly, Energy, NewtonOptions, NewtonResult, Stiffness
 from hydrostat.robot import Robot
 from hydrostat.simulation.adjoint import Sensitivity, sensitivity
-from hydrostat.simulation.build import body_energies, cable_energy, friction_energy, round_off, warp
+from hydrostat.simulation.body_physics import BodyPhysics
+from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
-from hydrostat.simulation.friction_path import FrictionPath
+from hydrostat.simulation.loading_path import LoadingPath
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.profile import Profile
 from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.simulation.static_solver import StaticSolver
 
 Contractions = Mapping[str, float] | Vector
 """Cable taken in [m]: by the name of a winch (others 0), or an array in winch order."""
 
 
 class Simulation:
-    """Where a robot rests when its winches take in cable (R17, R23 to R29)."""
+    """Quasi-static equilibrium of a tendon-driven robot: where it rests when its winches take in cable (R17, R23-R29).
 
-    def __init__(self, robot: Robot, *, options: NewtonOptions | None = None) -> None:
-        """Physics of `robot`; the sparse pattern is made here, once."""
-        mesh = robot.body.mesh
-        self.robot = robot
-        self.options = options or NewtonOptions()
-        self.cables = cable_energy(robot)
-        self.friction = friction_energy(robot)
-        body, pins, *rest = body_energies(robot)
-        pulls = self.friction or self.cables
-        self.assembly = Assembly([body, pins, *rest, pulls], rest=mesh.nodes, control_count=len(robot.winches))
-        self.marker_anchors = _markers(robot)
-        self._warp = warp(robot, body, pins)
-        self._round_off = round_off(robot)
-        self._path = None
-        if self.friction is not None:
-            self._path = FrictionPath(
-                robot, self.assembly, self.friction, options=self.options, round_off=self._round_off, warp=self._warp
-            )
-        self._last: tuple[SolvedPose, Stiffness] | None = None
-        self._resting: tuple[SolvedPose, Stiffness] | None = None
+    It holds no pose and is never changed by a solve: threads may share it, and it can be sent to other processes. What
+    is known of a pose, its factorised Hessian included, travels with the pose.
+
+    Attributes:
+        robot: whose physics it is.
+        options: how far Newton goes.
+        body: what it shares with all other networks on this body.
+        route_points: what holds the points of the cables.
+        cables: energy of the cables, as if they had no friction.
+        friction: energy of the cables as they rub, in its place; None if none does.
+        assembly: the sum of all energies.
+        solver: Newton's method on it.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        options: NewtonOptions | None = None,
+        body: BodyPhysics | None = None,
+        energies: Sequence[Energy] = (),
+    ) -> None:
+        """Physics of `robot`.
+
+        Args:
+            robot: body and network.
+            options: how far Newton goes.
+            body: the physics of its body, if they are at hand; making them anew takes longer than all else here.
+            energies: more physics, such as a magnet or a floor; they read the winches' contractions if they have
+                controls.
+
+        Raises:
+            InputError: physics of another body, or a part of the mesh that no pin holds.
+        """
+        if body is not None:
+            body.check(robot)
+        self.robot, self.options, self.body = robot, options or NewtonOptions(), body or BodyPhysics(robot)
+        self.route_points: RoutePoints = route_points(robot)
+        self.cables = cable_energy(robot, self.route_points)
+        self.friction = friction_energy(robot, self.route_points)
+        more = [self.friction or self.cables, *energies]
+        self.assembly: Assembly = self.body.assembly.extended(more, control_count=len(robot.winches))
+        self._plain = not energies
+        hidden = self.body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
+        self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
     def contractions(self, given: Contractions) -> Vector:
         """Contractions as an array in winch order [m].
@@ -90,21 +116,22 @@ class Simulation:
         """
         goal = self.contractions(contractions)
         self.check_start(start)
-        slips = np.zeros(0)
-        if self._path is not None:
-            result, slips = self._path.solve(goal, start)
+        history = np.zeros(0)
+        if self.assembly.has_history:
+            result, history = self._path.solve(goal, start)
         else:
-            result = self._approach(goal, start)
+            begin = None if start is None else (start.nodes, start.contractions, self.stiffness_of(start))
+            result = self.solver.solve(goal, (self.robot.body.mesh.nodes, self.rest_stiffness), begin)
         if strict and not result.converged:
             raise NotConvergedError(
                 f"no equilibrium found after {result.iterations} iterations: {result.reason} "
                 f"(force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
                 result,
             )
-        return self.posed(goal, result, slips)
+        return self.posed(goal, result, history)
 
     def check_start(self, start: SolvedPose | None) -> None:
-        """Whether a pose can be begun from.
+        """Check that a solve can begin from a pose.
 
         Raises:
             InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
@@ -121,8 +148,8 @@ class Simulation:
             raise InputError(
                 f"start has {len(start.contractions)} contractions, the robot {len(self.robot.winches)} winches"
             )
-        if self.friction is not None and not len(start.slips):
-            raise InputError("start must be a pose of this robot with friction; it has no slips")
+        if len(start.history) != len(self.assembly.history):
+            raise InputError("start must be a pose of this robot with friction; it remembers no slips of its cables")
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
         """D nodes / d contractions at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
@@ -132,10 +159,19 @@ class Simulation:
         Raises:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
-        if self._path is not None:
-            return self._path.moves(pose).reshape(*pose.nodes.shape, -1)
-        right = -self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
-        return self.response(pose, right).reshape(*pose.nodes.shape, -1)
+        if self.friction is None:
+            right = -self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
+            return self.response(pose, right).reshape(*pose.nodes.shape, -1)
+        stiffness = self.stiffness(pose)
+        if stiffness.singular:
+            raise NotConvergedError("the pose has no derivative: its Hessian is singular", pose.result)
+        index = self.assembly.energies.index(self.friction)
+        slips = len(self.friction.history)
+        begin = sum(len(energy.history) for energy in self.assembly.energies[:index])
+        history = pose.history[begin : begin + slips]
+        cables = self.friction.resumed(history, pose.nodes, pose.contractions)
+        compliance = stiffness.compliance_of(slice(0, slips))
+        return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
 
     def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
         """Slopes of a number L of an equilibrium by contractions, slack, routes and material, with one solve (E16).
@@ -173,7 +209,7 @@ class Simulation:
             InputError: a cable with friction, whose pose depends on the way there.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
-        if self.friction is not None:
+        if self.assembly.has_history:
             raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
         stiffness = self.stiffness(pose)
         if stiffness.singular:
@@ -181,7 +217,8 @@ class Simulation:
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
         body = self.assembly.hessian(pose.nodes, pose.contractions)
-        columns, weights = self.assembly.low_rank(pose.nodes, pose.contractions)
+        springs = self.assembly.coupling(pose.nodes, pose.contractions)
+        columns, weights = springs.columns, springs.weights
         allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
         rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
         moves = stiffness.solve(forces)
@@ -262,26 +299,37 @@ class Simulation:
 
     @cached_property
     def dynamics(self) -> Dynamics:
-        """Steps in time; their sparse pattern is made here, once.
+        """Steps in time.
 
         Raises:
             InputError: a cable with friction, which has no steps in time yet.
         """
-        if self.friction is not None:
+        if self.assembly.has_history:
             raise InputError("cables with friction cannot move in time yet; set friction = 0, or solve for poses")
-        return Dynamics(self.robot, self.assembly, self.cables, self.marker_anchors, self.options)
+        return Dynamics(self.robot, self.body, self.assembly, self.cables, self.marker_anchors, self.options)
 
-    def tensions(self, nodes: Nodes, contractions: Vector, slips: Vector | None = None) -> Vector:
-        """Tension of each cable [N]; at its winch if it has friction and has slipped by `slips` [m]."""
-        if self.friction is not None and slips is not None:
-            return self.friction.resumed(slips, nodes, contractions).tensions(nodes, contractions)
+    @cached_property
+    def marker_anchors(self) -> Anchors:
+        """What holds the markers."""
+        mesh = self.robot.body.mesh
+        return locate(mesh, np.array([marker.at for marker in self.robot.markers]).reshape(-1, mesh.dim))
+
+    def tensions(self, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Vector:
+        """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""
+        if self.friction is not None and history is not None:
+            return self.friction.resumed(history, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
 
     def stiffness(self, pose: SolvedPose) -> Stiffness:
         """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
-        if self._path is not None:
-            return self._path.stiffness(pose)
-        return self._known_stiffness(pose) or self.assembly.stiffness(pose.nodes, pose.contractions)
+        if self.assembly.has_history:
+            return self._path.resumed(pose).stiffness(pose.nodes, pose.contractions)
+        return self.stiffness_of(pose) or self.assembly.stiffness(pose.nodes, pose.contractions)
+
+    def stiffness_of(self, pose: SolvedPose) -> Stiffness | None:
+        """The Hessian that a pose of this simulation brings along; None if it is of another one or brings none."""
+        known = pose.result.stiffness
+        return known if known is not None and known.token is self.assembly.token else None
 
     @cached_property
     def rest(self) -> SolvedPose:
@@ -290,80 +338,20 @@ class Simulation:
         Raises:
             NotConvergedError: as for `solve`.
         """
-        pose = self.solve(np.zeros(len(self.robot.winches)))
-        self._resting = self._last
-        return pose
+        return self.solve(np.zeros(len(self.robot.winches)))
 
     @cached_property
-    def _rest_stiffness(self) -> Stiffness:
-        """The Hessian at rest."""
-        return self.assembly.stiffness(self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches)))
+    def rest_stiffness(self) -> Stiffness:
+        """The Hessian at the nodes' rest positions."""
+        nodes, idle = self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches))
+        if not self._plain:
+            return self.assembly.stiffness(nodes, idle)
+        return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
 
     @cached_property
-    def route_points(self) -> RoutePoints:
-        """What holds the points of the cables."""
-        return route_points(self.robot)
-
-    def _known_stiffness(self, pose: SolvedPose) -> Stiffness | None:
-        """The Hessian at a pose if it is at hand: that of the last one solved, or of the pose at rest."""
-        return next((found[1] for found in (self._last, self._resting) if found and found[0] is pose), None)
-
-    def _approach(self, goal: Vector, start: SolvedPose | None) -> NewtonResult:
-        """At once; failing that in load steps from `start`, then from rest, and last by patience alone."""
-        rest, idle = self.robot.body.mesh.nodes, np.zeros_like(goal)
-        begin = start.nodes if start else rest
-        known = self._known_stiffness(start) if start else self._rest_stiffness
-        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS)
-        spent = result.iterations
-        if not result.converged and start and (start.contractions != goal).any():
-            result = self._in_steps(begin, start.contractions, goal, known)
-            spent += result.iterations
-        if not result.converged:
-            result = self._in_steps(rest, idle, goal, self._rest_stiffness, from_rest=True)
-            spent += result.iterations
-        if not result.converged:
-            result = self.relax(rest, goal, self._rest_stiffness)
-            spent += result.iterations
-            result = min(result, direct, key=lambda found: found.residual)
-        return replace(result, iterations=spent)
-
-    def _in_steps(
-        self, nodes: Nodes, begin: Vector, goal: Vector, stiffness: Stiffness | None, *, from_rest: bool = False
-    ) -> NewtonResult:
-        """By load steps that are halved where one fails and doubled where not; the last failure if they get too small.
-
-        A step on the way need not end sharp. From rest the weight grows with the contractions.
-        """
-        done, step, spent = 0.0, _FIRST_STEP, 0
-        result, last = None, False
-        for _ in range(_MOST_STEPS):
-            share = min(done + step, 1.0)
-            last = share == 1.0
-            iterations, tolerance = (None, None) if last else (_DIRECT_ITERATIONS, _LOOSE)
-            controls = goal if last else begin + share * (goal - begin)
-            assembly = self._lighter(share) if from_rest else self.assembly
-            result = self.relax(
-                nodes, controls, stiffness, iterations=iterations, tolerance=tolerance, assembly=assembly
-            )
-            spent += result.iterations
-            if result.converged and not last:
-                nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
-                continue
-            step *= 0.5
-            if result.converged or step < _SMALLEST_STEP:
-                break
-        assert result is not None
-        return replace(result, iterations=spent, reason=result.reason if last else Reason.ITERATION_LIMIT)
-
-    def _lighter(self, share: float) -> Assembly:
-        """The physics with a share of the weight."""
-        energies = [
-            WeightEnergy(self.robot.body.mesh.nodes, share * energy.forces)
-            if isinstance(energy, WeightEnergy)
-            else energy
-            for energy in self.assembly.energies
-        ]
-        return self.assembly.with_energies(energies)
+    def _path(self) -> LoadingPath:
+        """Incremental loading; only for energies with a history."""
+        return LoadingPath(self.robot, self.solver)
 
     def relax(
         self,
@@ -373,7 +361,6 @@ class Simulation:
         *,
         iterations: int | None = None,
         tolerance: float | None = None,
-        assembly: Assembly | None = None,
         exact: bool = False,
     ) -> NewtonResult:
         """Newton from some nodes on, for those who follow a pose step by step; `solve` is what others want.
@@ -385,66 +372,29 @@ class Simulation:
                 dx/da and costs no factorisation.
             iterations: most steps, if fewer than the simulation's options allow.
             tolerance: if looser than theirs.
-            assembly: other physics on the same nodes.
             exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
         """
-        options = self.options
-        if iterations is not None:
-            options = replace(options, iterations=min(iterations, options.iterations))
-        if tolerance is not None:
-            options = replace(options, tolerance=max(tolerance, options.tolerance))
-        return minimise(
-            assembly or self.assembly,
-            nodes,
-            contractions,
-            force_scale=lambda nodes: float(self.tensions(nodes, contractions).max(initial=0.0)),
-            round_off=self._round_off,
-            options=options,
-            warp=self._warp,
-            stiffness=stiffness,
-            exact=exact,
+        return self.solver.relax(
+            nodes, contractions, stiffness, iterations=iterations, tolerance=tolerance, exact=exact
         )
 
     def allowed(self, nodes: Nodes, contractions: Vector) -> float:
         """Nodal force left over [N] at which nodes count as at rest."""
-        largest = float(self.tensions(nodes, contractions).max(initial=0.0))
-        return max(self.options.tolerance * largest, self._round_off.force)
+        return self.solver.allowed(nodes, contractions)
 
-    def posed(self, contractions: Vector, result: NewtonResult, slips: Vector | None = None) -> SolvedPose:
-        """What Newton found, as a pose."""
+    def posed(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> SolvedPose:
+        """Pose that Newton found, with all that the robot shows there."""
         positions = self.marker_anchors.positions(result.nodes)
-        pose = SolvedPose(
+        return SolvedPose(
             contractions=contractions,
             nodes=result.nodes,
             markers={marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)},
-            tensions=self.tensions(result.nodes, contractions, slips),
+            tensions=self.tensions(result.nodes, contractions, history),
             energy=result.energy,
-            result=replace(result, stiffness=None),
-            slips=np.zeros(0) if slips is None else slips,
+            result=result,
+            history=np.zeros(0) if history is None else history,
         )
-        self._last = None if result.stiffness is None else (pose, result.stiffness)
-        return pose
 
 
 _REFINEMENTS = 4
-
-_DIRECT_ITERATIONS = 20
-"""So many steps of Newton before a command is approached in load steps."""
-
-_FIRST_STEP = 0.25
-"""Share of a command that is tried first."""
-
-_LOOSE = 1e-2
-"""What may be left over on the way, as a share of the largest applied force."""
-
-_MOST_STEPS = 100
-"""Load steps of one solve."""
-
-_SMALLEST_STEP = 2.0**-10
-"""No load step is smaller than this share of a command."""
-
-
-def _markers(robot: Robot) -> Anchors:
-    mesh = robot.body.mesh
-    points = np.array([marker.at for marker in robot.markers]).reshape(-1, mesh.dim)
-    return locate(mesh, points)
+"""Most steps of iterative refinement with factors of a state close by."""

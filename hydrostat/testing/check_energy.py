@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics.energy import Energy
+from hydrostat.mechanics.energy import Coupling, Energy
 from hydrostat.testing.conformance_error import ConformanceError
 from hydrostat.testing.differences import central_differences, steps
 
@@ -18,7 +18,8 @@ def check_energy(
     The oracle is central differences: of the value for the gradient, of the gradient for the Hessian and for the
     control derivative. Each is tried at several steps and judged by the best, for a wrong derivative agrees at none.
     Further: shapes, symmetry, terms that depend on nothing but their stencil and their control, a value that is never
-    NaN, a lifted Hessian that is semidefinite and only lifts, and the claim of `convex`.
+    NaN, a projected Hessian that is semidefinite and lowers no eigenvalue, the claim of `convex`, and what a solver may
+    ask: couplings with their law, largest force and step, terms that come and go, supports, loads, parameters, history.
 
     A term of an energy with a part of low rank may depend on the nodes of other terms through it. So there the whole
     Hessian is compared, the blocks of all terms and G D G^T, with the derivative of the whole gradient.
@@ -40,9 +41,12 @@ def check_energy(
     check.gradient()
     check.hessian()
     check.control_gradient()
-    check.low_rank()
-    check.lift()
+    check.coupling()
+    check.projection()
     check.convexity()
+    check.solver()
+    check.parameters()
+    check.history()
 
 
 class _EnergyCheck:
@@ -72,13 +76,16 @@ class _EnergyCheck:
         self._shape("gradient", energy.gradient(self.nodes, self.controls), (terms, corners, dim))
         self._shape("hessian", energy.hessian(self.nodes, self.controls), (terms, corners * dim, corners * dim))
         for share in (0.0, 1.0):
-            lifted = energy.lifted_hessian(self.nodes, self.controls, share)
-            self._shape("lift", lifted, (terms, corners * dim, corners * dim))
-        if (part := energy.low_rank(self.nodes, self.controls)) is not None:
-            columns, weights = part
-            rank = columns.shape[-1]
-            self._shape("low rank", columns, (self.nodes.size, rank))
-            self._shape("low rank", weights, (rank, rank))
+            projected = energy.projected_hessian(self.nodes, self.controls, share)
+            self._shape("projection", projected, (terms, corners * dim, corners * dim))
+        if (part := energy.coupling(self.nodes, self.controls)) is not None:
+            rank = part.columns.shape[-1]
+            self._shape("coupling", part.columns, (self.nodes.size, rank))
+            self._shape("coupling", part.weights, (rank, rank))
+            if part.elongations is not None:
+                self._shape("coupling", part.elongations, (rank,))
+        if energy.supports is not None:
+            self._shape("supports", energy.supports, (terms,))
         if energy.controls is not None:
             self._shape("controls", energy.controls, (terms,))
             derivative = energy.control_gradient(self.nodes, self.controls)
@@ -101,9 +108,9 @@ class _EnergyCheck:
         total = np.zeros(self.nodes.shape)
         np.add.at(total, self.energy.stencils, blocks)
         stiffness = float(np.abs(self.energy.hessian(self.nodes, self.controls)).max(initial=0.0))
-        if (part := self.energy.low_rank(self.nodes, self.controls)) is not None:
-            columns, weights = part
-            stiffness += float(np.abs(np.einsum("dr,rs,ds->d", columns, weights, columns)).max(initial=0.0))
+        if (part := self.energy.coupling(self.nodes, self.controls)) is not None:
+            diagonal = np.einsum("dr,rs,ds->d", part.columns, part.weights, part.columns)
+            stiffness += float(np.abs(diagonal).max(initial=0.0))
         rounding = 64 * np.finfo(float).eps * abs(self.energy.value(self.nodes, self.controls))
 
         def error(step: float) -> np.ndarray:
@@ -131,11 +138,11 @@ class _EnergyCheck:
         scales[scales == 0.0] = 1.0
         skew = np.abs(hessian - np.swapaxes(hessian, 1, 2)) / scales[:, None, None]
         self._judge("hessian", "[term, row, column] is not symmetric", skew.max(initial=0.0), _place(skew))
-        part = self.energy.low_rank(self.nodes, self.controls)
+        part = self.energy.coupling(self.nodes, self.controls)
         if part is None:
             self._hessian_of_terms(hessian, scales)
         else:
-            self._hessian_of_all(hessian, *part)
+            self._hessian_of_all(hessian, part.columns, part.weights)
 
     def _hessian_of_terms(self, hessian: np.ndarray, scales: np.ndarray) -> None:
         """Each block is the derivative of its gradient block, which depends on no node outside its stencil."""
@@ -205,32 +212,144 @@ class _EnergyCheck:
         worst, index = self._best(error, natural)
         self._judge("control gradient", "[term, corner, axis, control] is not the derivative", worst, index)
 
-    def low_rank(self) -> None:
-        """D of the part of low rank is symmetric and positive semidefinite, and both are finite, wherever they are."""
+    def coupling(self) -> None:
+        """G and D are finite, D is symmetric and positive semidefinite; G and D are slopes of elongations and law."""
         for nodes in self._states():
             if not np.isfinite(self.energy.value(nodes, self.controls)):
                 continue
-            part = self.energy.low_rank(nodes, self.controls)
+            part = self.energy.coupling(nodes, self.controls)
             if part is None:
                 continue
-            columns, weights = part
+            columns, weights = part.columns, part.weights
             if not (np.isfinite(columns).all() and np.isfinite(weights).all()):
-                raise ConformanceError("low rank", "it is not finite at some positions where the value is")
+                raise ConformanceError("coupling", "it is not finite at some positions where the value is")
             scale = _largest(weights) or 1.0
             skew = np.abs(weights - weights.T)
             if _largest(skew) > 1e-9 * scale:
                 error = _largest(skew) / scale
-                raise ConformanceError("low rank", "D is not symmetric", index=_place(skew), relative_error=error)
+                raise ConformanceError("coupling", "D is not symmetric", index=_place(skew), relative_error=error)
             negative = -float(np.linalg.eigvalsh(weights).min(initial=0.0)) / scale
             if negative > 1e-9:
-                raise ConformanceError("low rank", "D has a negative eigenvalue", relative_error=negative)
+                raise ConformanceError("coupling", "D has a negative eigenvalue", relative_error=negative)
+            if part.law is not None and part.elongations is not None:
+                self._law(part)
+        part = self.energy.coupling(self.nodes, self.controls)
+        if part is not None and part.elongations is not None:
+            self._elongations(part.columns)
 
-    def lift(self) -> None:
-        """The lifted Hessian is the Hessian at share 0, semidefinite at 1, linear between; and it only lifts."""
+    def _elongations(self, columns: np.ndarray) -> None:
+        """G is the derivative of the elongations."""
+
+        def elongations(point: np.ndarray) -> np.ndarray:
+            found = self.energy.coupling(point.reshape(self.nodes.shape), self.controls)
+            assert found is not None
+            assert found.elongations is not None
+            return found.elongations
+
+        def error(step: float) -> np.ndarray:
+            found = central_differences(elongations, self.point, self.variables, step)
+            return np.abs(found - columns.T[:, self.variables]) / (_largest(columns) or 1.0)
+
+        worst, place = self._best(error, self.size)
+        self._judge("coupling", "[spring, variable] of G is not the derivative of its elongation", worst, place)
+
+    def _law(self, part: Coupling) -> None:
+        """D is the tangent of the law, and the forces it finds on a body that gives way balance."""
+        assert part.law is not None
+        assert part.elongations is not None
+        tangents = np.diag(part.law.tangent(part.elongations))
+        miss = _largest(part.weights - tangents) / (_largest(tangents) or 1.0)
+        if miss > 1e-9:
+            raise ConformanceError("coupling", "D is not the tangent of its law", relative_error=miss)
+        for softness in (1e-6, 1.0, 1e3):
+            compliance = softness / (_largest(tangents) or 1.0) * np.eye(len(tangents))
+            tensions = part.law.balance(part.elongations, compliance)
+            if tensions is None:
+                raise ConformanceError("coupling", "its law finds no balance on a body that gives way evenly")
+            wanted = part.law.tension(part.elongations - compliance @ tensions)
+            off = _largest(wanted - tensions) / (_largest(tensions) or 1.0)
+            if off > 1e-6:
+                raise ConformanceError("coupling", "the forces of its law do not balance", relative_error=off)
+
+    def solver(self) -> None:
+        """Largest force and step are in their range; terms near a place stay; whole loads change nothing."""
+        energy, controls = self.energy, self.controls
+        force = energy.largest_force(self.nodes, controls)
+        if not (np.isfinite(force) and force >= 0.0):
+            raise ConformanceError("largest force", f"it must be finite and not negative, not {force:g}")
+        for nodes in self._states():
+            share = energy.largest_step(self.nodes, nodes - self.nodes)
+            if not 0.0 < share <= 1.0:
+                raise ConformanceError("largest step", f"it must be above 0 and at most 1, not {share:g}")
+            reached = self.nodes + share * (nodes - self.nodes)
+            if share < 1.0 and not np.isfinite(energy.near(reached).value(reached, controls)):
+                raise ConformanceError("largest step", "the energy is not finite where it allows the nodes to go")
+        near = energy.near(self.nodes)
+        if near.near(self.nodes).stencils.shape != near.stencils.shape:
+            raise ConformanceError("near", "asked again at the same nodes it has other terms")
+        value = energy.value(self.nodes, controls)
+        for name, other in (("load", energy.with_load(1.0)), ("supports", self._supported(0.0))):
+            if abs(other.value(self.nodes, controls) - value) > 1e-9 * abs(value):
+                raise ConformanceError(name, "a whole load, or supports that have not moved, must change nothing")
+        self._moves_with_supports()
+
+    def _moves_with_supports(self) -> None:
+        """An energy that supports alone hold is the same where it is moved together with them."""
+        if self.energy.supports is None:
+            return
+        shift = 0.01 * self.size
+        moved = self._supported(shift).value(self.nodes + shift, self.controls)
+        value = self.energy.value(self.nodes, self.controls)
+        if abs(moved - value) > 1e-9 * max(abs(value), np.finfo(float).tiny):
+            raise ConformanceError("supports", "moved together with its supports it has another value")
+
+    def _supported(self, shift: float) -> Energy:
+        count = 0 if self.energy.supports is None else int(self.energy.supports.max(initial=-1)) + 1
+        return self.energy.with_supports_moved(np.full((count, self.nodes.shape[1]), shift))
+
+    def parameters(self) -> None:
+        """`parameter_work` gives finite vectors; that of the dead load is the work of the forces that it adds."""
+        field = self.random.standard_normal(self.nodes.shape)
+        works = self.energy.parameter_work(self.nodes, field)
+        for name, work in works.items():
+            if not (np.ndim(work) == 1 and np.isfinite(work).all()):
+                raise ConformanceError("parameters", f"the work of {name} must be finite numbers in a vector")
+        full, none = (self._forces(self.energy.with_load(share)) for share in (1.0, 0.0))
+        expected, found = float(np.vdot(full - none, field)), float(np.sum(works.get("load", 0.0)))
+        if abs(found - expected) > 1e-6 * max(abs(expected), np.finfo(float).tiny):
+            raise ConformanceError("parameters", "the work of the load is not that of the forces it adds")
+
+    def history(self) -> None:
+        """An energy with a history goes on from it as if it had never stopped; others remember nothing."""
+        energy, nodes, controls = self.energy, self.nodes, self.controls
+        if not energy.has_history:
+            if len(energy.history) or energy.imbalance(nodes, controls) or energy.after(nodes, controls) is not energy:
+                raise ConformanceError("history", "an energy that remembers must say so by `has_history`")
+            return
+        after = energy.after(nodes, controls)
+        resumed = energy.resumed(after.history, nodes, controls)
+        if np.abs(resumed.history - after.history).max(initial=0.0) > 0:
+            raise ConformanceError("history", "resumed from what it remembers it remembers something else")
+        first, second = (one.value(nodes, controls) for one in (after, resumed))
+        if abs(first - second) > 1e-9 * max(abs(first), np.finfo(float).tiny):
+            raise ConformanceError("history", "resumed from what it remembers it has another value")
+        left = energy.corrected(nodes, controls, None).imbalance(nodes, controls)
+        if left > 1e-6 * energy.largest_force(nodes, controls) and left >= energy.imbalance(nodes, controls):
+            raise ConformanceError("history", "a correction brings it no nearer to balance")
+
+    def _forces(self, energy: Energy) -> np.ndarray:
+        total = np.zeros(self.nodes.shape)
+        np.add.at(total, energy.stencils, energy.gradient(self.nodes, self.controls))
+        return total
+
+    def projection(self) -> None:
+        """The projected Hessian is the Hessian at share 0, semidefinite at 1, linear between; no eigenvalue falls."""
         for nodes in self._states():
             if not np.isfinite(self.energy.value(nodes, self.controls)):
                 continue
-            none, half, whole = (self.energy.lifted_hessian(nodes, self.controls, share) for share in (0.0, 0.5, 1.0))
+            none, half, whole = (
+                self.energy.projected_hessian(nodes, self.controls, share) for share in (0.0, 0.5, 1.0)
+            )
             plain = self.energy.hessian(nodes, self.controls)
             scales = np.maximum(np.abs(plain).max(axis=(1, 2), initial=0.0), np.finfo(float).tiny)
             change = whole - plain
@@ -239,13 +358,13 @@ class _EnergyCheck:
                 ("at share 1 this term has a negative eigenvalue", -_least_eigenvalues(whole)),
                 ("it lowers an eigenvalue of this term", -_least_eigenvalues(change)),
                 (
-                    "at share 1/2 this term is not half lifted",
+                    "at share 1/2 this term is not half projected",
                     np.abs(half - plain - 0.5 * change).max(axis=(1, 2), initial=0.0),
                 ),
             ):
                 errors = np.nan_to_num(size / scales, nan=np.inf)
                 if (worst := float(errors.max(initial=0.0))) > 1e-9:
-                    raise ConformanceError("lift", message, index=_place(errors), relative_error=worst)
+                    raise ConformanceError("projection", message, index=_place(errors), relative_error=worst)
 
     def convexity(self) -> None:
         """An energy that says it is convex has no block with a negative eigenvalue."""

@@ -9,7 +9,7 @@ from hydrostat.design import activate, edge_fibres, element_fibres
 from hydrostat.design.muscles.activation import _Activation, least_effort, wanted_directions
 from hydrostat.mechanics import NewtonOptions, minimise
 from hydrostat.robot import Pose
-from hydrostat.simulation import round_off
+from hydrostat.simulation import BodyPhysics
 
 BENT = Pose(name="bent", targets={"tip": (0.18, 0.06)})
 
@@ -67,7 +67,7 @@ def test_more_effort_leaves_more_error_and_weaker_muscles() -> None:
 def test_the_jacobian_by_the_adjoint() -> None:
     robot = strip_robot(columns=6, rows=2)
     fibres = edge_fibres(robot.body.mesh)
-    run = _Activation(robot, BENT, fibres, 1e-4, 5)
+    run = _Activation(robot, BENT, fibres, 1e-4, 5, None)
     random = np.random.default_rng(0)
     tensions = np.where(random.random(len(fibres)) < 0.4, random.uniform(0, 1.0, len(fibres)), 0.0)
 
@@ -76,8 +76,7 @@ def test_the_jacobian_by_the_adjoint() -> None:
             run.assembly,
             start,
             tensions,
-            force_scale=lambda _: 1.0,
-            round_off=round_off(robot),
+            round_off=BodyPhysics(robot).round_off(),
             options=NewtonOptions(tolerance=1e-13),
         )
         assert solved.converged

@@ -7,9 +7,9 @@ from builders import box_mesh, strip_mesh, strip_robot
 
 from hydrostat.design import edge_fibres, element_fibres
 from hydrostat.design.muscles.activation import wanted_directions
-from hydrostat.mechanics import Assembly, NewtonOptions, minimise
+from hydrostat.mechanics import NewtonOptions, minimise
 from hydrostat.robot import Pose
-from hydrostat.simulation import body_energies, round_off
+from hydrostat.simulation import BodyPhysics
 
 
 def turned(count: int, angle: float) -> np.ndarray:
@@ -61,9 +61,10 @@ def test_wanted_directions_are_the_best_of_all_angles() -> None:
     tip = int(np.argmin(np.linalg.norm(mesh.nodes - [0.2, 0.0], axis=1)))
     count, angles, tension = len(mesh.elements), np.radians(np.arange(0, 180, 3)), 1e-4
     errors = np.zeros((len(angles), count))
+    body = BodyPhysics(robot)
     for row, angle in enumerate(angles):
         fibres = element_fibres(mesh, turned(count, angle))
-        assembly = Assembly([*body_energies(robot), fibres.energy()], rest=mesh.nodes, control_count=count)
+        assembly = body.assembly.extended([fibres.energy()], control_count=count)
         for fibre in range(3, count, 5):
             tensions = np.zeros(count)
             # The same couple of forces at the ends of a fibre of unit length, whatever its own length is.
@@ -72,8 +73,7 @@ def test_wanted_directions_are_the_best_of_all_angles() -> None:
                 assembly,
                 mesh.nodes,
                 tensions,
-                force_scale=lambda _: tension,
-                round_off=round_off(robot),
+                round_off=body.round_off(),
                 options=NewtonOptions(),
             )
             errors[row, fibre] = np.sum((solved.nodes[tip] - goal) ** 2)

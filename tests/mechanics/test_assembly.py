@@ -66,10 +66,11 @@ def test_the_sum_is_that_of_plain_loops(dim: int, seed: int) -> None:
     assert assembly.gradient(nodes, controls) == pytest.approx(gradient, abs=1e-12 * np.abs(gradient).max())
     assert found.toarray() == pytest.approx(hessian, abs=1e-12 * np.abs(hessian).max())
     assert found.has_sorted_indices
-    columns, weights = assembly.low_rank(nodes, controls)
-    parts = [energy.low_rank(nodes, controls) for energy in assembly.energies]
+    springs = assembly.coupling(nodes, controls)
+    columns, weights = springs.columns, springs.weights
+    parts = assembly.couplings(nodes, controls)
     assert [part is None for part in parts] == [True, True, False, False]
-    expected = sum(part[0] @ part[1] @ part[0].T for part in parts if part is not None)
+    expected = sum(part.columns @ part.weights @ part.columns.T for part in parts if part is not None)
     assert np.linalg.matrix_rank(expected) == 2
     assert columns @ weights @ columns.T == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
     derivative = assembly.control_derivative(nodes, controls).toarray()
@@ -84,7 +85,7 @@ def test_the_projected_sum_has_no_negative_eigenvalue(dim: int) -> None:
     assembly, nodes, controls = energies(dim, 0)
     nodes = nodes * 0.4
     before = np.linalg.eigvalsh(assembly.hessian(nodes, controls).toarray())
-    after = np.linalg.eigvalsh(assembly.hessian(nodes, controls, lift=1.0).toarray())
+    after = np.linalg.eigvalsh(assembly.hessian(nodes, controls, projection=1.0).toarray())
     assert before[0] < -1e-3 * before[-1]
     assert after[0] > -1e-12 * after[-1]
 
@@ -101,11 +102,12 @@ def test_without_controls_the_control_derivative_is_empty() -> None:
 def test_the_stiffness_solves_with_the_whole_hessian(dim: int, shift: float) -> None:
     """Oracle: a dense solve with blocks, part of low rank and shift, a fraction of the largest diagonal entry."""
     assembly, nodes, controls = energies(dim, 0)
-    columns, weights = assembly.low_rank(nodes, controls)
-    matrix = assembly.hessian(nodes, controls, lift=0.5).toarray()
+    springs = assembly.coupling(nodes, controls)
+    columns, weights = springs.columns, springs.weights
+    matrix = assembly.hessian(nodes, controls, projection=0.5).toarray()
     matrix += shift * matrix.diagonal().max() * np.eye(len(matrix)) + columns @ weights @ columns.T
     right = np.random.default_rng(0).standard_normal(nodes.size)
-    found = assembly.stiffness(nodes, controls, lift=0.5, shift=shift)
+    found = assembly.stiffness(nodes, controls, projection=0.5, shift=shift)
     expected = np.linalg.solve(matrix, right)
     assert found.solve(right) == pytest.approx(expected, abs=1e-8 * np.abs(expected).max())
     assert found.definite == bool(np.linalg.eigvalsh(matrix)[0] > 0)

@@ -73,7 +73,6 @@ def equilibrium(tractions: tuple[float, float, float]) -> tuple[Mesh, NewtonResu
         Assembly(energies, rest=mesh.nodes, control_count=0),
         mesh.nodes,
         np.zeros(0),
-        force_scale=lambda _: float(np.abs(areas * tractions).max()),
         round_off=RoundOff(force=0.0, energy=1e-15 * MU * float(np.prod(SIDES))),
         options=NewtonOptions(),
     )

@@ -30,7 +30,7 @@ def chains(random: np.random.Generator, *, limit: float = 3.0) -> ChainLaw:
     )
 
 
-def stretched(random: np.random.Generator) -> np.ndarray:
+def random_elongations(random: np.random.Generator) -> np.ndarray:
     return random.uniform(-1e-3, 3e-3, 7)
 
 
@@ -38,9 +38,9 @@ def stretched(random: np.random.Generator) -> np.ndarray:
 def test_slips_have_the_least_energy(seed: int) -> None:
     """Oracle: the conditions of Karush, Kuhn and Tucker, which suffice as the energy is convex."""
     random = np.random.default_rng(seed)
-    law, stretch = chains(random, limit=3.0 * (seed % 4 > 0)), stretched(random)
-    slips, tensions = law.slips(stretch), law.tension(stretch)
-    own = stretch + slips - np.append(slips[1:], 0.0)
+    law, elongation = chains(random, limit=3.0 * (seed % 4 > 0)), random_elongations(random)
+    slips, tensions = law.slips(elongation), law.tension(elongation)
+    own = elongation + slips - np.append(slips[1:], 0.0)
     springs = TensionLaw(stiffness=law.stiffness, smoothing=law.smoothing)
     assert np.abs(tensions - springs.tension(own)).max() < 1e-12
     assert (slips[law.starts[:-1]] == 0).all()
@@ -55,24 +55,28 @@ def test_slips_have_the_least_energy(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(20))
 def test_tension_is_the_slope_of_the_energy_and_tangents_of_the_tension(seed: int) -> None:
     random = np.random.default_rng(seed)
-    law, stretch = chains(random), stretched(random)
+    law, elongation = chains(random), random_elongations(random)
     every = np.arange(7)
-    slopes = central_differences(lambda s: np.array([law.energy(s).sum()]), stretch, every, 1e-7)[0]
-    assert slopes == pytest.approx(law.tension(stretch), abs=1e-5)
-    tangents = law.tangents(stretch)
-    assert np.abs(central_differences(law.tension, stretch, every, 1e-9) - tangents).max() < 1e-4 * law.stiffness.max()
+    slopes = central_differences(lambda s: np.array([law.energy(s).sum()]), elongation, every, 1e-7)[0]
+    assert slopes == pytest.approx(law.tension(elongation), abs=1e-5)
+    tangents = law.tangents(elongation)
+    assert (
+        np.abs(central_differences(law.tension, elongation, every, 1e-9) - tangents).max() < 1e-4 * law.stiffness.max()
+    )
     assert np.abs(tangents - tangents.T).max() == 0
     assert np.linalg.eigvalsh(tangents)[0] > -1e-9
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_locked_chains_answer_limits_and_stretches(seed: int) -> None:
+def test_locked_chains_answer_limits_and_elongations(seed: int) -> None:
     random = np.random.default_rng(seed)
-    law, stretch = chains(random), stretched(random)
-    by_stretch, by_limit = law.locked(law.tension(stretch), np.sign(law.slips(stretch)))
-    assert by_stretch == pytest.approx(law.tangents(stretch), abs=1e-6 * law.stiffness.max())
+    law, elongation = chains(random), random_elongations(random)
+    by_elongation, by_limit = law.locked(law.tension(elongation), np.sign(law.slips(elongation)))
+    assert by_elongation == pytest.approx(law.tangents(elongation), abs=1e-6 * law.stiffness.max())
     rubbing = np.flatnonzero(law.limits > 0)
-    found = central_differences(lambda limits: replace(law, limits=limits).tension(stretch), law.limits, rubbing, 1e-7)
+    found = central_differences(
+        lambda limits: replace(law, limits=limits).tension(elongation), law.limits, rubbing, 1e-7
+    )
     assert found == pytest.approx(by_limit[:, rubbing], abs=1e-6)
 
 
@@ -83,8 +87,10 @@ class Rubbing(State):
     energy: FrictionCableEnergy
 
 
-def rubbing(dim: int, random: np.random.Generator, *, stretch: float, slipping: bool, world: bool = False) -> Rubbing:
-    """A cable with friction and one without, both of the same stretch in all; the first with a sheath in the middle."""
+def rubbing(
+    dim: int, random: np.random.Generator, *, elongation: float, slipping: bool, world: bool = False
+) -> Rubbing:
+    """A cable with friction and one without, both equally elongated; the first with a sheath in the middle."""
     mesh = rough_mesh(dim, random)
     stencils, weights, offsets = [], [], []
     for _ in range(2):
@@ -112,18 +118,18 @@ def rubbing(dim: int, random: np.random.Generator, *, stretch: float, slipping: 
         ),
     )
     nodes, controls = deform(mesh, random), random.uniform(0, 0.02, 3)
-    stretches = energy.stretches(nodes, controls)
-    controls[[1, 0]] += (stretch - np.array([stretches[:3].sum(), stretches[3]])) / RATIOS
+    elongations = energy.elongations(nodes, controls)
+    controls[[1, 0]] += (elongation - np.array([elongations[:3].sum(), elongations[3]])) / RATIOS
     limits = np.append(0.0, random.uniform(0.1, 0.3, 2)) * (1.0 if slipping else 1e5)
     return Rubbing(energy.with_limits(np.append(limits, 0.0)), nodes, controls)
 
 
 KINDS = {
-    "slipping": {"stretch": 0.02, "slipping": True},
-    "sticking": {"stretch": 0.02, "slipping": False},
-    "slack": {"stretch": -0.01, "slipping": True},
-    "barely taut": {"stretch": 2e-4, "slipping": True},
-    "from the world": {"stretch": 0.02, "slipping": True, "world": True},
+    "slipping": {"elongation": 0.02, "slipping": True},
+    "sticking": {"elongation": 0.02, "slipping": False},
+    "slack": {"elongation": -0.01, "slipping": True},
+    "barely taut": {"elongation": 2e-4, "slipping": True},
+    "from the world": {"elongation": 0.02, "slipping": True, "world": True},
 }
 
 
@@ -140,14 +146,14 @@ def test_energy_keeps_its_contract(kind: str, dim: int, seed: int) -> None:
 def test_states_slip_and_stick_as_they_are_called(kind: str) -> None:
     """The names of the states above are true."""
     state = rubbing(2, np.random.default_rng([0, 2]), **KINDS[kind])
-    slips = state.energy.law.slips(state.energy.stretches(state.nodes, state.controls))
+    slips = state.energy.law.slips(state.energy.elongations(state.nodes, state.controls))
     assert (slips != 0).tolist() == [False, kind == "slipping", kind == "slipping", False]
 
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_without_limits_it_is_a_cable_without_friction(dim: int) -> None:
     """Oracle: `CableEnergy`, its energy, forces and the whole Hessian."""
-    state = rubbing(dim, np.random.default_rng(dim), stretch=0.02, slipping=True)
+    state = rubbing(dim, np.random.default_rng(dim), elongation=0.02, slipping=True)
     energy, nodes, controls = state.energy.with_limits(np.zeros(4)), state.nodes, state.controls
     spans = energy._spans
     plain = CableEnergy(
@@ -166,7 +172,8 @@ def test_without_limits_it_is_a_cable_without_friction(dim: int) -> None:
     for part in ("gradient", "hessian", "control_gradient"):
         ours, theirs = getattr(energy, part)(nodes, controls), getattr(plain, part)(nodes, controls)
         assert np.abs(ours - theirs).max() < 1e-11 * np.abs(theirs).max()
-    (ours, small), (theirs, diagonal) = energy.low_rank(nodes, controls), plain.low_rank(nodes, controls)
+    one, other = energy.coupling(nodes, controls), plain.coupling(nodes, controls)
+    ours, small, theirs, diagonal = one.columns, one.weights, other.columns, other.weights
     whole = theirs @ diagonal @ theirs.T
     assert np.abs(ours @ small @ ours.T - whole).max() < 1e-11 * np.abs(whole).max()
 
@@ -174,7 +181,7 @@ def test_without_limits_it_is_a_cable_without_friction(dim: int) -> None:
 @pytest.mark.parametrize("dim", [2, 3])
 def test_angles_and_their_gradients(dim: int) -> None:
     """Oracles: the arc cosine of the directions; central differences."""
-    state = rubbing(dim, np.random.default_rng(dim), stretch=0.02, slipping=True)
+    state = rubbing(dim, np.random.default_rng(dim), elongation=0.02, slipping=True)
     turns, nodes = state.energy._turns, state.nodes
     spans = np.einsum("stc,stcd->std", turns.weights, nodes[turns.stencils]) + turns.offsets
     units = spans / np.linalg.norm(spans, axis=2, keepdims=True)
@@ -232,7 +239,7 @@ def test_capstan_while_a_cable_is_taken_in_and_let_out() -> None:
     """Oracle: T = T0 exp(-mu angle) along the arc while it is taken in, exp(mu angle) at last while it is let out.
 
     In between the far end keeps its tension, until that of the winch has fallen below it by exp(mu angle). And the
-    winch's tension itself, by the sum of the stretches of the segments at those tensions. The springs follow
+    winch's tension itself, by the sum of the elongations of the segments at those tensions. The springs follow
     the straight part of their law, so the smoothing has no share in any error.
     """
     (energy, nodes), tensions = arc(), np.zeros(SEGMENTS)

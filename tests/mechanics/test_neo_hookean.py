@@ -105,7 +105,6 @@ def test_a_block_under_an_end_load_takes_its_closed_form(dim: int, traction: flo
         assembly,
         mesh.nodes,
         np.zeros(0),
-        force_scale=lambda nodes: float(np.abs(forces).max()),
         round_off=RoundOff(force=0.0, energy=1e-15 * MU * volume(mesh)),
         options=NewtonOptions(tolerance=1e-11),
     )

@@ -70,7 +70,8 @@ def strip(pin: type[PinEnergy] = PinEnergy) -> Assembly:
 
 def dense(assembly: Assembly, nodes: np.ndarray, controls: np.ndarray) -> np.ndarray:
     """The whole Hessian, part of low rank included."""
-    columns, weights = assembly.low_rank(nodes, controls)
+    springs = assembly.coupling(nodes, controls)
+    columns, weights = springs.columns, springs.weights
     return assembly.hessian(nodes, controls).toarray() + columns @ weights @ columns.T
 
 
@@ -85,7 +86,6 @@ def solve(
         assembly,
         MESH.nodes if start is None else start,
         controls,
-        force_scale=lambda nodes: float(cable.tensions(nodes, controls).max()),
         round_off=ROUND_OFF,
         options=replace(OPTIONS, **options),
     )
@@ -160,7 +160,6 @@ def test_a_node_that_nothing_holds_stays_and_the_rest_arrives() -> None:
         Assembly([body, pins], rest=nodes, control_count=0),
         nodes,
         np.zeros(0),
-        force_scale=lambda _: 0.1,
         round_off=ROUND_OFF,
         options=OPTIONS,
     )

@@ -45,8 +45,8 @@ def test_the_contract_can_be_broken() -> None:
     """The check can fail: a Hessian 1 % too large."""
 
     class Stiffer(PatchVolume):
-        def lifted_hessian(self, nodes, controls, share):
-            return super().lifted_hessian(nodes, controls, share) * 1.01
+        def projected_hessian(self, nodes, controls, share):
+            return super().projected_hessian(nodes, controls, share) * 1.01
 
     mesh = rough_mesh(2, np.random.default_rng(2))
     patches = grow_patches(mesh.elements, 4)

@@ -6,6 +6,7 @@ from builders import strip_mesh
 from scipy.sparse import csc_array
 
 from hydrostat.mechanics import Analysis, Stiffness
+from hydrostat.mechanics.energy import Coupling
 
 MESH = strip_mesh(5, 2)
 SIZE = MESH.nodes.size
@@ -30,7 +31,7 @@ def made(matrix: np.ndarray, columns: np.ndarray, weights: np.ndarray) -> Stiffn
     pattern.sort_indices()
     values = matrix.T[pattern.T.toarray() != 0]
     analysis = Analysis(pattern.indptr, pattern.indices, dim=2, points=MESH.nodes)
-    return Stiffness(analysis.factorise(values), columns, weights)
+    return Stiffness(analysis.factorise(values), Coupling(columns=columns, weights=weights))
 
 
 def weights_of(kind: str, random: np.random.Generator) -> np.ndarray:

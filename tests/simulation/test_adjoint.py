@@ -212,7 +212,7 @@ def test_the_projected_hessian_or_a_wrong_sign_would_fail() -> None:
     """The check can fail, and why E16 asks for the full Hessian."""
     loss = Loss(strip(), np.array([0.05, 0.0095]))
     simulation, pose = loss.simulation, loss.pose
-    lifted = simulation.assembly.stiffness(pose.nodes, pose.contractions, lift=1.0)
+    lifted = simulation.assembly.stiffness(pose.nodes, pose.contractions, projection=1.0)
     wrong = sensitivity(
         loss.robot,
         simulation.assembly,

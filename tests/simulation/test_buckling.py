@@ -28,7 +28,8 @@ def column(rows: int = 3) -> Robot:
 
 def hessian(simulation: Simulation, nodes: np.ndarray, contractions: np.ndarray) -> np.ndarray:
     """Dense, with the part of low rank."""
-    columns, weights = simulation.assembly.low_rank(nodes, contractions)
+    springs = simulation.assembly.coupling(nodes, contractions)
+    columns, weights = springs.columns, springs.weights
     return simulation.assembly.hessian(nodes, contractions).toarray() + columns @ weights @ columns.T
 
 

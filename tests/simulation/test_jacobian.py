@@ -55,8 +55,9 @@ def test_the_projected_hessian_would_give_another_answer() -> None:
     """The check can fail, and why E16 asks for the full Hessian."""
     simulation = Simulation(strip_robot())
     pose = simulation.solve(np.array([0.06, 0.0]))
-    columns, weights = simulation.assembly.low_rank(pose.nodes, pose.contractions)
-    projected = simulation.assembly.hessian(pose.nodes, pose.contractions, lift=1.0).toarray()
+    springs = simulation.assembly.coupling(pose.nodes, pose.contractions)
+    columns, weights = springs.columns, springs.weights
+    projected = simulation.assembly.hessian(pose.nodes, pose.contractions, projection=1.0).toarray()
     projected += columns @ weights @ columns.T
     right = simulation.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
     wrong = -np.linalg.solve(projected, right).reshape(*pose.nodes.shape, -1)

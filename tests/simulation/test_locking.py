@@ -20,7 +20,7 @@ from hydrostat.mechanics.patch_volume import PatchVolume
 from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
 from hydrostat.robot import Cable, Pin, Robot, Volume, Winch
 from hydrostat.robot.risks.body_risks import LOCKING
-from hydrostat.simulation import Simulation, body_energies
+from hydrostat.simulation import BodyPhysics, Simulation
 
 HEIGHT, LENGTH, OFFSET, THICKNESS = 0.02, 0.12, 0.005, 0.03
 CONTRACTION = 0.015
@@ -109,7 +109,7 @@ def test_only_the_volume_is_in_patches(make: Callable[[], Robot]) -> None:
     nodes = robot.body.mesh.nodes * np.linspace(0.8, 1.1, robot.body.mesh.dim)
     values = []
     for volume in Volume:
-        energies = body_energies(replace(robot, body=replace(robot.body, volume=volume)))
+        energies = BodyPhysics(replace(robot, body=replace(robot.body, volume=volume))).assembly.energies
         values.append(sum(energy.value(nodes, np.zeros(2)) for energy in energies))
     assert values[0] == pytest.approx(values[1], rel=1e-12)
     assert values[0] > 0

@@ -43,7 +43,7 @@ def test_a_step_takes_in_by_its_radius(pair: tuple[Simulation, Simulation]) -> N
     assert np.abs(pose.nodes - expected.nodes).max() < 1e-9 * size
     assert pose.tensions == pytest.approx(expected.tensions, rel=1e-8)
     assert pose.result.iterations == expected.result.iterations
-    assert pose.slips == pytest.approx(expected.slips, abs=1e-9 * size)
+    assert pose.history == pytest.approx(expected.history, abs=1e-9 * size)
 
 
 def test_slopes_follow_the_chain_rule(pair: tuple[Simulation, Simulation]) -> None:

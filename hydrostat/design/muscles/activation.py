@@ -9,24 +9,25 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.design.muscles.fibres import Fibres
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, minimise
+from hydrostat.mechanics import NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import body_energies, round_off
+from hydrostat.simulation import BodyPhysics
 
 
-def wanted_directions(robot: Robot, pose: Pose) -> Float[np.ndarray, "elements dim"]:
+def wanted_directions(robot: Robot, pose: Pose, *, body: BodyPhysics | None = None) -> Float[np.ndarray, "elements dim"]:
     """Unit vectors along which a fibre of each element lowers the pose error most (E21a).
 
     At rest, with the adjoint field w = H^-1 dO/dx of the marker error O, a small tension t along d in an element
     changes O by t times the strain of w along d; the best d is the eigenvector of the largest strain of w.
     """
     mesh = robot.body.mesh
-    assembly = Assembly(body_energies(robot), rest=mesh.nodes, control_count=0)
+    body = body or BodyPhysics(robot)
+    body.check(robot)
     places = {marker.name: marker.at for marker in robot.markers}
     anchors = locate(mesh, np.array([places[name] for name in pose.targets]))
     miss = anchors.positions(mesh.nodes) - np.array(list(pose.targets.values()), dtype=float)
     slope = anchors.matrix(len(mesh.nodes)).T @ miss
-    field = assembly.stiffness(mesh.nodes, np.zeros(0)).solve(-slope.ravel()).reshape(mesh.nodes.shape)
+    field = body.rest_factors.solve(-slope.ravel()).reshape(mesh.nodes.shape)
     corners = mesh.nodes[mesh.elements]
     inverse = np.linalg.inv(corners[:, 1:] - corners[:, :1])
     moved = field[mesh.elements]
@@ -59,7 +60,15 @@ class Activation:
         return float(np.sqrt(np.mean(np.square(list(self.errors.values())))))
 
 
-def activate(robot: Robot, target: Pose, fibres: Fibres, *, effort: float = 1e-4, stages: int = 5) -> Activation:
+def activate(
+    robot: Robot,
+    target: Pose,
+    fibres: Fibres,
+    *,
+    effort: float = 1e-4,
+    stages: int = 5,
+    body: BodyPhysics | None = None,
+) -> Activation:
     """Tensions t >= 0 of least effort that bring the markers near their targets.
 
     Minimises 1/2 |markers - targets|^2 + rho/2 |t|^2 by Gauss-Newton while the target moves from rest to where it
@@ -72,26 +81,33 @@ def activate(robot: Robot, target: Pose, fibres: Fibres, *, effort: float = 1e-4
         fibres: the muscles.
         effort: weight of squared tensions: the larger, the weaker the muscles and the error left.
         stages: steps in which the target is approached.
+        body: the physics of the body, if they are at hand.
     """
-    return _Activation(robot, target, fibres, effort, stages).run()
+    return _Activation(robot, target, fibres, effort, stages, body).run()
 
 
 class _Activation:
     """One run: body and fibres assembled, markers located."""
 
-    def __init__(self, robot: Robot, target: Pose, fibres: Fibres, effort: float, stages: int) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        target: Pose,
+        fibres: Fibres,
+        effort: float,
+        stages: int,
+        body: BodyPhysics | None,
+    ) -> None:
         mesh = robot.body.mesh
         self.robot, self.target, self.fibres = robot, target, fibres
         self.effort, self.stages = effort, stages
-        self.assembly = Assembly(
-            [*body_energies(robot), fibres.energy()],
-            rest=mesh.nodes,
-            control_count=len(fibres),
-        )
+        body = body or BodyPhysics(robot)
+        body.check(robot)
+        self.assembly = body.assembly.extended([fibres.energy()], control_count=len(fibres))
         places = {marker.name: marker.at for marker in robot.markers}
         self.anchors = locate(mesh, np.array([places[name] for name in target.targets]))
         self.goals = np.array(list(target.targets.values()), dtype=float)
-        self.round_off = round_off(robot)
+        self.round_off = body.round_off()
 
     def run(self) -> Activation:
         """Approach the target in stages, two Gauss-Newton steps each, and a few more at the end."""
@@ -147,7 +163,6 @@ class _Activation:
             self.assembly,
             nodes,
             tensions,
-            force_scale=lambda _: float(tensions.max(initial=0.0)),
             round_off=self.round_off,
             options=NewtonOptions(tolerance=1e-7, iterations=60),
         )

@@ -8,10 +8,9 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.design.muscles.activation import least_effort
 from hydrostat.design.muscles.fibres import Fibres, edge_fibres
 from hydrostat.geometry.anchors import Anchors
-from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, minimise
+from hydrostat.mechanics import NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Robot
-from hydrostat.simulation import body_energies, round_off
-from hydrostat.simulation.build import warp
+from hydrostat.simulation import BodyPhysics
 
 
 class FreePosing:
@@ -31,7 +30,13 @@ class FreePosing:
     """
 
     def __init__(
-        self, robot: Robot, fibres: Fibres | None = None, *, effort: float = 1e-4, strength: float = 1.8
+        self,
+        robot: Robot,
+        fibres: Fibres | None = None,
+        *,
+        effort: float = 1e-4,
+        strength: float = 1.8,
+        body: BodyPhysics | None = None,
     ) -> None:
         """Begin at rest.
 
@@ -40,15 +45,17 @@ class FreePosing:
             fibres: the muscles; on all edges of the mesh if left out.
             effort: weight of squared tensions, as for `activate`.
             strength: the most that muscles pull, as the pressure of all of them together in Young's moduli.
+            body: the physics of the body, if they are at hand.
         """
         mesh = robot.body.mesh
         self.robot = robot
         self.fibres = fibres or edge_fibres(mesh)
-        body, pins, *others = body_energies(robot)
+        body = body or BodyPhysics(robot)
+        body.check(robot)
         self._energy = self.fibres.energy()
         self._lengths = self._energy.lengths(mesh.nodes)
-        self._assembly = Assembly([body, pins, *others, self._energy], rest=mesh.nodes, control_count=len(self.fibres))
-        self._warp, self._noise = warp(robot, body, pins), round_off(robot)
+        self._assembly = body.assembly.extended([self._energy], control_count=len(self.fibres))
+        self._warp, self._noise = body.warp, body.round_off()
         self._effort, self._size = effort, mesh.size
         volume = float(mesh.volumes.sum()) * (robot.body.thickness or 1.0)
         self.strength = strength * robot.body.material.young * mesh.dim * volume / float(self._lengths.sum())
@@ -92,21 +99,20 @@ class FreePosing:
             self._assembly,
             self.robot.body.mesh.nodes,
             none,
-            force_scale=lambda _: 0.0,
             round_off=self._noise,
             options=NewtonOptions(),
             warp=self._warp,
         )
 
     def _settle(self, found: NewtonResult, tensions: Vector) -> bool:
-        """Be where Newton came to, with a Hessian that is lifted until it is definite; whether that is elsewhere."""
+        """Be where Newton came to, with a Hessian that is projected until it is definite; whether that is elsewhere."""
         moved = float(np.abs(found.nodes - self.nodes).max())
         self.nodes, self.tensions = found.nodes, tensions
         stiffness = found.stiffness
         if stiffness is None or not stiffness.definite:
-            stiffness = self._assembly.stiffness(found.nodes, tensions, lift=1.0)
+            stiffness = self._assembly.stiffness(found.nodes, tensions, projection=1.0)
         if not stiffness.definite:
-            stiffness = self._assembly.stiffness(found.nodes, tensions, lift=1.0, shift=_SHIFT)
+            stiffness = self._assembly.stiffness(found.nodes, tensions, projection=1.0, shift=_SHIFT)
         self._stiffness = stiffness
         return moved > _STILL * self._size
 
@@ -167,7 +173,6 @@ class FreePosing:
             self._assembly,
             self.nodes,
             tensions,
-            force_scale=lambda _: float(tensions.max(initial=0.0)),
             round_off=self._noise,
             options=NewtonOptions(tolerance=_LOOSE, iterations=iterations),
             warp=self._warp,

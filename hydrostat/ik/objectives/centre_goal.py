@@ -10,7 +10,6 @@ from hydrostat.ik.checks import not_negative, place
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.robot import Point
 from hydrostat.simulation import Simulation
-from hydrostat.simulation.build import node_masses
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,7 +32,7 @@ class CentreGoal(Objective):
         """
         target = place("target of the centre of mass", self.target, simulation.robot.body.mesh)
         weight = not_negative("weight of the centre of mass", self.weight)
-        masses = node_masses(simulation.robot)
+        masses = simulation.body.masses
         return _Centre(weight, masses / masses.sum(), target)
 
 

@@ -5,7 +5,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.robot import Robot
-from hydrostat.simulation.build import elastic_energy
+from hydrostat.simulation import BodyPhysics
 from hydrostat.studio.view.colouring import Colouring, node_strains, node_stresses, node_values, scale
 
 ROBOTS = {2: strip_robot(columns=6, rows=2), 3: box_robot()}
@@ -46,7 +46,7 @@ def test_stress_is_the_slope_of_the_energy(dim: int) -> None:
     robot = ROBOTS[dim]
     rng = np.random.default_rng(3)
     gradient = np.eye(dim) + 0.2 * rng.standard_normal((dim, dim))
-    energy, h = elastic_energy(robot), 1e-6
+    energy, h = BodyPhysics(robot).elastic, 1e-6
     volume = float(energy.volumes.sum())
     slope = np.zeros((dim, dim))
     for i in range(dim):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.simulation.largest_distance import largest_distance
+from hydrostat.simulation import largest_distance
 
 
 def test_it_is_the_distance_of_one_node() -> None:

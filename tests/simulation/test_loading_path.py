@@ -15,7 +15,7 @@ from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import FrictionCableEnergy
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, load_robot, save_robot
-from hydrostat.simulation import Simulation, SolvedPose, friction_path
+from hydrostat.simulation import Simulation, SolvedPose, loading_path
 
 WAVY = (0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
 
@@ -46,7 +46,7 @@ PULL = np.array([0.02, 0.008])
 
 def settled(simulation: Simulation, pose: SolvedPose) -> FrictionCableEnergy:
     assert simulation.friction is not None
-    return simulation.friction.resumed(pose.slips, pose.nodes, pose.contractions)
+    return simulation.friction.resumed(pose.history, pose.nodes, pose.contractions)
 
 
 def span_tensions(simulation: Simulation, pose: SolvedPose) -> np.ndarray:
@@ -59,7 +59,7 @@ def test_a_trace_of_friction_is_none(name: str) -> None:
     robot = ROBOTS[name]()
     plain, traced = Simulation(rub(robot, 0.0)), Simulation(rub(robot, 1e-14))
     expected, pose = plain.solve(PULL), traced.solve(PULL)
-    assert expected.slips.size == 0 < pose.slips.size
+    assert expected.history.size == 0 < pose.history.size
     assert np.abs(pose.nodes - expected.nodes).max() < 1e-9 * robot.body.mesh.size
     assert pose.tensions == pytest.approx(expected.tensions, rel=1e-8)
     assert pose.energy == pytest.approx(expected.energy, rel=1e-8)
@@ -76,7 +76,7 @@ def test_tensions_obey_the_capstan_law(name: str) -> None:
         cables = settled(simulation, pose)
         tensions, factors = span_tensions(simulation, pose), np.exp(cables.friction * cables.angles(pose.nodes))
         rubs = np.flatnonzero(cables.friction > 0)
-        ratios, slips = tensions[rubs - 1] / tensions[rubs], (pose.slips - before.slips)[rubs]
+        ratios, slips = tensions[rubs - 1] / tensions[rubs], (pose.history - before.history)[rubs]
         moved = np.abs(slips) > 1e-12
         assert moved.sum() >= 6
         assert (np.sign(slips[moved]) == np.sign(step)).all()
@@ -124,7 +124,7 @@ def test_loading_and_unloading_differ_and_the_loop_closes() -> None:
     for before, contraction in pairwise(loop):
         after = simulation.solve(np.array([contraction, 0.0]), start=pose)
         cables = settled(simulation, after)
-        dissipated += float(cables.law.limits @ np.abs(after.slips - pose.slips))
+        dissipated += float(cables.law.limits @ np.abs(after.history - pose.history))
         work += 0.5 * (pose.tensions[0] + after.tensions[0]) * (contraction - before)
         assert span_tensions(simulation, after).min() >= 0
         tensions.setdefault(round(contraction, 6), []).append(after.tensions[0])
@@ -145,12 +145,12 @@ def test_one_increment_or_many(name: str, monkeypatch: pytest.MonkeyPatch) -> No
     """Contractions that grow in proportion lead to the same pose in increments of any size."""
     poses = []
     for share in (1.0, 0.05, 0.01):
-        monkeypatch.setattr(friction_path, "_INCREMENT", share)
+        monkeypatch.setattr(loading_path, "_INCREMENT", share)
         poses.append(Simulation(ROBOTS[name]()).solve(PULL))
     size = np.ptp(poses[0].nodes, axis=0).max()
     for pose in poses[1:]:
         assert np.abs(pose.nodes - poses[0].nodes).max() < 1e-7 * size
-        assert np.abs(pose.slips - poses[0].slips).max() < 1e-7 * size
+        assert np.abs(pose.history - poses[0].history).max() < 1e-7 * size
 
 
 @pytest.mark.parametrize("name", ROBOTS)

@@ -1,4 +1,4 @@
-"""`ways_to`: different ways to bring a robot to the same contractions (E20)."""
+"""`approaches_to`: different ways to bring a robot to the same contractions (E20)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -8,15 +8,13 @@ from math import ceil, factorial
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import Warp
 from hydrostat.robot import Robot
-from hydrostat.simulation.build import elastic_energy, node_masses, pin_energy, warp
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Way:
+class Approach:
     """How a robot is brought to its contractions.
 
     Attributes:
@@ -34,27 +32,28 @@ class Way:
     reach: float = 0.0
 
 
-def ways_to(robot: Robot, goal: Vector, count: int, seed: int) -> list[Way]:
+def approaches_to(simulation: Simulation, goal: Vector, count: int, seed: int) -> list[Approach]:
     """So many ways to contractions `goal` [m], the plain ones first.
 
     From rest at once, all winches together, back from full travel, and from full release where there is any; then in
     turn: one winch after the other, pushed aside and let go, from other contractions. Orders and pushes that are drawn
     come from `seed`.
     """
+    robot = simulation.robot
     low, high = _range(robot)
     plain = [
-        Way(name="from rest at once", stops=(goal,), at_once=True),
-        Way(name="from rest, all winches together", stops=(goal,)),
-        Way(name="back from full travel", stops=(high, goal)),
+        Approach(name="from rest at once", stops=(goal,), at_once=True),
+        Approach(name="from rest, all winches together", stops=(goal,)),
+        Approach(name="back from full travel", stops=(high, goal)),
     ]
     if low.any():
-        plain.append(Way(name="back from full release", stops=(low, goal)))
+        plain.append(Approach(name="back from full release", stops=(low, goal)))
     random = np.random.default_rng(seed)
-    kinds = [_orders(robot, goal, random), _pushes(robot, goal, random), _elsewhere(robot, goal, random)]
+    kinds = [_orders(robot, goal, random), _pushes(simulation, goal, random), _elsewhere(robot, goal, random)]
     return list(islice(chain(plain, _in_turn(kinds)), count))
 
 
-def go(simulation: Simulation, way: Way) -> SolvedPose:
+def follow_approach(simulation: Simulation, way: Approach) -> SolvedPose:
     """The pose at the end of a way; not converged where no equilibrium was found on it."""
     idle = np.zeros(len(simulation.robot.winches))
     first, *others = way.stops
@@ -73,7 +72,7 @@ def _range(robot: Robot) -> tuple[Vector, Vector]:
     return low, np.array([winch.travel for winch in robot.winches])
 
 
-def _in_turn(kinds: list[Iterator[Way]]) -> Iterator[Way]:
+def _in_turn(kinds: list[Iterator[Approach]]) -> Iterator[Approach]:
     """One of each kind, again and again, until none is left."""
     while kinds:
         for kind in tuple(kinds):
@@ -84,7 +83,7 @@ def _in_turn(kinds: list[Iterator[Way]]) -> Iterator[Way]:
                 yield found
 
 
-def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Way]:
+def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
     """The winches that move, one after the other: in all orders if they are few, else in random ones."""
     moved = [int(winch) for winch in np.flatnonzero(goal)]
     if len(moved) < 2:
@@ -98,24 +97,24 @@ def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator
             now[winch] = goal[winch]
             stops.append(now)
         names = ", ".join(robot.winches[winch].name for winch in order)
-        yield Way(name=f"one winch after the other: {names}", stops=tuple(stops))
+        yield Approach(name=f"one winch after the other: {names}", stops=tuple(stops))
 
 
-def _pushes(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Way]:
+def _pushes(simulation: Simulation, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
     """Pushed like its own weight would push it, one way and the opposite, and let go."""
-    masses = node_masses(robot)[:, None]
+    masses = simulation.body.masses[:, None]
     while True:
-        direction = random.standard_normal(robot.body.mesh.dim)
+        direction = random.standard_normal(simulation.robot.body.mesh.dim)
         reach = float(random.uniform(*_REACHES))
         for sign in (1.0, -1.0):
-            yield Way(name="pushed aside and let go", stops=(goal,), push=sign * masses * direction, reach=reach)
+            yield Approach(name="pushed aside and let go", stops=(goal,), push=sign * masses * direction, reach=reach)
 
 
-def _elsewhere(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Way]:
+def _elsewhere(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
     """From contractions anywhere in the range of the winches."""
     low, high = _range(robot)
     while True:
-        yield Way(name="from other contractions", stops=(random.uniform(low, high), goal), at_once=True)
+        yield Approach(name="from other contractions", stops=(random.uniform(low, high), goal), at_once=True)
 
 
 def _in_steps(simulation: Simulation, pose: SolvedPose, goal: Vector) -> SolvedPose:
@@ -140,14 +139,14 @@ def _let_go(simulation: Simulation, pose: SolvedPose, push: Nodes, reach: float)
     robot = simulation.robot
     step = stiffness.solve(push.ravel()).reshape(push.shape)
     step *= reach * robot.body.mesh.size / np.linalg.norm(step, axis=1).max()
-    pushed = _pushed(simulation, pose, step, warp(robot, elastic_energy(robot), pin_energy(robot)))
+    pushed = _pushed(simulation, pose, step)
     return simulation.solve(pose.contractions, start=replace(pose, nodes=pushed), strict=False)
 
 
-def _pushed(simulation: Simulation, pose: SolvedPose, step: Nodes, bend: Warp) -> Nodes:
+def _pushed(simulation: Simulation, pose: SolvedPose, step: Nodes) -> Nodes:
     """Nodes moved by a step along arcs; by less where an element would be inverted."""
     for _ in range(_HALVINGS):
-        nodes = bend(pose.nodes, step)
+        nodes = simulation.body.warp(pose.nodes, step)
         if np.isfinite(simulation.assembly.value(nodes, pose.contractions)):
             return nodes
         step = 0.5 * step

@@ -1,0 +1,119 @@
+"""`Pattern`: which pairs of nodes meet in a Hessian, and where the block of each pair of each term goes."""
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Int
+
+from hydrostat.arrays import Nodes
+from hydrostat.mechanics.energy import Stencils
+from hydrostat.mechanics.factorisation import Analysis
+
+AnyStencils = Int[np.ndarray, "_ _"]
+"""Stencils of one of several energies, which differ in terms and corners."""
+
+
+class Pattern:
+    """Sparsity of the Hessian of a sum of energies, column by column, with degrees of freedom node by node.
+
+    All that follows from it is made when it is first asked for, once, and never changes: patterns are shared.
+
+    Attributes:
+        stencils: of each energy.
+        entries: of the pairs of nodes that meet, column x nodes + row, rising; the diagonal is there.
+        shape: (nodes, dim).
+        rest: rest positions of the nodes [m].
+    """
+
+    def __init__(self, stencils: Sequence[AnyStencils], rest: Nodes, *, base: "Pattern | None" = None) -> None:
+        """Pairs of all stencils of a body whose nodes are at `rest` [m], together with those of `base`.
+
+        `rest` decides the order of elimination alone, and `base` too, where its order serves here as well.
+        """
+        self.stencils, self.shape = tuple(stencils), rest.shape
+        self.rest, self._base = rest, base
+        if base is None:
+            keys = np.arange(len(rest), dtype=np.int64) * (len(rest) + 1)
+            self.entries = np.unique(np.concatenate([keys, *map(self._keys, self.stencils)]))
+        else:
+            self.entries = np.union1d(base.entries, np.concatenate([base.entries[:0], *map(self._keys, self.stencils)]))
+
+    def extended(self, stencils: Sequence[AnyStencils]) -> "Pattern":
+        """Pattern of these stencils behind those of this one."""
+        return Pattern([*self.stencils, *stencils], self.rest, base=self)
+
+    def changed(self, stencils: Sequence[AnyStencils]) -> "Pattern":
+        """Pattern of other stencils that keeps all pairs of this one; its analysis too, if no new pair comes."""
+        other = Pattern(stencils, self.rest, base=self)
+        if len(other.entries) == len(self.entries):
+            other.__dict__["analysis"] = self.analysis
+        return other
+
+    @cached_property
+    def analysis(self) -> Analysis:
+        """What the factorisations of all matrices of this pattern have in common."""
+        like = None if self._base is None else self._base.analysis
+        return Analysis(self.indptr, self.indices, dim=self.shape[1], points=self.rest, like=like)
+
+    @cached_property
+    def indptr(self) -> np.ndarray:
+        """Where each column begins, (dofs + 1,), as in `csc_array`."""
+        return np.concatenate([[0], np.cumsum(np.repeat(self.strides, self.shape[1]))]).astype(np.int32)
+
+    @cached_property
+    def indices(self) -> np.ndarray:
+        """Rows of the entries of each column, rising."""
+        dim = self.shape[1]
+        rows = (self.entries % self.shape[0])[:, None] * dim + np.arange(dim)
+        lengths = np.repeat(self.strides, dim)
+        shift = np.repeat(self._starts[:-1], dim) * dim - self.indptr[:-1]
+        return rows.ravel()[np.arange(self.indptr[-1]) + np.repeat(shift, lengths)].astype(np.int32)
+
+    @cached_property
+    def strides(self) -> np.ndarray:
+        """Entries of a column of each node."""
+        return np.diff(self._starts) * self.shape[1]
+
+    @cached_property
+    def slots(self) -> list[np.ndarray]:
+        """Place in the values of the first entry of each block, for each energy: (terms, corners, corners)."""
+        return [
+            self._firsts[places].reshape(*stencils.shape, stencils.shape[1])
+            for stencils, places in zip(self.stencils, self._places, strict=True)
+        ]
+
+    @cached_property
+    def diagonal(self) -> np.ndarray:
+        """Places of the diagonal in the values, (dofs,)."""
+        count, dim = self.shape
+        own = np.searchsorted(self.entries, np.arange(count, dtype=np.int64) * (count + 1))
+        return (self._firsts[own][:, None] + np.arange(dim) * (self.strides[:, None] + 1)).ravel()
+
+    @cached_property
+    def _starts(self) -> np.ndarray:
+        """First entry of each column of nodes, and their number."""
+        return np.searchsorted(self.entries, np.arange(self.shape[0] + 1, dtype=np.int64) * self.shape[0])
+
+    @cached_property
+    def _firsts(self) -> np.ndarray:
+        """Place in the values of the first number of the block of each entry."""
+        dim = self.shape[1]
+        columns = self.entries // self.shape[0]
+        return self._starts[columns] * dim * dim + (np.arange(len(self.entries)) - self._starts[columns]) * dim
+
+    @cached_property
+    def _places(self) -> list[np.ndarray]:
+        """Place among the entries of each pair, for each energy; those of shared stencils follow from the base."""
+        known = {}
+        if self._base is not None:
+            moved = np.searchsorted(self.entries, self._base.entries)
+            pairs = zip(self._base.stencils, self._base._places, strict=True)
+            known = {id(stencils): moved[places] for stencils, places in pairs}
+        return [
+            known[id(own)] if id(own) in known else np.searchsorted(self.entries, self._keys(own))
+            for own in self.stencils
+        ]
+
+    def _keys(self, stencils: Stencils) -> np.ndarray:
+        return (stencils[:, None, :].astype(np.int64) * self.shape[0] + stencils[:, :, None]).ravel()

@@ -1,0 +1,126 @@
+"""`BodyPhysics`: what the physics of a robot has of its body alone, whatever network pulls at it."""
+
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.errors import InputError
+from hydrostat.mechanics import (
+    Assembly,
+    Energy,
+    Factorisation,
+    NeoHookean,
+    PinEnergy,
+    RoundOff,
+    Warp,
+    WeightEnergy,
+)
+from hydrostat.mechanics.patch_volume import PatchVolume
+from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
+from hydrostat.robot import Robot, Volume
+
+
+class BodyPhysics:
+    """Elastic body, pins and weight of a robot: energies, sparse pattern, factors at rest, steps along arcs.
+
+    It is made once for a body and never changes, so all simulations of networks on it share it, in all threads.
+
+    Attributes:
+        elastic: the body's resistance to being deformed; to a change of volume too, unless patches measure that.
+        pins: what holds it, a support for each pin.
+        assembly: all of its energies together; they read no control.
+        masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        """Physics of the body of `robot`; its network does not matter.
+
+        Raises:
+            InputError: a part of the mesh that no pin holds.
+        """
+        body = robot.body
+        self._given = body, robot.pins, robot.gravity
+        mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.material.lame
+        patched = body.volume is Volume.PATCH
+        self.elastic = NeoHookean(mesh.nodes, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness)
+        self.pins = _pins(robot)
+        self.masses = _masses(robot)
+        energies: list[Energy] = [self.elastic, self.pins]
+        if patched:
+            patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
+            energies.append(PatchVolume(mesh.nodes, mesh.elements, patches, lame=lame, thickness=thickness))
+        if robot.gravity is not None:
+            energies.append(WeightEnergy(mesh.nodes, self.masses[:, None] * np.array(robot.gravity)))
+        self.assembly = Assembly(energies, rest=mesh.nodes, control_count=0)
+
+    def check(self, robot: Robot) -> None:
+        """Whether this is the physics of the body of a robot.
+
+        Raises:
+            InputError: it is that of another body, of other pins or of another gravity.
+        """
+        body, pins, gravity = self._given
+        if not (robot.body is body and robot.pins == pins and robot.gravity == gravity):
+            raise InputError("these body physics are of another body, other pins or another gravity; make new ones")
+
+    @cached_property
+    def warp(self) -> Warp:
+        """Steps along arcs."""
+        return Warp(
+            stencils=self.elastic.stencils,
+            shape_gradients=self.elastic.shape_gradients,
+            volumes=self.elastic.volumes,
+            rest=self._given[0].mesh.nodes,
+            held=self.pins.stencils,
+            holds=self.pins.weights,
+        )
+
+    @cached_property
+    def rest_factors(self) -> Factorisation:
+        """Hessian of the body at rest, factorised; cables that do not pull add nothing to it."""
+        return self.assembly.stiffness(self._given[0].mesh.nodes, np.zeros(0)).factors
+
+    def round_off(self, stiffest: float = 0.0) -> RoundOff:
+        """What the rounding errors of the body's own forces hide, and those of springs up to `stiffest` [N/m]."""
+        body, pins, _ = self._given
+        mu, lame = body.material.lame
+        scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
+        reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
+        springs = max((pin.stiffness for pin in pins), default=0.0)
+        springs = max(springs, stiffest)
+        force = 1e-14 * scale / body.mesh.size * (reach / body.mesh.size) + 2e-16 * springs * reach
+        return RoundOff(force=force, energy=1e-15 * scale)
+
+
+def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
+    body = robot.body
+    masses = body.material.density * (body.thickness or 1.0) * body.mesh.volumes
+    elements = body.mesh.elements
+    shares = np.repeat(masses / elements.shape[1], elements.shape[1])
+    return np.bincount(elements.ravel(), shares, len(body.mesh.nodes))
+
+
+def _pins(robot: Robot) -> PinEnergy:
+    """Pins, each at the points that it holds."""
+    nodes = robot.body.mesh.nodes
+    anchors = [pin.anchors(robot.body.mesh) for pin in robot.pins]
+    parts = robot.body.mesh.parts
+    loose = np.setdiff1d(parts, [parts[node] for held in anchors for node in held.stencils[:, 0]])
+    if loose.size:
+        raise InputError(
+            f"body: {loose.size} of the {parts.max() + 1} parts of the mesh are held by no pin, the first has "
+            f"{int((parts == loose[0]).sum())} nodes; join them to the rest (merge nodes at one place) or pin them"
+        )
+    return PinEnergy(
+        stencils=np.concatenate([held.stencils for held in anchors]),
+        weights=np.concatenate([held.weights for held in anchors]),
+        targets=np.concatenate([held.positions(nodes) for held in anchors]),
+        stiffness=np.concatenate(
+            [
+                np.full(len(held.stencils), pin.stiffness / len(held.stencils))
+                for pin, held in zip(robot.pins, anchors, strict=True)
+            ]
+        ),
+        supports=np.repeat(np.arange(len(anchors)), [len(held.stencils) for held in anchors]),
+    )

@@ -1,0 +1,112 @@
+"""`LoadingPath`: equilibria one after the other, where the way to contractions decides where a robot ends."""
+
+from dataclasses import dataclass, replace
+from math import ceil
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics import Assembly, NewtonResult, Reason
+from hydrostat.robot import Robot
+from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.simulation.static_solver import StaticSolver
+
+
+@dataclass(frozen=True, eq=False)
+class _PathState:
+    """An equilibrium on the way; the energies remember what happened until there."""
+
+    nodes: Nodes
+    contractions: Vector
+    assembly: Assembly
+    result: NewtonResult | None = None
+
+    @property
+    def arrived(self) -> bool:
+        return self.result is not None and self.result.converged
+
+
+class LoadingPath:
+    """Incremental loading: follows contractions from pose to pose, as energies with a history ask for (E14).
+
+    Contractions go straight from where they are to where they shall be, in even increments that take in or let out at
+    most a small part of a cable. In each the energy is minimised while what depends on the path, such as the limits of
+    friction, is held fixed; this is corrected until it is in balance with the shape that is found.
+    """
+
+    def __init__(self, robot: Robot, solver: StaticSolver) -> None:
+        """Physics of a robot at rest."""
+        self._rest = _PathState(robot.body.mesh.nodes, np.zeros(len(robot.winches)), solver.assembly)
+        self._solver = solver
+        wholes = [
+            (cable.winch, cable.length / ratio) for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
+        ]
+        lengths = [
+            min((whole for own, whole in wholes if own == winch.name), default=np.inf) for winch in robot.winches
+        ]
+        self._increment = _INCREMENT * np.array(lengths)
+
+    def solve(self, goal: Vector, start: SolvedPose | None) -> tuple[NewtonResult, Vector]:
+        """Equilibrium at contractions `goal` [m], on the way from `start` or from rest; and what is remembered there.
+
+        If the way cannot be followed to its end, the result is where it broke off, and has not converged.
+        """
+        state = self._rest
+        if start is not None:
+            state = _PathState(start.nodes, start.contractions, self.resumed(start))
+        begin = state.contractions
+        steps = max(1, ceil(float((np.abs(goal - begin) / self._increment).max(initial=0.0)) - 1e-9))
+        iterations = 0
+        for step in range(1, steps + 1):
+            state = self._advance(state, goal if step == steps else begin + (goal - begin) * (step / steps))
+            assert state.result is not None
+            iterations += state.result.iterations
+            if not state.arrived:
+                break
+        assert state.result is not None
+        return replace(state.result, iterations=iterations), state.assembly.history
+
+    def resumed(self, pose: SolvedPose) -> Assembly:
+        """Physics that remember how a pose was reached."""
+        return self._rest.assembly.resumed(pose.history, pose.nodes, pose.contractions)
+
+    def _advance(self, state: _PathState, goal: Vector, halvings: int = 4) -> _PathState:
+        """The next equilibrium, by way of more if it is not found: so often is the increment halved."""
+        found = self._solve(state, goal)
+        if found.arrived or not halvings:
+            return found
+        middle = self._advance(state, 0.5 * (state.contractions + goal), halvings - 1)
+        if not middle.arrived:
+            return found
+        return self._advance(middle, goal, halvings - 1)
+
+    def _solve(self, state: _PathState, goal: Vector) -> _PathState:
+        """Equilibrium at `goal` after one increment, in balance with what depends on the path."""
+        assembly, nodes = state.assembly, state.nodes
+        stiffness = None if state.result is None else state.result.stiffness
+        iterations = corrections = 0
+        while True:
+            result = replace(self._solver, assembly=assembly).relax(nodes, goal, stiffness)
+            nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
+            allowed = max(_TOLERANCE * assembly.largest_force(nodes, goal), self._solver.round_off.force)
+            if assembly.imbalance(nodes, goal) <= allowed or not result.converged:
+                break
+            if corrections == _CORRECTIONS:
+                result = replace(result, reason=Reason.NO_BALANCE)
+                break
+            sharp = corrections < _NEWTON and stiffness is not None and not stiffness.singular
+            assembly, corrections = assembly.corrected(nodes, goal, stiffness if sharp else None), corrections + 1
+        after = assembly.after(nodes, goal)
+        energy = after.value(nodes, goal)
+        return _PathState(nodes, goal, after, replace(result, iterations=iterations, energy=energy))
+
+
+_INCREMENT = 0.05
+"""Largest increment of a contraction, as a share of that which would take in a whole cable of the winch."""
+
+_TOLERANCE = 1e-8
+"""Forces in balance to this share of the largest one are right."""
+
+_CORRECTIONS = 40
+_NEWTON = 12
+"""Most corrections in one increment, and how many of these by Newton's method."""

@@ -1,0 +1,137 @@
+"""`StaticSolver`: equilibria of one sum of energies, by load stepping where Newton's method alone does not arrive."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, RoundOff, Stiffness, Warp, minimise
+
+
+@dataclass(frozen=True, eq=False)
+class StaticSolver:
+    """Newton's method on given physics.
+
+    Attributes:
+        assembly: the sum of energies.
+        options: how far Newton goes.
+        round_off: what rounding hides of forces and energies.
+        warp: bends steps along arcs.
+    """
+
+    assembly: Assembly
+    options: NewtonOptions
+    round_off: RoundOff
+    warp: Warp | None
+
+    def relax(
+        self,
+        nodes: Nodes,
+        controls: Vector,
+        stiffness: Stiffness | None = None,
+        *,
+        iterations: int | None = None,
+        tolerance: float | None = None,
+        exact: bool = False,
+    ) -> NewtonResult:
+        """Newton from some nodes on.
+
+        Args:
+            nodes: where to begin [m].
+            controls: contraction of each winch [m].
+            stiffness: the Hessian near there, such as that of the last result; then the first step is the prediction
+                dx/da and costs no factorisation.
+            iterations: most steps, if fewer than the options allow.
+            tolerance: if looser than theirs.
+            exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
+        """
+        options = self.options
+        if iterations is not None:
+            options = replace(options, iterations=min(iterations, options.iterations))
+        if tolerance is not None:
+            options = replace(options, tolerance=max(tolerance, options.tolerance))
+        return minimise(
+            self.assembly,
+            nodes,
+            controls,
+            round_off=self.round_off,
+            options=options,
+            warp=self.warp,
+            stiffness=stiffness,
+            exact=exact,
+        )
+
+    def allowed(self, nodes: Nodes, controls: Vector) -> float:
+        """Nodal force left over [N] at which nodes count as at rest."""
+        return max(self.options.tolerance * self.assembly.largest_force(nodes, controls), self.round_off.force)
+
+    def solve(
+        self,
+        goal: Vector,
+        rest: tuple[Nodes, Stiffness],
+        start: tuple[Nodes, Vector, Stiffness | None] | None = None,
+    ) -> NewtonResult:
+        """Equilibrium at `goal`: at once; failing that in load steps from `start`, then from rest, last by patience.
+
+        Args:
+            goal: contraction of each winch [m].
+            rest: nodes at rest [m], and the Hessian there.
+            start: nodes, contractions and the Hessian, if it is known, of a pose to begin from.
+        """
+        begin, _, known = start or (rest[0], None, rest[1])
+        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS)
+        spent = result.iterations
+        if not result.converged and start and (start[1] != goal).any():
+            result = self._in_steps(start, goal)
+            spent += result.iterations
+        if not result.converged:
+            result = self._in_steps((rest[0], np.zeros_like(goal), rest[1]), goal, with_load=True)
+            spent += result.iterations
+        if not result.converged:
+            result = self.relax(rest[0], goal, rest[1])
+            spent += result.iterations
+            result = min(result, direct, key=lambda found: found.residual)
+        return replace(result, iterations=spent)
+
+    def _in_steps(
+        self, start: tuple[Nodes, Vector, Stiffness | None], goal: Vector, *, with_load: bool = False
+    ) -> NewtonResult:
+        """By load steps that are halved where one fails and doubled where not; the last failure if they get too small.
+
+        A step on the way need not end sharp. With dead loads these grow with the contractions.
+        """
+        nodes, begin, stiffness = start
+        done, step, spent = 0.0, _FIRST_STEP, 0
+        result, last = None, False
+        for _ in range(_MOST_STEPS):
+            share = min(done + step, 1.0)
+            last = share == 1.0
+            iterations, tolerance = (None, None) if last else (_DIRECT_ITERATIONS, _LOOSE)
+            controls = goal if last else begin + share * (goal - begin)
+            solver = replace(self, assembly=self.assembly.with_load(share)) if with_load else self
+            result = solver.relax(nodes, controls, stiffness, iterations=iterations, tolerance=tolerance)
+            spent += result.iterations
+            if result.converged and not last:
+                nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
+                continue
+            step *= 0.5
+            if result.converged or step < _SMALLEST_STEP:
+                break
+        assert result is not None
+        return replace(result, iterations=spent, reason=result.reason if last else Reason.ITERATION_LIMIT)
+
+
+_DIRECT_ITERATIONS = 20
+"""So many steps of Newton before a command is approached in load steps."""
+
+_FIRST_STEP = 0.25
+"""Share of a command that is tried first."""
+
+_LOOSE = 1e-2
+"""What may be left over on the way, as a share of the largest applied force."""
+
+_MOST_STEPS = 100
+"""Load steps of one solve."""
+
+_SMALLEST_STEP = 2.0**-10
+"""No load step is smaller than this share of a command."""
