@@ -7,7 +7,6 @@ from typing import no_type_check
 import numpy as np
 from jaxtyping import Float
 from numba import njit
-from scipy.linalg import block_diag
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
@@ -151,7 +150,11 @@ class Assembly:
         if len(parts) == 1:
             return parts[0]
         columns = np.concatenate([part.columns for part in parts], axis=1)
-        return Coupling(columns=columns, weights=block_diag(*(part.weights for part in parts)))
+        ends = np.cumsum([0, *(len(part.weights) for part in parts)])
+        weights = np.zeros((ends[-1], ends[-1]))
+        for begin, end, part in zip(ends, ends[1:], parts, strict=False):
+            weights[begin:end, begin:end] = part.weights
+        return Coupling(columns=columns, weights=weights)
 
     def couplings(self, nodes: Nodes, controls: Vector) -> list[Coupling | None]:
         """Springs of each energy that couple many nodes; None where it has none."""

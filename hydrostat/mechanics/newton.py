@@ -126,6 +126,15 @@ class _Iterate(NamedTuple):
     gradient: Vector
 
 
+class _Trial(NamedTuple):
+    """Where a step leads, and which share of it was admissible."""
+
+    assembly: Assembly
+    nodes: Nodes
+    energy: float
+    share: float
+
+
 class _EnergyDescent:
     """One minimisation; `run` is the loop, each method one part of it.
 
@@ -180,14 +189,14 @@ class _EnergyDescent:
     def _arrive(self, assembly: Assembly, nodes: Nodes, energy: float) -> _Iterate:
         return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls))
 
-    def _try(self, place: _Iterate, step: Vector) -> tuple[Assembly, Nodes, float, float]:
-        """Where a step leads as far as all energies admit, the energy there, and which share of the step that is."""
+    def _try(self, place: _Iterate, step: Vector) -> _Trial:
+        """Where a step leads, as far as all energies admit it."""
         nodes = self.bend(place.nodes, step)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
             nodes = place.nodes + share * (nodes - place.nodes)
         assembly = place.assembly.near(nodes)
-        return assembly, nodes, assembly.value(nodes, self.controls), share
+        return _Trial(assembly, nodes, assembly.value(nodes, self.controls), share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None, near: bool) -> _Iterate | None:
         """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones."""
@@ -240,15 +249,15 @@ class _EnergyDescent:
         slope = float(place.gradient @ step)
         length = 1.0
         for _ in range(self.options.halvings):
-            assembly, trial, value, share = self._try(place, length * step)
-            gain = -length * share * slope
+            trial = self._try(place, length * step)
+            gain = -length * trial.share * slope
             if gain > self.noise.energy:
-                if value <= place.energy - 1e-4 * gain:
-                    if self.share > 0.0 and length * share == 1.0:
-                        assembly, trial, value = self._stride(place, step, (assembly, trial, value))
-                    return self._arrive(assembly, trial, value)
-            elif value <= place.energy + 10 * self.noise.energy:
-                found = self._arrive(assembly, trial, value)
+                if trial.energy <= place.energy - 1e-4 * gain:
+                    if self.share > 0.0 and length * trial.share == 1.0:
+                        trial = self._stride(place, step, trial)
+                    return self._arrive(*trial[:3])
+            elif trial.energy <= place.energy + 10 * self.noise.energy:
+                found = self._arrive(*trial[:3])
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
                     return found
             length *= 0.5
@@ -261,10 +270,10 @@ class _EnergyDescent:
 
     def _chord(self, place: _Iterate, last: Stiffness) -> _Iterate | None:
         """One more step with the factors of the last one; None if it does not pay."""
-        assembly, trial, value, _ = self._try(place, -last.solve(place.gradient))
-        if not value <= place.energy + 10 * self.noise.energy:
+        trial = self._try(place, -last.solve(place.gradient))
+        if not trial.energy <= place.energy + 10 * self.noise.energy:
             return None
-        found = self._arrive(assembly, trial, value)
+        found = self._arrive(*trial[:3])
         return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
     def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
@@ -280,16 +289,14 @@ class _EnergyDescent:
                     return free - stiffness.moves @ tensions
         return -stiffness.solve(place.gradient)
 
-    def _stride(
-        self, place: _Iterate, step: Vector, trial: tuple[Assembly, Nodes, float]
-    ) -> tuple[Assembly, Nodes, float]:
+    def _stride(self, place: _Iterate, step: Vector, trial: _Trial) -> _Trial:
         """A projected Hessian is too stiff, so its step is too short: doubled as long as the energy falls."""
         length = 2.0
         while True:
-            *longer, share = self._try(place, length * step)
-            if not (share == 1.0 and longer[2] < trial[2]):
+            longer = self._try(place, length * step)
+            if not (longer.share == 1.0 and longer.energy < trial.energy):
                 return trial
-            trial = longer[0], longer[1], longer[2]
+            trial = longer
             length *= 2.0
 
     def _leave_saddle(self, place: _Iterate) -> _Iterate | None:
@@ -305,12 +312,12 @@ class _EnergyDescent:
             return None
         size = float(np.ptp(place.nodes, axis=0).max())
         trials = [self._try(place, leap * size * mode) for leap in _LEAPS]
-        assembly, nodes, value, _ = min(trials, key=lambda trial: trial[2])
-        if not value < place.energy - 10 * self.noise.energy:
+        lowest = min(trials, key=lambda trial: trial.energy)
+        if not lowest.energy < place.energy - 10 * self.noise.energy:
             return None
         self.saddles += 1
         self.last = None
-        return self._arrive(assembly, nodes, value)
+        return self._arrive(*lowest[:3])
 
     def _stiffness(self, place: _Iterate) -> Stiffness:
         """The Hessian at the end."""

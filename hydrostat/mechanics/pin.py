@@ -26,7 +26,7 @@ class PinEnergy(Energy):
     ) -> None:
         """Pins that pull anchors to their targets [m], with a stiffness each [N/m]; each a support if none is given."""
         self.stencils = stencils
-        self.supports: Int[np.ndarray, " terms"] = np.arange(len(stencils)) if supports is None else supports
+        self.supports = self._support_of = np.arange(len(stencils)) if supports is None else supports
         self.weights, self.targets, self.stiffness = weights, targets, stiffness
         pairs = stiffness[:, None, None] * weights[:, :, None] * weights[:, None, :]
         dim = targets.shape[1]
@@ -48,10 +48,10 @@ class PinEnergy(Energy):
 
     def with_supports_moved(self, shifts: Points) -> "PinEnergy":
         other = copy(self)
-        other.targets = self.targets + shifts[self.supports]
+        other.targets = self.targets + shifts[self._support_of]
         return other
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         works = (self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum(axis=(1, 2))
-        wholes = np.bincount(self.supports, self.stiffness)
-        return {"support_stiffness": np.bincount(self.supports, works, len(wholes)) / wholes}
+        wholes = np.bincount(self._support_of, self.stiffness)
+        return {"support_stiffness": np.bincount(self._support_of, works, len(wholes)) / wholes}

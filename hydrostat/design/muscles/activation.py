@@ -14,7 +14,9 @@ from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics
 
 
-def wanted_directions(robot: Robot, pose: Pose, *, body: BodyPhysics | None = None) -> Float[np.ndarray, "elements dim"]:
+def wanted_directions(
+    robot: Robot, pose: Pose, *, body: BodyPhysics | None = None
+) -> Float[np.ndarray, "elements dim"]:
     """Unit vectors along which a fibre of each element lowers the pose error most (E21a).
 
     At rest, with the adjoint field w = H^-1 dO/dx of the marker error O, a small tension t along d in an element
