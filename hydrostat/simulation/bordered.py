@@ -111,10 +111,9 @@ class Bordered:
             iterations: most steps of Newton.
             before: direction that the new one shall continue; `across` if left out.
         """
-        assembly = self._simulation.assembly
         first_nodes, first_share = nodes, share
         for iteration in range(iterations + 1):
-            controls = self.controls(share)
+            controls, assembly = self.controls(share), self._simulation.assembly.near(nodes)
             if not np.isfinite(assembly.value(nodes, controls)):
                 return None
             gradient = assembly.gradient(nodes, controls)
@@ -145,7 +144,7 @@ class Bordered:
         """An equilibrium with its forces; None if there is none."""
         controls = self.controls(share)
         allowed = self._simulation.allowed(nodes, controls)
-        residual = float(np.abs(self._simulation.assembly.gradient(nodes, controls)).max())
+        residual = float(np.abs(self._simulation.forces(nodes, controls)).max())
         if not residual <= allowed:
             return None
         return PathPoint(nodes, share, stiffness, tangent, residual, allowed, distance, iterations)

@@ -246,7 +246,7 @@ class Dynamics:
             markers={marker.name: place for marker, place in zip(self.robot.markers, places, strict=True)},
             tensions=self._cables.tensions(nodes, contractions),
             kinetic=float(0.5 * self.masses @ (state.velocities**2).sum(axis=1)),
-            potential=sum(energy.value(nodes, contractions) for energy in self._at_rest(shifts))
+            potential=sum(energy.near(nodes).value(nodes, contractions) for energy in self._at_rest(shifts))
             + self.memory.stored(state.metrics, nodes),
             result=result,
         )

@@ -160,7 +160,7 @@ class Simulation:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
         if self.friction is None:
-            right = -self.assembly.control_derivative(pose.nodes, pose.contractions).toarray()
+            right = -self.assembly.near(pose.nodes).control_derivative(pose.nodes, pose.contractions).toarray()
             return self.response(pose, right).reshape(*pose.nodes.shape, -1)
         stiffness = self.stiffness(pose)
         if stiffness.singular:
@@ -187,7 +187,7 @@ class Simulation:
         """
         return sensitivity(
             self.robot,
-            self.assembly,
+            self.assembly.near(pose.nodes),
             self.cables,
             pose,
             nodes=nodes,
@@ -216,8 +216,9 @@ class Simulation:
             raise NotConvergedError(
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
-        body = self.assembly.hessian(pose.nodes, pose.contractions)
-        springs = self.assembly.coupling(pose.nodes, pose.contractions)
+        assembly = self.assembly.near(pose.nodes)
+        body = assembly.hessian(pose.nodes, pose.contractions)
+        springs = assembly.coupling(pose.nodes, pose.contractions)
         columns, weights = springs.columns, springs.weights
         allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
         rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
@@ -228,7 +229,7 @@ class Simulation:
             if (np.abs(missing).max(axis=0, initial=0.0) <= allowed + hidden).all():
                 return moves
             moves += stiffness.solve(missing)
-        return self.assembly.stiffness(pose.nodes, pose.contractions).solve(forces)
+        return assembly.stiffness(pose.nodes, pose.contractions).solve(forces)
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
@@ -324,7 +325,7 @@ class Simulation:
         """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
         if self.assembly.has_history:
             return self._path.resumed(pose).stiffness(pose.nodes, pose.contractions)
-        return self.stiffness_of(pose) or self.assembly.stiffness(pose.nodes, pose.contractions)
+        return self.stiffness_of(pose) or self.assembly.near(pose.nodes).stiffness(pose.nodes, pose.contractions)
 
     def stiffness_of(self, pose: SolvedPose) -> Stiffness | None:
         """The Hessian that a pose of this simulation brings along; None if it is of another one or brings none."""
@@ -345,7 +346,7 @@ class Simulation:
         """The Hessian at the nodes' rest positions."""
         nodes, idle = self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches))
         if not self._plain:
-            return self.assembly.stiffness(nodes, idle)
+            return self.assembly.near(nodes).stiffness(nodes, idle)
         return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
 
     @cached_property
@@ -377,6 +378,10 @@ class Simulation:
         return self.solver.relax(
             nodes, contractions, stiffness, iterations=iterations, tolerance=tolerance, exact=exact
         )
+
+    def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
+        """DE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
+        return self.assembly.near(nodes).gradient(nodes, contractions)
 
     def allowed(self, nodes: Nodes, contractions: Vector) -> float:
         """Nodal force left over [N] at which nodes count as at rest."""

@@ -16,7 +16,7 @@ def stepped() -> Robot:
     robot = strip_robot(columns=12, rows=3)
     up, down = robot.cables
     points = tuple((x, y - 0.002) for x, y in up.points[1:])
-    other = replace(up, points=(up.points[0], *points), spool_radius=0.004, slack=0.001)
+    other = replace(up, name="", points=(up.points[0], *points), spool_radius=0.004, slack=0.001)
     return robot.with_network(robot.winches, (up, other, down))
 
 

@@ -257,7 +257,7 @@ class Search:
     def _result(self, pose: SolvedPose) -> NewtonResult:
         """What this simulation makes of a pose: another one may have found it."""
         stiffness = self.simulation.stiffness(pose)
-        residual = float(np.abs(self.simulation.assembly.gradient(pose.nodes, pose.contractions)).max())
+        residual = float(np.abs(self.simulation.forces(pose.nodes, pose.contractions)).max())
         return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
 
     def _model(self, state: State) -> LinearModel:
@@ -315,7 +315,7 @@ class Search:
         """Where the nodes would come to rest, were the forces linear."""
         if result.stiffness is None or result.stiffness.singular:
             return result.nodes
-        gradient = self.simulation.assembly.gradient(result.nodes, contractions)
+        gradient = self.simulation.forces(result.nodes, contractions)
         return result.nodes - result.stiffness.solve(gradient).reshape(result.nodes.shape)
 
     def _idle(self, state: State) -> State:
