@@ -27,7 +27,7 @@ def toys() -> dict[str, Energy]:
 
 @pytest.mark.parametrize("name", toys())
 def test_the_toys_keep_the_contract(name: str) -> None:
-    bent = NODES + [0.0, 0.02] * (NODES[:, :1] / NODES[:, 0].max()) ** 2
+    bent = NODES + np.array([0.0, 0.02]) * (NODES[:, :1] / NODES[:, 0].max()) ** 2
     energy = toys()[name].near(bent)
     check_energy(energy, bent, np.array([0.3, 0.1]), tolerance=1e-5)
 
@@ -86,8 +86,8 @@ def test_a_pair_that_never_met_is_analysed_anew() -> None:
     far.stencils = far.stencils[:0]
     far.controls = far.controls[:0]
     assembly = simulation.assembly.extended([far], control_count=2)
-    raised = NODES + [0.0, 1e-3]
-    near, below = assembly.near(raised), assembly.near(NODES - [0.0, 1e-3])
+    raised = NODES + np.array([0.0, 1e-3])
+    near, below = assembly.near(raised), assembly.near(NODES - np.array([0.0, 1e-3]))
     assert below is assembly
     assert near.pattern.analysis is not assembly.pattern.analysis
     fresh = Assembly(near.energies, rest=NODES, control_count=2)
