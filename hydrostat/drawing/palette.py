@@ -21,6 +21,7 @@ PAGE_COLOURS = {
 }
 """Colours that follow the page: there they become CSS variables of these names, which dark pages change."""
 
+SHADE = "#7d4527"
 FELT = "#f0c29c"
 FELT_LIGHT = "#f8d9bd"
 SEAM = "#b9774b"

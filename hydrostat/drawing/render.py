@@ -9,7 +9,7 @@ from hydrostat.arrays import Vector
 from hydrostat.drawing.camera import Spots
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer, Polyline
-from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, MESH, SEAM, STITCH, channels, mix
+from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, MESH, PAPER, SEAM, SHADE, STITCH, channels, mix
 from hydrostat.drawing.shades import paint, sky_shares
 
 FINER = 2
@@ -18,7 +18,7 @@ FINER = 2
 CREASE = 42.0
 """A sharper bend than this between two facets is drawn as an edge [degree]."""
 
-RAMP = ((0.0, "#7d4527"), (0.30, SEAM), (0.52, mix(SEAM, FELT, 0.62)), (0.74, FELT), (0.92, FELT_LIGHT), (1.0, STITCH))
+RAMP = ((0.0, SHADE), (0.30, SEAM), (0.52, mix(SEAM, FELT, 0.62)), (0.74, FELT), (0.92, FELT_LIGHT), (1.0, STITCH))
 """Colours of felt from deep shade to full light."""
 
 
@@ -82,7 +82,7 @@ def render(
     sky = _smooth(sky_shares(buffer.depth / pixel, _unit(buffer.shown[..., :3]), 0.11 * size / pixel))
     sky_way = (0.0, 1.0, 0.0) if up is None else up
     look = np.array([FINER, point / fine, 0.012 * size / fine, sky_way[1], sky_way[2], FINER * (steps[0] - steps[1])])
-    inks = np.array([_shares(mix(DARK, SEAM, 0.25)), _shares(MESH), _shares(mix(SEAM, "#ffffff", pale))])
+    inks = np.array([_shares(mix(DARK, SEAM, 0.25)), _shares(MESH), _shares(mix(SEAM, PAPER, pale))])
     shares = np.array([1.0, 0.5 * lines, 0.9])
     return Render(paint(samples.depth / fine, samples.shown, sky, look, _table(pale), inks, shares), buffer)
 
@@ -134,7 +134,7 @@ def _unit(vectors: Float[np.ndarray, "height width 3"]) -> np.ndarray:
 def _table(pale: float) -> Float[np.ndarray, "256 3"]:
     """Colours of felt from deep shade to full light."""
     stops = [stop for stop, _ in RAMP]
-    colours = np.array([_shares(mix(colour, "#ffffff", pale)) for _, colour in RAMP])
+    colours = np.array([_shares(mix(colour, PAPER, pale)) for _, colour in RAMP])
     return np.column_stack([np.interp(np.linspace(0, 1, 256), stops, colours[:, channel]) for channel in range(3)])
 
 

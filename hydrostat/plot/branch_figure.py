@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing.palette import ERROR, INK, WINCHES, mix
+from hydrostat.drawing.palette import ERROR, INK, PAPER, WINCHES, mix
 from hydrostat.errors import InputError
 from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten
@@ -126,7 +126,7 @@ def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose]) ->
         if len(poses) > 1:
             rings = pane.outline(sheet, pose.nodes)
             colour = _colour(index)
-            fill = "none" if index == 0 else mix(colour, "#ffffff", 0.75)
+            fill = "none" if index == 0 else mix(colour, PAPER, 0.75)
             sheet.area(
                 rings, facecolor=fill, alpha=0.55, edgecolor="none", joinstyle="round", zorder=2.5
             )  # fmt: skip

@@ -9,7 +9,7 @@ import shapely
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.drawing.camera import Camera, Spots
-from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, MESH, SEAM, STITCH, mix
+from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, MESH, PAPER, SEAM, STITCH, mix
 from hydrostat.drawing.render import Render, render, silhouette
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, MILLIMETRES, PictureSheet, Place, Places
@@ -76,7 +76,7 @@ class FlatPane(Pane):
     def draw_body(
         self, sheet: PictureSheet, nodes: Nodes, *, pale: float = 0.0, mesh: bool = False, pins: bool = False
     ) -> DrawnBody:
-        fill, light, seam = (mix(colour, "#ffffff", pale) for colour in (FELT, FELT_LIGHT, SEAM))
+        fill, light, seam = (mix(colour, PAPER, pale) for colour in (FELT, FELT_LIGHT, SEAM))
         rings, seams = self.outline(sheet, nodes), [MILLIMETRES * ring for ring in self.skin.seam(nodes)]
         sheet.area(rings, facecolor=fill, edgecolor=seam, linewidth=1.3, joinstyle="round", zorder=3)
         if seams:
@@ -124,7 +124,7 @@ class SpacePane(Pane):
             spots, body.boundary, pixel=self._pixel(sheet, spots), up=self.camera.sky, pale=0.6 * pale,
             held=held.astype(float) if pins else None, lines=self._density(sheet) if mesh else 0.0, point=sheet.scale,
         )  # fmt: skip
-        rings = lay_image(sheet, image, self.shift, seam=mix(SEAM, "#ffffff", 0.6 * pale))
+        rings = lay_image(sheet, image, self.shift, seam=mix(SEAM, PAPER, 0.6 * pale))
         thickness = MILLIMETRES * float(np.ptp(body.nodes, axis=0).min())
         return DrawnBody(rings, (self.camera, self.shift, image, thickness))
 
