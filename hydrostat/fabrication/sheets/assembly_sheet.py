@@ -17,7 +17,7 @@ from hydrostat.fabrication.sheets.sight import best_views
 from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
 from hydrostat.fabrication.sheets.steps import CableDepths
 
-_TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ")
+_TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ", "words.typ")
 
 
 def assembly_sheet(given: SheetInput) -> bytes:

@@ -276,4 +276,7 @@ def body_solid(robot: Robot) -> DrawnSolid:
         surface = robot.body.healing.surface
         return DrawnSolid(vertices=1e3 * surface.vertices, triangles=surface.triangles, sharp=_SHARP)
     mesh = robot.body.mesh
-    return DrawnSolid(vertices=1e3 * mesh.nodes, triangles=mesh.boundary, sharp=_SHARP)
+    # Not `mesh.boundary`, whose order of corners would move the last digits of written sheets.
+    faces = mesh.elements[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3)
+    _, first, counts = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    return DrawnSolid(vertices=1e3 * mesh.nodes, triangles=faces[np.sort(first[counts == 1])], sharp=_SHARP)

@@ -1,8 +1,5 @@
 """What to do with a body of foam until it is a robot, in order. Times are estimates; none was measured."""
 
-from hydrostat.fabrication.kit_options import MouldKind
-from hydrostat.fabrication.moulds.mould import Mould
-from hydrostat.fabrication.sheets.mould_steps import body_mass, rises
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, CableDepths, cables_text, tie_step, winch_steps
 
@@ -76,48 +73,4 @@ def _sewn_step(depths: CableDepths, *, tubes: bool) -> AssemblyStep:
         f"{cables_text(depths.sewn)}. Pull the skin over the body, pin every point of the map through it, mark it with "
         "its number. Take the skin off over a rolled sheet of paper. Sew each line on from the winch to its stopper: a "
         f"stitch at every number, the line free to slide{tube}.",
-    )
-
-
-def foam_safety(mould: Mould | None) -> tuple[str, ...]:
-    """What to mind, of a body of foam or silicone."""
-    model = mould is not None and mould.kind is MouldKind.SILICONE
-    return (*(_FOAM if rises(mould) else ()), *(_MODEL if model else ()), *FOAM_SAFETY)
-
-
-_FOAM = (
-    "Foam is made of isocyanate: nitrile gloves, goggles, long sleeves, an open window or a hood. Who has asthma does "
-    "not pour. Cured foam is harmless.",
-    "Foam rises with force and warmth: never close the last opening, never use a glass vessel.",
-)
-
-_MODEL = ("Plaster grows hot as it sets: never round a hand or any skin. Alginate only is for skin.",)
-
-FOAM_SAFETY = (
-    "Silicone and release spray: gloves and fresh air, no flame, no food vessels.",
-    "Spray adhesive outdoors, away from flames and motors.",
-    "Keep fingers, hair and strings away from spools and taut lines while the power is on.",
-    "Have a switch that cuts the power. Stop at once if a motor stalls, hums or grows hot.",
-    "Small parts, screws and lines are no toys: keep them away from children under three.",
-)
-"""What to mind in any case."""
-
-
-def foam_checklist(given: SheetInput) -> tuple[str, ...]:
-    """What to tick before the first pose."""
-    mould = given.mould
-    weighs = f", and weighs about {body_mass(mould):.0f} g when it is trimmed" if mould else ""
-    first = (
-        "Parts A and B weighed, not measured by eye",
-        f"The body came out whole, no hole larger than a pea{weighs}",
-    )
-    if not given.robot.cables:
-        return first
-    return (
-        *first,
-        "Every cable in its own channel, every tube held at both ends",
-        "All spools turn freely by hand",
-        "Stoppers tight, tails trimmed",
-        "Each winch ran to full travel and back",
-        "Power switch within reach",
     )

@@ -39,9 +39,9 @@ _OPEN = (
 _OPEN_FOAM = " Squeeze the body all over to open its cells."
 
 
-def rises(mould: Mould | None) -> bool:
-    """Whether what is poured is a foam; what else is cast is silicone."""
-    return mould is None or mould.casting.expansion > 1
+def rises(mould: Mould) -> bool:
+    """Tell whether what is poured is a foam; what else is cast is silicone."""
+    return mould.casting.expansion > 1
 
 
 def other_way(mould: Mould) -> tuple[str, str]:

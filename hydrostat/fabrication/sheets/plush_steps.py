@@ -120,30 +120,3 @@ def _stuff(given: SheetInput) -> AssemblyStep:
         30,
         f"{places}Fill limbs first{winches} softly and evenly, until the body is {full}." + lumps,
     )
-
-
-PLUSH_SAFETY = (
-    "Laser: cut only felt of known fibre. Never PVC, vinyl or unknown cloth: chlorine gas. Extract the fumes, stay "
-    "beside it, keep an extinguisher at hand.",
-    "Needles and blades: push away from your hand, count them before you close the zipper.",
-    "Pinching: keep fingers, hair and strings away from spools and taut lines while the power is on.",
-    "Motors: have a switch that cuts the power. Stop at once if a motor stalls, hums or grows hot.",
-    "Small parts, screws and lines are no toys: keep them away from children under three.",
-)
-"""What to mind."""
-
-
-def plush_checklist(given: SheetInput) -> tuple[str, ...]:
-    """What to tick before the first pose."""
-    first = ("The printed bar measured 100 mm", "Needles counted, zipper closed")
-    if not given.robot.cables:
-        return first
-    return (
-        *first,
-        "No line caught in the seam",
-        "All spools turn freely by hand",
-        "Every cable in its own channel, no two crossed",
-        "Stoppers outside, screws tight",
-        "Each winch ran to full travel and back",
-        "Power switch within reach",
-    )

@@ -11,7 +11,7 @@ from hydrostat.fabrication.sheets.cable_map import winch_mark
 from hydrostat.fabrication.sheets.legible import minds, sentence, shortened
 from hydrostat.fabrication.sheets.list_facts import Facts, bill_facts, cost_text, piece_facts, winch_files
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
-from hydrostat.fabrication.sheets.steps import AssemblyStep, calibration, minutes_text
+from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
 from hydrostat.units import counted
 
 _NAME, _SHORT = 60, 26
@@ -56,9 +56,6 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
         "shown": f"C{stitches.cable}" if (stitches := shown_stitches(given)) else "",
         "motor": shortened(given.motor, 80),
         "steps": [[_step(step) for step in page] for page in steps],
-        "calibration": list(calibration(given)),
-        "safety": list(plush_steps.PLUSH_SAFETY if plush else foam_steps.foam_safety(given.mould)),
-        "checklist": list(plush_steps.plush_checklist(given) if plush else foam_steps.foam_checklist(given)),
         "checks": [
             {"what": check.what, "measured": check.measured, "allowed": check.allowed, "passed": check.passed}
             for check in given.checks
@@ -158,6 +155,8 @@ def _mould(mould: Mould | None) -> Facts | None:
     ]
     return {
         "silicone": mould.kind is MouldKind.SILICONE,
+        "foams": mould_steps.rises(mould),
+        "weighs": f"{mould_steps.body_mass(mould):.0f} g",
         "undercut": _undercut(mould.pull.share),
         "amounts": amounts,
         "ratio": sentence(body.ratio),

@@ -1,4 +1,4 @@
-"""What robots of plush and of foam share: what a step is, cables and how deep they lie, winches, calibration."""
+"""What robots of plush and of foam share: what a step is, cables and how deep they lie, winches."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -182,20 +182,3 @@ def marks_text(marks: tuple[str, ...]) -> str:
     if len(numbers) > 2 and numbers == list(range(numbers[0], numbers[-1] + 1)):
         return f"{marks[0]} to {marks[-1]}"
     return marks[0] if len(marks) == 1 else f"{', '.join(marks[:-1])} and {marks[-1]}"
-
-
-def calibration(given: SheetInput) -> tuple[str, ...]:
-    """Steps from winches at zero to stoppers that are tight; nothing without cables."""
-    if not given.robot.cables:
-        return ()
-    cloth = "cloth" if given.method is Method.PLUSH else "skin"
-    return (
-        "Turn all winches to zero: the spool mark of each cable stands where the line meets the spool.",
-        "Pull the first cable straight by its tail, not tight: the body must not move.",
-        f"Slide its stopper along the line until it touches the {cloth} at the cable's last point; then back by the "
-        "slack of the list, and clamp it there. Nothing else is measured.",
-        "Do the next cable; then take in 10 mm with every winch, one after the other. Each limb must begin to move, "
-        "and come back when you let out.",
-        "Moves late: pull the line straighter and set the stopper again. Is bent at zero: shift the stopper outwards. "
-        "Then trim the tail to 30 mm.",
-    )
