@@ -1,0 +1,70 @@
+"""The panel of the stage "design". The oracle is what is wished."""
+
+import pytest
+from desk import Desk, at_desk
+
+from hydrostat.robot import Robot
+from hydrostat.studio.records.wishes import Paint
+from hydrostat.studio.stage import StageName
+
+
+def test_counts_and_limits_become_wishes(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.DESIGN)
+        designer = desk.session.designer
+        for name in ("winches", "cables"):
+            before = getattr(designer.wishes, name)
+            await desk.press(f"more-{name}")
+            assert getattr(designer.wishes, name) == before + 1
+            await desk.press(f"fewer-{name}")
+            assert getattr(designer.wishes, name) == before
+            assert desk.one(f"design-{name}").text == str(before)
+        await desk.type("wish-tension", 12.5)
+        assert designer.wishes.tension == pytest.approx(12.5)
+        await desk.type("wish-clearance", 4.0)
+        assert designer.wishes.clearance == pytest.approx(0.004)
+        await desk.type("wish-tension", -1.0)  # refused: the wish stays, and so does the number that is shown
+        assert designer.wishes.tension == pytest.approx(12.5)
+        assert desk.one("wish-tension").value == pytest.approx(12.5)
+        await desk.choose("wish-mirror", "x")
+        assert designer.wishes.mirror == "x"
+        await desk.press("Undo")
+        assert designer.wishes.mirror is None
+        assert desk.one("wish-mirror").value == ""
+
+    at_desk(starfish, act)
+
+
+def test_paints_are_taken_and_put_away(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.DESIGN)
+        painter = desk.session.designer.painter
+        for paint in Paint:
+            await desk.press(f"paint-{paint}")
+            assert painter.paint is paint
+            await desk.press(f"paint-{paint}")
+            assert painter.paint is None
+
+    at_desk(starfish, act)
+
+
+def test_design_begins_work(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.DESIGN)
+        await desk.press("design-go")
+        assert len(desk.begun) == 1
+
+    at_desk(starfish, act)
+
+
+def test_without_a_pose_one_is_sent_to_pose(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.session.poser.delete_pose(next(iter(starfish.poses)))
+        for name in list(desk.robot.poses):
+            desk.session.poser.delete_pose(name)
+        desk.go(StageName.DESIGN)
+        assert not desk.one("design-go").enabled
+        await desk.press("design-to-pose")
+        assert desk.session.stage is StageName.POSE
+
+    at_desk(starfish, act)
