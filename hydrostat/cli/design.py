@@ -4,12 +4,12 @@ import sys
 import time
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
-from hydrostat.cli.design_wishes import AUTO, Limits, wanted_constraints, wanted_options, winch_count
+from hydrostat.cli.design_wishes import TypedLimits, TypedRequest, asked_of
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.waiting import one_interrupt, read_robot
@@ -26,19 +26,29 @@ def design(
     robot: RobotFolder,
     out: OutFolder,
     winches: Annotated[
-        str, typer.Option(metavar="N|auto", help="How many winches; auto finds the fewest that keep the tolerance.")
-    ] = "2",
-    cables: Annotated[int, typer.Option(min=1, max=60, help="How many cables in all, at most.")] = 6,
+        str | None,
+        typer.Option(
+            metavar="N|auto",
+            help="How many winches, 2 if left out; auto finds the fewest that keep the tolerance.",
+        ),
+    ] = None,
+    cables: Annotated[
+        int | None, typer.Option(metavar="N", help="How many cables in all, at most; 6 if left out.")
+    ] = None,
     pose: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Design for this pose; may be repeated; all if left out.")
     ] = None,
     method: Annotated[
-        str, typer.Option(metavar="routes|trees", help="Routes priced by the pose error, or the thesis's winch trees.")
-    ] = "routes",
+        str | None,
+        typer.Option(
+            metavar="routes|trees",
+            help="Routes priced by the pose error, or the thesis's winch trees; routes if left out.",
+        ),
+    ] = None,
     constraints: Annotated[
         Path | None, typer.Option(metavar="FILE.toml", help="What can be built; the options below come before it.")
     ] = None,
-    cables_per_winch: Annotated[int | None, typer.Option(min=1, max=60, metavar="N", help="Most of one winch.")] = None,
+    cables_per_winch: Annotated[int | None, typer.Option(metavar="N", help="Most of one winch.")] = None,
     clearance: Annotated[
         str | None, typer.Option(metavar="LENGTH", help="Least distance of a cable from the edge; 5 mm if left out.")
     ] = None,
@@ -67,9 +77,6 @@ def design(
             metavar="LENGTH", help="With --winches auto: rms error of each pose; 1 % of the body's size if left out."
         ),
     ] = None,
-    seed: Annotated[
-        int | None, typer.Option(min=0, metavar="N", help="Of random choices; kept with the results.")
-    ] = None,
     fibres: Annotated[
         str | None, typer.Option(metavar="edges|elements", help="Muscles of trees; on mesh edges if left out.")
     ] = None,
@@ -85,12 +92,12 @@ def design(
     Example: hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
     from hydrostat.cli.waiting import progress_bar
-    from hydrostat.design import design_cables
+    from hydrostat.design import AUTO, find_network
     from hydrostat.fabrication.kit import forget_files
 
     require_folder(out)
-    count = winch_count(winches)
-    limits = Limits(
+    limits = TypedLimits(
+        file=constraints,
         cables_per_winch=cables_per_winch,
         clearance=clearance,
         tension=tension,
@@ -100,15 +107,22 @@ def design(
         lock_winch=tuple(lock_winch or ()),
         lock_cable=tuple(lock_cable or ()),
     )
+    typed = TypedRequest(
+        poses=tuple(pose or ()),
+        winches=winches,
+        cables=cables,
+        method=method,
+        improve=improve,
+        tolerance=tolerance,
+        fibres=fibres,
+        limits=limits,
+    )
     began = time.perf_counter()
     source = read_robot(robot)
-    options = wanted_options(method, winches=count, improve=improve, tolerance=tolerance, seed=seed, fibres=fibres)
-    asked: dict[str, Any] = {"winches": count, "cables": cables, "method": method, "options": options}
-    asked |= {"constraints": wanted_constraints(source, constraints, limits, method=method), "improve": improve}
-    poses = [source.pose(name) for name in pose] if pose else list(source.poses.values())
+    request = asked_of(source, typed)
     with progress_bar() as progress, one_interrupt(STOPPING) as pass_over:
         try:
-            network = design_cables(source, poses, progress=progress, **asked)
+            network = find_network(source, request, progress=progress)
         except KeyboardInterrupt:
             print("hydrostat: stopped before there was a network; nothing is written", file=sys.stderr)
             raise typer.Exit(130) from None
@@ -120,11 +134,11 @@ def design(
         made = write_kit(network.robot, out / "kit") if kit else None
         progress("Writing results", 1, 1)
     print_poses(network, time.perf_counter() - began)
-    found = len(network.robot.winches), len(network.robot.cables)
-    if network.complete and isinstance(count, int) and found != (count, cables):
-        asked_for = f"fewer than the {counted(count, 'winch')} and {counted(cables, 'cable')} asked for"
-        print(f"{asked_for}: more would not help, or could not be built")
-    if count == AUTO:
+    found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
+    if network.complete and isinstance(request.winches, int) and found != asked:
+        words = f"{counted(request.winches, 'winch')} and {counted(request.cables, 'cable')}"
+        print(f"fewer than the {words} asked for: more would not help, or could not be built")
+    if request.winches == AUTO:
         print_front(network)
     if made is not None:
         print_kit(made)

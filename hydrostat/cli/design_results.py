@@ -1,7 +1,7 @@
 """What `hydrostat design` writes and prints."""
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -91,11 +91,10 @@ def _pose_row(robot: "Robot", reached: "ReachedPose") -> tuple[str, ...]:
 
 def _facts(network: "Network") -> dict[str, object]:
     """Options and constraints as a person reads them."""
-    options = asdict(network.options)
-    seed = options.pop("seed", "none: nothing is drawn at random")
+    options = network.request.as_values()["options"]
     told = {name: ", ".join(map(str, value)) if isinstance(value, tuple) else value for name, value in options.items()}
     given = {name.replace("_", " "): value for name, value in told.items() if value is not None}
-    return {"seed": seed, **given, **_told(network.constraints)}
+    return {**given, **_told(network.constraints)}
 
 
 def _told(constraints: "Constraints") -> dict[str, str]:

@@ -8,25 +8,15 @@ from hydrostat.cli.options import positive
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.design import Constraints, RouteOptions, TreeOptions
+    from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions
     from hydrostat.robot import Robot
-
-AUTO = "auto"
-"""As many winches as a tolerance needs."""
-
-MOST_WINCHES = 20
-
-_ROUTES_ONLY = (
-    *("winch_zones", "keep_out", "still", "mount", "bend_radius", "longest", "torque", "slack", "spool_ratio"),
-    *("mirror", "locked_winches", "locked_cables"),
-)
-"""Constraints that winch trees do not look at."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Limits:
+class TypedLimits:
     """Limits from the command line, as text; None where the file or the default counts."""
 
+    file: Path | None = None
     cables_per_winch: int | None = None
     clearance: str | None = None
     tension: str | None = None
@@ -37,82 +27,77 @@ class Limits:
     lock_cable: tuple[int, ...] = ()
 
 
-def winch_count(text: str) -> int | str:
-    """A number of winches, or "auto".
+@dataclass(frozen=True, kw_only=True)
+class TypedRequest:
+    """What a design is asked on the command line, as text; None where the default counts."""
+
+    poses: tuple[str, ...] = ()
+    winches: str | None = None
+    cables: int | None = None
+    method: str | None = None
+    improve: bool = False
+    tolerance: str | None = None
+    fibres: str | None = None
+    limits: TypedLimits = TypedLimits()
+
+
+def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
+    """The request that was typed, for a robot.
 
     Raises:
-        InputError: neither.
+        InputError: what cannot be asked, of anyone or of this robot.
     """
-    if text == AUTO:
-        return AUTO
-    if not (text.isascii() and text.isdigit() and len(text) < 4 and 1 <= int(text) <= MOST_WINCHES):
-        raise InputError(f"--winches {text}: must be a whole number from 1 to {MOST_WINCHES}, or auto")
-    return int(text)
+    from hydrostat.design import DesignMethod, DesignRequest
+
+    winches = _winch_count(typed.winches)
+    given = {"winches": winches, "cables": typed.cables, "method": typed.method}
+    given = {name: value for name, value in given.items() if value is not None}
+    poses = [robot.pose(name) for name in typed.poses] or list(robot.poses.values())
+    trees = typed.method == DesignMethod.TREES
+    request = DesignRequest(
+        poses=tuple(poses),
+        constraints=_constraints(robot, typed.limits),
+        options=_options(typed, trees=trees, open_winches=isinstance(winches, str)),
+        improve=typed.improve,
+        **given,
+    )
+    request.fitted(robot)  # what does not fit is told before anything begins
+    return request
 
 
-def wanted_constraints(robot: "Robot", file: Path | None, limits: Limits, *, method: str) -> "Constraints":
-    """The constraints of a file, with those of the command line before them.
+def _winch_count(text: str | None) -> int | str | None:
+    """A number of winches, or what else was typed."""
+    return int(text) if text is not None and text.isascii() and text.isdigit() and len(text) < 4 else text
 
-    Raises:
-        InputError: a limit that does not fit the robot.
-    """
+
+def _constraints(robot: "Robot", limits: TypedLimits) -> "Constraints":
+    """The constraints of a file, with those of the command line before them."""
     from hydrostat.design import Constraints
     from hydrostat.design.constraints_file import read_constraints
 
-    constraints = Constraints() if file is None else read_constraints(file, robot)
-    constraints = replace(constraints, **_given(limits, robot))
-    constraints.check(robot)
-    if method == "trees":
-        _check_trees(constraints)
-    return constraints
+    constraints = Constraints() if limits.file is None else read_constraints(limits.file, robot)
+    return replace(constraints, **_given(limits, robot))
 
 
-def _check_trees(constraints: "Constraints") -> None:
-    """Refuse what winch trees do not look at."""
-    usual = type(constraints)()
-    for name in _ROUTES_ONLY:
-        if getattr(constraints, name) != getattr(usual, name):
-            raise InputError(f"{name} is kept by --method routes only; leave it out, or the trees")
-
-
-def wanted_options(
-    method: str,
-    *,
-    winches: int | str,
-    improve: bool,
-    tolerance: str | None,
-    seed: int | None,
-    fibres: str | None,
-) -> "RouteOptions | TreeOptions":
-    """Options of the method.
-
-    Raises:
-        InputError: no such method, or options of the other one.
-    """
+def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteOptions | TreeOptions | None":
+    """Options of the method; None for its usual ones."""
     from hydrostat.design import FibreKind, RouteOptions, TreeOptions
-    from hydrostat.design.design_cables import METHODS
     from hydrostat.units import LENGTH
 
-    if method not in METHODS:
-        raise InputError(f"--method {method}: must be one of {', '.join(METHODS)}")
-    if fibres is not None and fibres not in list(FibreKind):
-        raise InputError(f"--fibres {fibres}: must be one of {', '.join(FibreKind)}")
-    if tolerance is not None and winches != AUTO:
+    if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
-    if method == "trees":
-        for option, used in (("--seed", seed is not None), ("--winches auto", winches == AUTO), ("--improve", improve)):
-            if used:
-                raise InputError(f"{option} is for --method routes; leave it out, or the trees")
-        return TreeOptions() if fibres is None else TreeOptions(fibres=FibreKind(fibres))
-    if fibres is not None:
+    if typed.fibres is not None and typed.fibres not in list(FibreKind):
+        raise InputError(f"--fibres {typed.fibres}: must be one of {', '.join(FibreKind)}")
+    if typed.fibres is not None and not trees:
         raise InputError("--fibres is for --method trees; routes need no muscle fibres")
-    given: dict[str, Any] = {} if seed is None else {"seed": seed}
-    if tolerance is not None:
-        given["tolerance"] = positive("--tolerance", tolerance, LENGTH)
-    return RouteOptions(**given)
+    if typed.fibres is not None:
+        return TreeOptions(fibres=FibreKind(typed.fibres))
+    if typed.tolerance is not None and not trees:
+        return RouteOptions(tolerance=positive("--tolerance", typed.tolerance, LENGTH))
+    return None
 
 
-def _given(limits: Limits, robot: "Robot") -> dict[str, Any]:
+def _given(limits: TypedLimits, robot: "Robot") -> dict[str, Any]:
     """Fields of `Constraints` that the command line sets."""
     from hydrostat.units import FORCE, LENGTH
 

@@ -1,19 +1,22 @@
 """Which winches and cables reach given poses."""
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.design_cables import design_cables
+from hydrostat.design.design_cables import design_cables, find_network
 from hydrostat.design.muscles.activation import Activation, activate
 from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, Stage, TreeTrace
-from hydrostat.design.request import RouteOptions, TreeOptions
+from hydrostat.design.request import AUTO, DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.score_card import rest_error, score_card
 from hydrostat.design.zone import Zone
 
 __all__ = [
+    "AUTO",
     "Activation",
     "Alternative",
     "Certificate",
     "Constraints",
+    "DesignMethod",
+    "DesignRequest",
     "FibreKind",
     "Fibres",
     "Network",
@@ -27,6 +30,7 @@ __all__ = [
     "design_cables",
     "edge_fibres",
     "element_fibres",
+    "find_network",
     "rest_error",
     "score_card",
 ]

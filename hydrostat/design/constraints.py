@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 from numbers import Integral, Real
 from typing import NoReturn, TypeGuard
 
@@ -10,6 +10,48 @@ from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount, Robot
 from hydrostat.robot.robot import LARGEST_STEP
+
+
+@dataclass(frozen=True, kw_only=True)
+class Range:
+    """The values that a number may have.
+
+    Attributes:
+        least: of them.
+        most: of them; inf for any that is finite.
+        above: whether the least itself is too small.
+        whole: whether they are whole numbers.
+        optional: whether None will do, which leaves the number open.
+        unit: in which the least and the most are.
+    """
+
+    least: float = 0.0
+    most: float = inf
+    above: bool = False
+    whole: bool = False
+    optional: bool = False
+    unit: str = ""
+
+    def holds(self, value: object) -> bool:
+        """Whether a value is one of them."""
+        if value is None:
+            return self.optional
+        if isinstance(value, bool) or not isinstance(value, Integral if self.whole else Real) or not isfinite(value):
+            return False
+        return self.least <= float(value) <= self.most and not (self.above and value == self.least)
+
+    def __str__(self) -> str:
+        """The values in words, such as "above 0 and at most 1 m"."""
+        return self.words()
+
+    def words(self, scale: float = 1.0, unit: str | None = None) -> str:
+        """The values in words, with the limits so many times as large, in another unit."""
+        end = f" {unit or self.unit}".rstrip()
+        if self.whole and self.most < inf:
+            return f"a whole number from {self.least:g} to {self.most:g}"
+        kind = "a whole number, " if self.whole else "finite and " if self.most == inf else ""
+        words = f"{kind}{'above' if self.above else 'at least'} {scale * self.least:g}"
+        return f"{words}{end}" if self.most == inf else f"{words} and at most {scale * self.most:g}{end}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,20 +197,10 @@ class Constraints:
             )
 
     def _check_numbers(self) -> None:
-        for field, unit in _ABOVE_ZERO.items():
+        for field, allowed in RANGES.items():
             value = getattr(self, field)
-            if not (value is None and field in _OPTIONAL) and not (_is_number(value) and value > 0):
-                _refuse(field, value, f"finite and above 0{unit}" + (", or None" if field in _OPTIONAL else ""))
-        for field in _NOT_NEGATIVE:
-            value = getattr(self, field)
-            if not (_is_number(value) and value >= 0):
-                _refuse(field, value, "finite and at least 0 m")
-        if not (_is_number(self.turn) and 0 < self.turn <= 180):
-            _refuse("turn", self.turn, "above 0 and at most 180 degrees")
-        if not (_is_number(self.spool_ratio) and 1 <= self.spool_ratio <= LARGEST_STEP):
-            _refuse("spool_ratio", self.spool_ratio, f"at least 1 and at most {LARGEST_STEP:g}")
-        if not (_is_count(self.cables_per_winch) and self.cables_per_winch >= 1):
-            _refuse("cables_per_winch", self.cables_per_winch, "a whole number of at least 1")
+            if not allowed.holds(value):
+                _refuse(field, value, f"{allowed}, or None" if allowed.optional else str(allowed))
 
     def _check_locks(self) -> None:
         for place, name in enumerate(self.locked_winches):
@@ -184,26 +216,30 @@ class Constraints:
                     raise InputError(f"constraints: {field} names {value!r} twice; name it once")
 
 
-_ABOVE_ZERO = {
-    "clearance": " m",
-    "longest": " m",
-    "tension": " N",
-    "torque": " N m",
-    "travel": " m",
-    "spool_radius": " m",
+_LENGTH = Range(above=True, unit="m")
+_GAP = Range(unit="m")
+
+RANGES = {
+    "cables_per_winch": Range(whole=True, least=1, most=60),
+    "clearance": Range(above=True, most=1.0, unit="m"),
+    "winch_clearance": _GAP,
+    "winch_gap": _GAP,
+    "hole_gap": _GAP,
+    "turn": Range(above=True, most=180.0, unit="degrees"),
+    "bend_radius": _GAP,
+    "longest": Range(above=True, optional=True, unit="m"),
+    "tension": Range(above=True, most=1000.0, unit="N"),
+    "torque": Range(above=True, most=100.0, unit="N m", optional=True),
+    "travel": _LENGTH,
+    "release": _GAP,
+    "spool_radius": _LENGTH,
+    "slack": Range(most=1.0, unit="m"),
+    "spool_ratio": Range(least=1.0, most=LARGEST_STEP),
 }
-"""Numbers that must be above 0, and their units."""
-
-_OPTIONAL = ("longest", "torque")
-
-_NOT_NEGATIVE = ("winch_clearance", "winch_gap", "hole_gap", "bend_radius", "release", "slack")
+"""What each number of `Constraints` may be."""
 
 _ASKEW = 0.02
 """Share of its width by which a body's two sides may lie unevenly about a mirror."""
-
-
-def _is_number(value: object) -> TypeGuard[float]:
-    return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
 
 
 def _is_count(value: object) -> TypeGuard[int]:

@@ -9,7 +9,7 @@ from jaxtyping import Int
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
-from hydrostat.design.request import RouteOptions, TreeOptions
+from hydrostat.design.request import DesignRequest
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot
 
@@ -105,12 +105,10 @@ class Network:
     Attributes:
         robot: the robot with the new network.
         source: the robot that it was designed for.
-        method: "routes" or "trees".
+        request: what was asked, with the constraints that it keeps.
         reached: what the new network reaches of each pose by its own winches; the true score (E24).
         alternatives: other networks, the best first; by counts where the number of winches was found.
         trace: what led to it.
-        constraints: that it keeps.
-        options: of the method.
         tried: networks whose poses were solved.
         seconds: CPU time of the design [s].
         complete: whether the search came to its end; False where it was interrupted.
@@ -118,15 +116,18 @@ class Network:
 
     robot: Robot
     source: Robot
-    method: str
+    request: DesignRequest
     reached: tuple[ReachedPose, ...]
     alternatives: tuple[Alternative, ...] = ()
     trace: TreeTrace | RouteTrace
-    constraints: Constraints
-    options: TreeOptions | RouteOptions
     tried: int
     seconds: float
     complete: bool = True
+
+    @property
+    def constraints(self) -> Constraints:
+        """What it keeps."""
+        return self.request.constraints
 
     @property
     def rms_error(self) -> float:

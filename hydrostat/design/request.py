@@ -1,9 +1,26 @@
 """`DesignRequest`: what a design is asked, and how its method shall work."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field, replace
+from enum import StrEnum
+from typing import Any
 
+from hydrostat.design.constraints import Constraints, Range
 from hydrostat.design.muscles.fibres import FibreKind
 from hydrostat.errors import InputError
+from hydrostat.robot import Pose, Robot
+
+AUTO = "auto"
+"""As many winches as are needed."""
+
+COUNTS = {"winches": Range(whole=True, least=1, most=20), "cables": Range(whole=True, least=1, most=60)}
+"""How many winches and cables may be asked for."""
+
+
+class DesignMethod(StrEnum):
+    """How networks are found: by priced routes, ours, or by winch trees, the thesis's."""
+
+    ROUTES = "routes"
+    TREES = "trees"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +42,6 @@ class RouteOptions:
             of all cables is followed by another where it gained a fifth.
         steps: of refinement after each cable.
         polish: steps of refinement of a whole network.
-        seed: nothing is drawn at random yet; kept with the results.
     """
 
     enough: float = 1e-4
@@ -38,33 +54,37 @@ class RouteOptions:
     exchanges: int = 12
     steps: int = 5
     polish: int = 60
-    seed: int = 0
 
     def __post_init__(self) -> None:
-        for name, least in _LEAST.items():
-            value = getattr(self, name)
-            if value is None and name in ("starts", "tolerance"):
-                continue
-            whole = isinstance(least, int)
-            if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)) or not value >= least:
-                kind = "a whole number" if whole else "a number"
-                raise InputError(f"RouteOptions.{name} must be {kind} of {least:g} or more, not {value!r}")
+        for name, allowed in ROUTE_RANGES.items():
+            if not allowed.holds(getattr(self, name)):
+                raise InputError(f"RouteOptions.{name} must be {allowed}, not {getattr(self, name)!r}")
 
     def starts_for(self, dim: int) -> int:
         """Networks that are grown for a body of so many dimensions."""
         return self.starts if self.starts is not None else {2: 2, 3: 1}[dim]
 
 
-_LEAST = {
-    "enough": 0.0, "tolerance": 0.0, "spacing": 0.5, "hops": 1, "lead_penalty": 0.0, "trials": 1, "starts": 1,
-    "exchanges": 0, "steps": 0, "polish": 0, "seed": 0,
-}  # fmt: skip
-"""Of each option; whole numbers for those that are counts."""
+ROUTE_RANGES = {
+    "enough": Range(),
+    "tolerance": Range(above=True, most=1.0, optional=True, unit="m"),
+    "spacing": Range(least=0.5),
+    "hops": Range(whole=True, least=1),
+    "lead_penalty": Range(),
+    "trials": Range(whole=True, least=1),
+    "starts": Range(whole=True, least=1, optional=True),
+    "exchanges": Range(whole=True),
+    "steps": Range(whole=True),
+    "polish": Range(whole=True),
+}
+"""What each number of `RouteOptions` may be."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TreeOptions:
     """How winch trees are grown; lengths in units of the mean mesh edge unless said otherwise (M8 to M10).
+
+    Raises InputError for muscles of no kind that there is.
 
     Attributes:
         fibres: a muscle on every mesh edge, or one in every element.
@@ -95,3 +115,148 @@ class TreeOptions:
     trials: int = 64
     loss: float = 0.02
     lead_penalty: float = 0.1
+
+    def __post_init__(self) -> None:
+        if self.fibres not in list(FibreKind):
+            raise InputError(f'fibres = "{self.fibres}": must be one of {", ".join(FibreKind)}')
+        object.__setattr__(self, "fibres", FibreKind(self.fibres))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DesignRequest:
+    """What a design is asked: the poses to reach, with how many winches and cables, within which constraints, and how.
+
+    Attributes:
+        poses: what the network should reach, all of them with the same cables.
+        winches: how many; "auto" for the fewest that bring every pose under the tolerance of the options (F1, F2).
+        cables: how many in all, at least one a winch.
+        method: "routes" prices routes by the pose error and moves them to where it is least; "trees" is the thesis's.
+        constraints: what can be built, and what of the robot's own network stays.
+        options: of the method; its usual ones if left out.
+        improve: begin with the robot's own winches and cables, and move and exchange those that are not locked; what
+            travel, release, slack and spools these have is allowed.
+
+    Raises:
+        InputError: no pose, a count out of its range, a method that there is not, options of another one, or what the
+            method does not do.
+    """
+
+    poses: tuple[Pose, ...]
+    winches: int | str = 2
+    cables: int = 6
+    method: DesignMethod = DesignMethod.ROUTES
+    constraints: Constraints = field(default_factory=Constraints)
+    options: RouteOptions | TreeOptions | None = None
+    improve: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "poses", tuple(self.poses))
+        if not self.poses:
+            raise InputError("there is no pose to design for; add a [[pose]] to the robot")
+        for pose in self.poses:
+            if not isinstance(pose, Pose):
+                raise InputError(f"poses must be Pose records, such as robot.poses.values(), not {pose!r}")
+        self._check_counts()
+        if self.method not in list(DesignMethod):
+            raise InputError(f'method = "{self.method}": must be one of {", ".join(DesignMethod)}')
+        object.__setattr__(self, "method", DesignMethod(self.method))
+        kind = _OPTIONS[self.method]
+        object.__setattr__(self, "options", self.options or kind())
+        if not isinstance(self.options, kind):
+            told = type(self.options).__name__
+            raise InputError(f'options of method "{self.method}" must be {kind.__name__}, not {told}')
+        if self.method is DesignMethod.TREES:
+            self._check_trees()
+        if self.improve and self.winches == AUTO:
+            raise InputError('winches = "auto" starts from nothing; give a number of winches to improve a network')
+
+    @property
+    def route_options(self) -> RouteOptions:
+        """How the search for routes works."""
+        return self.options if isinstance(self.options, RouteOptions) else RouteOptions()
+
+    @property
+    def tree_options(self) -> TreeOptions:
+        """How winch trees are grown."""
+        return self.options if isinstance(self.options, TreeOptions) else TreeOptions()
+
+    def fitted(self, robot: Robot) -> "DesignRequest":
+        """The request as one robot can be designed for: where its network is improved, that is within the constraints.
+
+        Raises:
+            InputError: a pose of a marker that it does not have, or constraints that do not fit it.
+        """
+        markers, dim = [marker.name for marker in robot.markers], robot.body.mesh.dim
+        for pose in self.poses:
+            for name, place in pose.targets.items():
+                if len(place) != dim:
+                    raise InputError(
+                        f'pose "{pose.name}": the target of {name} has {len(place)} coordinates, the body {dim}'
+                    )
+                if name not in markers:
+                    known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
+                    raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')
+        self.constraints.check(robot)
+        if self.method is DesignMethod.TREES and dim != 2:
+            raise InputError(
+                'method "trees" designs for flat bodies only, this body lies in space; use method "routes"'
+            )
+        return replace(self, constraints=_with_own(self.constraints, robot)) if self.improve else self
+
+    def as_values(self) -> dict[str, Any]:
+        """Counts, constraints and options as plain values, poses by their names."""
+        values = asdict(self)
+        return values | {"poses": [pose.name for pose in self.poses], "method": str(self.method)}
+
+    def _check_counts(self) -> None:
+        for name, allowed in COUNTS.items():
+            value = getattr(self, name)
+            if (name, value) != ("winches", AUTO) and not allowed.holds(value):
+                also = ' or "auto"' if name == "winches" else ""
+                raise InputError(f"{name} must be {allowed}{also}, not {value!r:.60}")
+        if not isinstance(self.winches, int):
+            return
+        if self.winches > self.cables:
+            raise InputError(
+                f"{self.winches} winches and {self.cables} cables: there must be at least one winch, and a cable for "
+                "each"
+            )
+        most = self.winches * self.constraints.cables_per_winch
+        if self.cables > most:
+            raise InputError(
+                f"{self.winches} winches pull at most {most} cables, not {self.cables}; ask for more winches, or raise "
+                "cables_per_winch"
+            )
+
+    def _check_trees(self) -> None:
+        """Refuse what the thesis's way does not know."""
+        if self.improve or self.winches == AUTO:
+            raise InputError('method "trees" starts from nothing with a number of winches; use method "routes"')
+        usual = Constraints()
+        asked = [name for name in _ROUTES_ONLY if getattr(self.constraints, name) != getattr(usual, name)]
+        if asked:
+            raise InputError(f'method "trees" does not keep {", ".join(asked)}; use method "routes", which does')
+
+
+_OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {
+    DesignMethod.ROUTES: RouteOptions,
+    DesignMethod.TREES: TreeOptions,
+}
+
+_ROUTES_ONLY = (
+    "winch_zones", "keep_out", "still", "mount", "bend_radius", "longest", "torque", "slack", "spool_ratio", "mirror",
+    "locked_winches", "locked_cables",
+)  # fmt: skip
+"""Constraints that winch trees are not grown within."""
+
+
+def _with_own(constraints: Constraints, robot: Robot) -> Constraints:
+    """Constraints that allow what the robot's own winches and stoppers have: travel, release, slack, spools."""
+    ratios = [max(ratio, 1 / ratio) for ratio in robot.spool_ratios.tolist()]
+    return replace(
+        constraints,
+        travel=max([constraints.travel, *(winch.travel for winch in robot.winches)]),
+        release=max([constraints.release, *(winch.release for winch in robot.winches)]),
+        slack=max([constraints.slack, *(cable.slack for cable in robot.cables)]),
+        spool_ratio=max([constraints.spool_ratio, *ratios]),
+    )

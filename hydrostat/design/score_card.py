@@ -17,7 +17,8 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         network: what was designed.
         version: of hydrostat.
     """
-    robot, options = network.robot, asdict(network.options)
+    robot = network.robot
+    request = network.request.as_values()
     return {
         "rms_error": network.rms_error,
         "rms_error_at_rest": rest_error(network),
@@ -29,10 +30,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "networks_tried": network.tried,
         "cpu_seconds": network.seconds,
         "complete": network.complete,
-        "method": network.method,
-        "seed": options.get("seed"),
-        "constraints": asdict(network.constraints),
-        "options": options,
+        "request": request,
         "version": version,
         "source_robot": robot_hash(network.source),
         "robot": robot_hash(robot),

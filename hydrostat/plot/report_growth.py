@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, size_of
-from hydrostat.design.request import RouteOptions
 from hydrostat.design.score_card import rest_error
 from hydrostat.drawing.svg import Html, tag
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
@@ -110,7 +109,7 @@ def _certificate(network: Network, certificate: Certificate | None) -> Html:
 
 def _tolerance(network: Network) -> float | None:
     """The error of each pose that was asked for [m], where the number of winches was left open."""
-    return network.options.tolerance if isinstance(network.options, RouteOptions) else None
+    return network.request.route_options.tolerance
 
 
 def _pictures(network: Network, others: Sequence[Alternative]) -> Html:

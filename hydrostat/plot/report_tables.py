@@ -58,7 +58,7 @@ def footer(network: Network, facts: Mapping[str, object]) -> Html:
     known = {
         "hydrostat version": __version__,
         "robot hash (SHA-256)": robot_hash(network.robot),
-        "method": network.method,
+        "method": network.request.method,
         "networks tried": network.tried,
         **_score(network),
         "CPU time of the design": f"{network.seconds:.1f} s" + ("" if network.complete else ", stopped early"),

@@ -9,15 +9,23 @@ from collections.abc import Callable
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
 import pytest
 from plot.designs import plain_network
 
 import hydrostat as hs
-from hydrostat.design import Alternative, Constraints, FibreKind, Network, RouteOptions, TreeOptions, Zone
+from hydrostat.design import (
+    Alternative,
+    Constraints,
+    DesignRequest,
+    FibreKind,
+    Network,
+    RouteOptions,
+    TreeOptions,
+    Zone,
+)
 from hydrostat.fabrication.kit import write_files
-from hydrostat.robot import Pose, robot_hash, save_robot
+from hydrostat.robot import robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -32,22 +40,21 @@ def strip(tmp_path: Path) -> Path:
 
 
 class Search:
-    """Stands for `design_cables`."""
+    """Stands for `find_network`."""
 
     def __init__(self) -> None:
-        self.asked: dict[str, Any] = {}
+        self.asked: DesignRequest | None = None
         self.answer: Network = plain_network()
 
-    def __call__(self, robot: hs.Robot, poses: list[Pose], **asked: Any) -> Network:
-        asked.pop("progress")
-        self.asked = {"poses": [pose.name for pose in poses], **asked}
-        return replace(self.answer, constraints=asked["constraints"], options=asked["options"])
+    def __call__(self, robot: hs.Robot, request: DesignRequest, *, progress: object) -> Network:
+        self.asked = request
+        return replace(self.answer, request=request)
 
 
 @pytest.fixture
 def search(monkeypatch: pytest.MonkeyPatch) -> Search:
     fake = Search()
-    monkeypatch.setattr("hydrostat.design.design_cables", fake)
+    monkeypatch.setattr("hydrostat.design.find_network", fake)
     return fake
 
 
@@ -67,7 +74,6 @@ OPTIONS = {
     ("--winches", "1", "--cables", "3"): {"winches": 1, "cables": 3},
     ("--winches", "auto"): {"winches": "auto"},
     ("--winches", "auto", "--tolerance", "3 mm"): {"winches": "auto", "options": RouteOptions(tolerance=0.003)},
-    ("--seed", "7"): {"options": RouteOptions(seed=7)},
     ("--improve",): {"improve": True},
     ("--method", "trees"): {"method": "trees", "options": TreeOptions()},
     ("--method", "trees", "--fibres", "elements"): {
@@ -90,16 +96,8 @@ def test_options_reach_the_search(
     run: Run, strip: Path, search: Search, no_report: None, options: tuple[str, ...], tmp_path: Path
 ) -> None:
     assert run("design", strip, *options, "--out", tmp_path / "out")[0] == 0
-    usual = {
-        "poses": ["up"],
-        "winches": 2,
-        "cables": 6,
-        "method": "routes",
-        "options": RouteOptions(),
-        "constraints": PLAIN,
-        "improve": False,
-    }
-    assert search.asked == usual | OPTIONS[options]
+    poses = tuple(hs.load_robot(strip).poses.values())
+    assert search.asked == DesignRequest(poses=poses, **OPTIONS[options])
 
 
 def test_options_come_before_the_file(run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path) -> None:
@@ -110,14 +108,14 @@ def test_options_come_before_the_file(run: Run, strip: Path, search: Search, no_
     options = ("--constraints", file, "--tension", "12 N", "--lock-cable", "2")
     assert run("design", strip, *options, "--out", tmp_path / "out")[0] == 0
     zone = Zone(at=(0.05, 0.0), radius=0.005)
-    assert search.asked["constraints"] == Constraints(
-        clearance=0.004, tension=12.0, locked_cables=(1,), keep_out=(zone,)
-    )
+    assert search.asked is not None
+    assert search.asked.constraints == Constraints(clearance=0.004, tension=12.0, locked_cables=(1,), keep_out=(zone,))
     card = json.loads((tmp_path / "out" / "score.json").read_text())
-    assert card["constraints"]["keep_out"] == [{"at": [0.05, 0.0], "radius": 0.005, "box": None, "outline": []}]
-    assert card["constraints"]["tension"] == 12.0
+    kept = card["request"]["constraints"]
+    assert kept["keep_out"] == [{"at": [0.05, 0.0], "radius": 0.005, "box": None, "outline": []}]
+    assert kept["tension"] == 12.0
     told = (tmp_path / "out" / "report.html").read_text()
-    for words in ("'clearance': '4 mm'", "'tension': '12 N'", "'keep out': '1'", "'locked cables': '2'", "'seed': 0"):
+    for words in ("'clearance': '4 mm'", "'tension': '12 N'", "'keep out': '1'", "'locked cables': '2'"):
         assert words in told
     assert "still" not in told
 
@@ -185,7 +183,7 @@ def test_a_search_that_is_stopped_before_it_has_found_anything(
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("hydrostat.design.design_cables", stop)
+    monkeypatch.setattr("hydrostat.design.find_network", stop)
     code, _, errors = run("design", strip, "--out", tmp_path / "out")
     assert (code, errors) == (130, "hydrostat: stopped before there was a network; nothing is written\n")
     assert not (tmp_path / "out").exists()
@@ -215,20 +213,21 @@ def test_auto_tells_the_error_against_winches_and_cables(
     assert "error against" not in run("design", strip, "--out", tmp_path / "out")[1]
 
 
+STARTS = 'method "trees" starts from nothing with a number of winches; use method "routes"'
 BAD = {
-    ("--winches", "many"): "--winches many: must be a whole number from 1 to 20, or auto",
-    ("--winches", "0"): "--winches 0: must be a whole number from 1 to 20, or auto",
-    ("--winches", "²"): "--winches ²: must be a whole number from 1 to 20, or auto",
-    ("--method", "magic"): "--method magic: must be one of routes, trees",
+    ("--winches", "many"): "winches must be a whole number from 1 to 20 or \"auto\", not 'many'",
+    ("--winches", "0"): 'winches must be a whole number from 1 to 20 or "auto", not 0',
+    ("--winches", "²"): "winches must be a whole number from 1 to 20 or \"auto\", not '²'",
+    ("--method", "magic"): 'method = "magic": must be one of routes, trees',
     ("--fibres", "hairs"): "--fibres hairs: must be one of edges, elements",
     ("--fibres", "edges"): "--fibres is for --method trees; routes need no muscle fibres",
     ("--tolerance", "1 mm"): "--tolerance is for --winches auto, which finds the fewest winches that keep it",
     ("--winches", "auto", "--tolerance", "0 mm"): "--tolerance 0 mm: must be above 0, such as 12 mm",
-    ("--method", "trees", "--seed", "1"): "--seed is for --method routes; leave it out, or the trees",
-    ("--method", "trees", "--winches", "auto"): "--winches auto is for --method routes; leave it out, or the trees",
-    ("--method", "trees", "--improve"): "--improve is for --method routes; leave it out, or the trees",
-    ("--method", "trees", "--stepped-spools"): "spool_ratio is kept by --method routes only; "
-    "leave it out, or the trees",
+    ("--cables", "61"): "cables must be a whole number from 1 to 60, not 61",
+    ("--method", "trees", "--winches", "auto"): STARTS,
+    ("--method", "trees", "--improve"): STARTS,
+    ("--method", "trees", "--stepped-spools"): 'method "trees" does not keep spool_ratio; use method "routes", '
+    "which does",
     ("--clearance", "5"): '--clearance 5: "5" has no unit; write for example "12 mm"',
     ("--tension", "0 N"): "--tension 0 N: must be above 0, such as 20 N",
     ("--slack", "-1 mm"): "--slack -1 mm: must be 0 or more, such as 12 mm",
@@ -248,7 +247,7 @@ def test_what_is_wrong_is_one_line(
 ) -> None:
     code, out, errors = run("design", strip, *options, "--out", tmp_path / "out")
     assert (code, out, errors) == (2, "", f"hydrostat: {BAD[options]}\n")
-    assert search.asked == {}
+    assert search.asked is None
     assert not (tmp_path / "out").exists()
 
 

@@ -281,8 +281,8 @@ def test_what_is_asked_for_wrongly() -> None:
         'method "trees" starts from nothing with a number of winches; use method "routes"',
         method="trees", improve=True,
     )  # fmt: skip
-    error_of('winches must be a whole number or "auto", not "two"'.replace('"two"', "'two'"), winches="two")
-    error_of("cables must be a whole number, not True", cables=True)
+    error_of("winches must be a whole number from 1 to 20 or \"auto\", not 'two'", winches="two")
+    error_of("cables must be a whole number from 1 to 60, not True", cables=True)
     error_of("3 winches and 2 cables: there must be at least one winch, and a cable for each", winches=3)
     error_of(
         "2 winches pull at most 4 cables, not 5; ask for more winches, or raise cables_per_winch",
@@ -314,10 +314,10 @@ def test_a_network_that_cannot_be_improved_says_why() -> None:
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"starts": 0}, "RouteOptions.starts must be a whole number of 1 or more, not 0"),
-        ({"exchanges": 1.5}, "RouteOptions.exchanges must be a whole number of 0 or more, not 1.5"),
-        ({"tolerance": float("nan")}, "RouteOptions.tolerance must be a number of 0 or more, not nan"),
-        ({"spacing": "2"}, "RouteOptions.spacing must be a number of 0.5 or more, not '2'"),
+        ({"starts": 0}, "RouteOptions.starts must be a whole number, at least 1, not 0"),
+        ({"exchanges": 1.5}, "RouteOptions.exchanges must be a whole number, at least 0, not 1.5"),
+        ({"tolerance": float("nan")}, "RouteOptions.tolerance must be above 0 and at most 1 m, not nan"),
+        ({"spacing": "2"}, "RouteOptions.spacing must be finite and at least 0.5, not '2'"),
     ],
 )
 def test_options_out_of_range(unchecked: None, wrong: dict[str, object], words: str) -> None:

@@ -20,16 +20,17 @@ ZONED = Constraints(
 
 
 def test_a_grown_network_as_json() -> None:
-    network = replace(plain_network(), constraints=ZONED)
+    network = replace(plain_network(), request=replace(plain_network().request, constraints=ZONED))
     card = score_card(network, version="1.2.3")
     read = json.loads(json.dumps(card, allow_nan=False))
     assert read["rms_error"] == network.rms_error
     assert read["poses"]["up"]["errors"] == dict(network.reached[0].errors)
     assert read["poses"]["up"]["tensions"] == network.reached[0].pose.tensions.tolist()
     assert read["poses"]["up"]["contractions"] == {"up": 0.01, "down": 0.0}
-    assert read["constraints"]["keep_out"] == [{"at": [0.0, 0.0], "radius": 0.01, "box": None, "outline": []}]
-    assert read["constraints"]["still"][0]["outline"] == [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]
-    assert read["constraints"]["mount"] == "world"
+    constraints = read["request"]["constraints"]
+    assert constraints["keep_out"] == [{"at": [0.0, 0.0], "radius": 0.01, "box": None, "outline": []}]
+    assert constraints["still"][0]["outline"] == [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]
+    assert constraints["mount"] == "world"
     assert [stage["rms_error"] for stage in read["stages"]] == [0.03 / number for number in range(1, 12)]
     assert [stage["cables"] for stage in read["stages"]] == [1] * 5 + [2] * 6
     assert read["certificate"] == {"further": 0.0021, "paths": 12345, "slope": 0.0123}
@@ -37,7 +38,8 @@ def test_a_grown_network_as_json() -> None:
     assert [other["robot"] for other in read["alternatives"]] == [
         robot_hash(other.robot) for other in network.alternatives
     ]
-    assert (read["method"], read["seed"], read["version"], read["complete"]) == ("routes", 0, "1.2.3", True)
+    assert (read["request"]["method"], read["version"], read["complete"]) == ("routes", "1.2.3", True)
+    assert (read["request"]["poses"], read["request"]["options"]["hops"]) == (["up"], 14)
     assert (read["robot"], read["source_robot"]) == (robot_hash(network.robot), robot_hash(network.source))
 
 
@@ -51,7 +53,7 @@ def test_lengths_of_cables_and_their_sheaths() -> None:
     assert second["sheathed"] == 0.0
     assert first["via_points"] == len(spans) - 1
     assert card["tree_score"] == 0.5
-    assert card["seed"] is None
+    assert card["request"]["options"]["fibres"] == "edges"
 
 
 def test_a_stepped_spool_is_told() -> None:

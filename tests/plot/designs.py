@@ -13,12 +13,9 @@ from hydrostat.design import (
     Activation,
     Alternative,
     Certificate,
-    Constraints,
     Network,
-    RouteOptions,
     RouteTrace,
     Stage,
-    TreeOptions,
     TreeTrace,
 )
 from hydrostat.design.muscles.fibres import edge_fibres
@@ -90,11 +87,9 @@ def _network(robot: Robot, target: Pose, tree: np.ndarray) -> Network:
     return Network(
         robot=robot,
         source=robot,
-        method="trees",
+        request=DesignRequest(poses=(target,), method=DesignMethod.TREES),
         reached=(reached,),
         trace=TreeTrace(activations=(activation,), candidates=(np.argsort(-tensions)[:12],), trees=(tree,), score=0.5),
-        constraints=Constraints(),
-        options=TreeOptions(),
         tried=4,
         seconds=1.5,
     )
@@ -109,7 +104,7 @@ def grown(network: Network, stages: int = 11) -> Network:
     less = replace(reached, pose=Simulation(begun).solve(reached.pose.contractions[:1]))
     return replace(
         network,
-        method="routes",
+        request=DesignRequest(poses=network.request.poses),
         trace=RouteTrace(
             stages=tuple(
                 Stage(words=told, robot=begun if index < stages // 2 else robot, error=0.03 / (index + 1))
@@ -121,7 +116,6 @@ def grown(network: Network, stages: int = 11) -> Network:
             Alternative(robot=robot, reached=(replace(reached, errors={"tip": 0.0345}),)),
             Alternative(robot=begun, reached=(replace(less, errors={"tip": 0.0456}),)),
         ),
-        options=RouteOptions(),
     )
 
 

@@ -1,27 +1,17 @@
 """`design_fewest`: the fewest winches that bring every pose under a tolerance, and what each number gains (F1, F2)."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Network
 from hydrostat.design.progress import Better, Progress, Watch, unseen
-from hydrostat.design.request import RouteOptions
-from hydrostat.design.routes.design_routes import Search
+from hydrostat.design.request import COUNTS, DesignRequest
+from hydrostat.design.routes.design_routes import RouteSearch
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import Robot
 
 
-def design_fewest(
-    robot: Robot,
-    poses: Sequence[Pose],
-    *,
-    cables: int,
-    constraints: Constraints,
-    options: RouteOptions,
-    progress: Progress,
-    watch: Watch = unseen,
-) -> Network:
+def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
     """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
 
     Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
@@ -29,14 +19,12 @@ def design_fewest(
 
     Args:
         robot: that is designed for.
-        poses: to reach.
-        cables: most in all.
-        constraints: to keep; locked winches count.
-        options: of the search, with the tolerance.
+        request: what is asked; locked winches count, and cables are the most in all.
         progress: told how the work goes on.
         watch: told each better network on the way, whatever its number of winches.
     """
     size = robot.body.mesh.size
+    constraints, options, cables = request.constraints, request.route_options, request.cables
     tolerance = _SHARE * size if options.tolerance is None else options.tolerance
     sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
     found: list[Network] = []
@@ -50,9 +38,12 @@ def design_fewest(
         raise InputError(
             f"{least} winches are needed at the least, for what is locked or mirrored, but there may be {cables} cables"
         )
-    for winches in range(least, cables + 1):
+    largest = min(cables, int(COUNTS["winches"].most))
+    for winches in range(least, largest + 1):
         most = min(cables, winches * constraints.cables_per_winch)
-        search = Search(robot, poses, winches, most, constraints, sought, progress, watch=better)
+        search = RouteSearch(
+            robot, replace(request, winches=winches, cables=most, options=sought), progress, watch=better
+        )
         try:
             found.append(search.run())
         except KeyboardInterrupt:
@@ -63,7 +54,7 @@ def design_fewest(
         except InputError:
             raise
         except HydrostatError:
-            if winches == cables and not found:
+            if winches == largest and not found:
                 raise
             continue
         for network in (*(search.judged(trial) for trial in search.sizes.values()), *_all(found[-1])):
@@ -79,7 +70,7 @@ def design_fewest(
     return replace(
         best,
         alternatives=tuple(front[counts] for counts in sorted(front)),
-        options=options,
+        request=request,
         tried=sum(network.tried for network in found),
         seconds=sum(network.seconds for network in found),
         complete=not interrupted and all(network.complete for network in found),

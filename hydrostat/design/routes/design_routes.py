@@ -1,16 +1,14 @@
 """`design_routes`: routes priced by the pose error, added one by one, and moved to where it is least."""
 
 import time
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
 from hydrostat.design.buildable import pulls, violations
-from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, Stage
 from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import Region, body_region
-from hydrostat.design.request import RouteOptions
+from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certify import certify
@@ -21,22 +19,11 @@ from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
 
-def design_routes(
-    robot: Robot,
-    poses: Sequence[Pose],
-    *,
-    winches: int,
-    cables: int,
-    constraints: Constraints,
-    options: RouteOptions,
-    progress: Progress,
-    watch: Watch = unseen,
-    improve: bool = False,
-) -> Network:
+def design_routes(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
     """Cables added where the adjoint of the pose error prices them best, and moved to where it is least.
 
     At the equilibria of all poses the adjoint field prices every run between two via points; a dynamic program finds
@@ -50,30 +37,23 @@ def design_routes(
         InputError: a body too thin for the constraints.
         HydrostatError: no network can be built.
     """
-    search = Search(robot, poses, winches, cables, constraints, options, progress, watch=watch, improve=improve)
-    return search.run()
+    return RouteSearch(robot, request, progress, watch).run()
 
 
-class Search:
-    """One run."""
+class RouteSearch:
+    """One search for a network of a given number of winches.
 
-    def __init__(
-        self,
-        robot: Robot,
-        poses: Sequence[Pose],
-        winches: int,
-        cables: int,
-        constraints: Constraints,
-        options: RouteOptions,
-        progress: Progress,
-        *,
-        watch: Watch = unseen,
-        improve: bool = False,
-    ) -> None:
-        self.robot, self.poses, self.winches, self.cables = robot, poses, winches, cables
-        self.constraints, self.options, self.progress, self.improve = constraints, options, progress, improve
-        self.watch = watch
-        self.bench = Bench(robot, poses, constraints)
+    Attributes:
+        bench: solves the poses of layouts.
+        stages: networks on the way.
+        sizes: the best network of each size, by its numbers of winches and cables.
+    """
+
+    def __init__(self, robot: Robot, request: DesignRequest, progress: Progress, watch: Watch = unseen) -> None:
+        self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
+        self.winches, self.cables = int(request.winches), request.cables
+        self.constraints, self.options = request.constraints, request.route_options
+        self.bench = Bench(robot, request.poses, request.constraints)
         self.stages: list[Stage] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
@@ -99,12 +79,10 @@ class Search:
         return Network(
             robot=network.robot,
             source=self.robot,
-            method="routes",
+            request=self.request,
             reached=network.reached,
             alternatives=tuple(alternatives),
             trace=RouteTrace(stages=tuple(self.stages), certificate=certificate),
-            constraints=self.constraints,
-            options=self.options,
             tried=self.bench.solves,
             seconds=time.process_time() - began,
             complete=complete,
@@ -167,9 +145,9 @@ class Search:
     def _beginning(self) -> Layout:
         """What the search begins with: nothing, what is locked, or all that there is."""
         whole = layout_of(self.robot, self.constraints)
-        if self.improve and not whole.lines:
+        if self.request.improve and not whole.lines:
             raise InputError("the robot has no cables to improve; design without improving it")
-        if self.improve:
+        if self.request.improve:
             self._check_counts("to be improved", len(whole.stands), len(whole.lines))
             pushed = pushed_back(whole, self.region, 0.03 * self.robot.body.mesh.size)
             told = (
@@ -238,7 +216,9 @@ class Search:
         simulation = Simulation(robot)
         limits = Limits(tension=self.constraints.tension_limit)
         try:
-            reached = [solve_ik(simulation, pose, limits=limits, options=InverseOptions()) for pose in self.poses]
+            reached = [
+                solve_ik(simulation, pose, limits=limits, options=InverseOptions()) for pose in self.request.poses
+            ]
         except NotConvergedError:
             return None
         return None if pulls(robot, reached, self.constraints) else Alternative(robot=robot, reached=tuple(reached))

@@ -10,14 +10,13 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.design.buildable import violations
-from hydrostat.design.constraints import Constraints
 from hydrostat.design.muscles.activation import Activation, activate, wanted_directions
 from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.design.polyline import Route, length, sharpest_turn
 from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import body_region
-from hydrostat.design.request import TreeOptions
+from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.judge import judge, prune
 from hydrostat.design.trees.winch_trees import Tree, WinchTrees
@@ -25,17 +24,7 @@ from hydrostat.errors import HydrostatError
 from hydrostat.robot import Cable, Pose, Robot, Winch
 
 
-def design_trees(
-    robot: Robot,
-    poses: list[Pose],
-    *,
-    winches: int,
-    cables: int,
-    constraints: Constraints,
-    options: TreeOptions,
-    progress: Progress,
-    watch: Watch = unseen,
-) -> Network:
+def design_trees(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
     """Winch trees: the network of the thesis's method that reaches the poses best.
 
     Muscle fibres reach each pose; the strongest are joined to routes; a winch is put where the routes it pulls score
@@ -48,11 +37,11 @@ def design_trees(
         InputError: a body that is not flat or too thin.
         HydrostatError: no network can be built from the muscles that were found.
     """
-    return _Design(robot, poses, winches, cables, constraints, options, progress, watch).run()
+    return _TreeDesign(robot, request, progress, watch).run()
 
 
 @dataclass(frozen=True, eq=False)
-class _Plan:
+class _TreePlan:
     """Winch trees that were chosen from all that one set of candidates allows."""
 
     candidates: tuple[np.ndarray, ...]
@@ -72,25 +61,15 @@ class _Plan:
         )
 
 
-class _Design:
+class _TreeDesign:
     """One run."""
 
-    def __init__(
-        self,
-        robot: Robot,
-        poses: list[Pose],
-        winches: int,
-        cables: int,
-        constraints: Constraints,
-        options: TreeOptions,
-        progress: Progress,
-        watch: Watch,
-    ) -> None:
-        self.robot, self.poses, self.options, self.progress = robot, poses, options, progress
-        self.constraints, self.watch = constraints, watch
-        self.winches, self.cables = winches, cables
+    def __init__(self, robot: Robot, request: DesignRequest, progress: Progress, watch: Watch) -> None:
+        self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
+        self.constraints, self.options = request.constraints, request.tree_options
+        self.winches, self.cables = int(request.winches), request.cables
         self.mesh = robot.body.mesh
-        self.region = body_region(robot.body, constraints.clearance)
+        self.region = body_region(robot.body, self.constraints.clearance)
         self.spacing = float(self.mesh.edge_lengths.mean())
 
     def run(self) -> Network:
@@ -105,19 +84,19 @@ class _Design:
             )
         best, reached = judge(
             [robot for _, robot in built],
-            self.poses,
+            self.request.poses,
             tension=self.constraints.tension,
             progress=self.progress,
             watch=self.watch,
         )
         plan, designed = built[best]
         designed, reached = prune(
-            designed, self.poses, reached, tension=self.constraints.tension, loss=self.options.loss
+            designed, self.request.poses, reached, tension=self.constraints.tension, loss=self.options.loss
         )
         return Network(
             robot=designed,
             source=self.robot,
-            method="trees",
+            request=self.request,
             reached=reached,
             trace=TreeTrace(
                 activations=activations,
@@ -125,18 +104,16 @@ class _Design:
                 trees=tuple(plan.trees.routes),
                 score=plan.score,
             ),
-            constraints=self.constraints,
-            options=self.options,
             tried=len(built),
             seconds=time.process_time() - began,
         )
 
-    def _build_all(self, plans: Iterable["_Plan"]) -> list[tuple["_Plan", Robot]]:
+    def _build_all(self, plans: Iterable["_TreePlan"]) -> list[tuple["_TreePlan", Robot]]:
         """The first of the plans that can be built, with their robots."""
         robots = ((plan, self._build(plan.trees, plan.chosen)) for plan in plans)
         return list(islice(((plan, robot) for plan, robot in robots if robot), self.options.trials))
 
-    def _plans(self, activations: tuple[Activation, ...]) -> list[list["_Plan"]]:
+    def _plans(self, activations: tuple[Activation, ...]) -> list[list["_TreePlan"]]:
         """For each threshold, distance and phi, a plan for every share of cables among winches."""
         groups = []
         shares = list(islice(_shares(self.cables, self.winches), self.options.shares))
@@ -149,17 +126,17 @@ class _Design:
             posed = [activation.nodes for activation in activations]
             trees = WinchTrees(self.mesh, routes, posed, self.region, self.constraints, self.options)
             for phi in self.options.phis:
-                plans = (_Plan(candidates, trees, self._plant(trees, share, phi)) for share in shares)
+                plans = (_TreePlan(candidates, trees, self._plant(trees, share, phi)) for share in shares)
                 groups.append([plan for plan in plans if len(plan.chosen) == self.winches])
         self.progress("Growing winch trees", len(variants), len(variants))
         return groups
 
     def _activations(self) -> tuple[Activation, ...]:
         found = []
-        for index, pose in enumerate(self.poses):
-            self.progress("Activating muscles", index, len(self.poses))
+        for index, pose in enumerate(self.request.poses):
+            self.progress("Activating muscles", index, len(self.request.poses))
             found.append(self._activation(pose))
-        self.progress("Activating muscles", len(self.poses), len(self.poses))
+        self.progress("Activating muscles", len(self.request.poses), len(self.request.poses))
         return tuple(found)
 
     def _activation(self, pose: Pose) -> Activation:
@@ -250,13 +227,13 @@ def _shares(cables: int, winches: int) -> Iterator[tuple[int, ...]]:
     yield from sorted({*shares, even}, key=lambda share: (max(share) - min(share), [-count for count in share]))
 
 
-def _shortlist(groups: list[list["_Plan"]]) -> list["_Plan"]:
+def _shortlist(groups: list[list["_TreePlan"]]) -> list["_TreePlan"]:
     """The best plan of every group, then every second best, and so on; each network once.
 
     Scores of one group compare, those of different phi do not.
     """
     ranked = [sorted(group, key=lambda plan: -plan.score) for group in groups]
-    plans: dict[object, _Plan] = {}
+    plans: dict[object, _TreePlan] = {}
     for rank in range(max(map(len, ranked), default=0)):
         for group in ranked:
             if rank < len(group):

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design import Stage, design_cables
+from hydrostat.design import DesignRequest, Stage, find_network
 from hydrostat.design.network import rms_error
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Pose, Robot, Winch
-from hydrostat.studio.designing.run import Asked
 from hydrostat.studio.jobs import Report
 from hydrostat.units import counted
 
@@ -148,7 +147,7 @@ class Glimpse:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Found:
+class DesignsFound:
     """What a search has found.
 
     Attributes:
@@ -162,28 +161,18 @@ class Found:
     complete: bool
 
 
-def design_work(report: Report, asked: Asked) -> Found:
+def design_work(report: Report, robot: Robot, request: DesignRequest) -> DesignsFound:
     """Search, tell of each better network, and return what there is; interrupted, the best so far."""
 
     def watch(stage: Stage) -> None:
-        robot = stage.robot
-        report.part(Glimpse(winches=robot.winches, cables=robot.cables, error=stage.error, words=stage.words))
+        found = stage.robot
+        report.part(Glimpse(winches=found.winches, cables=found.cables, error=stage.error, words=stage.words))
 
-    network = design_cables(
-        asked.robot,
-        asked.poses,
-        winches=asked.winches,
-        cables=asked.cables,
-        constraints=asked.constraints,
-        options=asked.options,
-        improve=asked.improve,
-        progress=report.progress,
-        watch=watch,
-    )
+    network = find_network(robot, request, progress=report.progress, watch=watch)
     report.finish()
     others = [(other.robot, other.reached) for other in network.alternatives]
     solutions = _each_once([(network.robot, network.reached), *others])
-    return Found(solutions=solutions, tried=network.tried, complete=network.complete)
+    return DesignsFound(solutions=solutions, tried=network.tried, complete=network.complete)
 
 
 def _each_once(networks: Iterable[tuple[Robot, tuple[ReachedPose, ...]]]) -> tuple[Solution, ...]:

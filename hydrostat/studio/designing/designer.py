@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import RouteOptions
+from hydrostat.design import DesignRequest, RouteOptions
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.design_work import (
     Candidate,
-    Found,
+    DesignsFound,
     Glimpse,
     Reach,
     design_work,
@@ -23,7 +23,7 @@ from hydrostat.studio.designing.design_work import (
 )
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
-from hydrostat.studio.designing.run import Asked, Mark, Run, asked_for, beginning, error_at_rest, wished_poses
+from hydrostat.studio.designing.run import Mark, Run, beginning, error_at_rest, wished_poses, wished_request
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -111,7 +111,7 @@ class Designer(Stage):
     def trail(self) -> tuple[Mark, ...]:
         """Networks on the way of the last design, if it was for this body."""
         run = self.run
-        return run.trail if run is not None and run.asked.robot.body == self._document.robot.body else ()
+        return run.trail if run is not None and run.robot.body == self._document.robot.body else ()
 
     @property
     def candidate(self) -> Candidate | None:
@@ -165,16 +165,20 @@ class Designer(Stage):
             InputError: no pose, wishes that do not fit, or other work in progress.
         """
         robot = self._document.robot
-        asked = asked_for(robot, self.wishes, self._options)
+        request = wished_request(robot, self.wishes, self._options)
         before = self.run, self._running, self.outcome
         self.run = Run(
-            asked=asked, began=time.monotonic(), rest=error_at_rest(robot, asked.poses), best=beginning(asked)
+            robot=robot,
+            request=request,
+            began=time.monotonic(),
+            rest=error_at_rest(robot, request.poses),
+            best=beginning(robot, request),
         )
         self._running, self.outcome = True, ""
-        ended = partial(self._ended, asked)
+        ended = partial(self._ended, request)
         calls: dict[str, Any] = {"on_part": self._glimpsed, "on_done": self._found, "on_end": ended}
         try:
-            self._jobs.start(TITLE, design_work, asked, **calls)
+            self._jobs.start(TITLE, design_work, robot, request, **calls)
         except InputError:
             self.run, self._running, self.outcome = before
             raise
@@ -299,7 +303,7 @@ class Designer(Stage):
         run = self.run
         if run is None:
             return
-        best = run.asked.robot.with_network(glimpse.winches, glimpse.cables)
+        best = run.robot.with_network(glimpse.winches, glimpse.cables)
         mark = Mark(
             seconds=time.monotonic() - run.began,
             error=glimpse.error,
@@ -309,12 +313,12 @@ class Designer(Stage):
         self.run = replace(run, best=best, words=glimpse.words, trail=(*run.trail, mark))
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
 
-    def _found(self, found: Found) -> None:
+    def _found(self, found: DesignsFound) -> None:
         """The design has ended; called in a thread of the jobs."""
         run = self.run
         if run is None:
             return
-        source, made = run.asked.robot, []
+        source, made = run.robot, []
         for place, solution in enumerate(found.solutions):
             self._numbered += 1
             made.append(
@@ -338,9 +342,9 @@ class Designer(Stage):
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
 
-    def _ended(self, asked: Asked, error: str) -> None:
+    def _ended(self, request: DesignRequest, error: str) -> None:
         """Called in a thread of the jobs, whatever came of it."""
-        if self.run is None or self.run.asked is not asked:
+        if self.run is None or self.run.request is not request:
             return  # the next design has begun
         if error:
             self.outcome = "stopped before there was a network" if error == "stopped" else error

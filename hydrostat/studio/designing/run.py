@@ -4,58 +4,33 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hydrostat.design import Constraints, RouteOptions
+from hydrostat.design import AUTO, Constraints, DesignRequest, RouteOptions
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Asked:
-    """All that a design begins with.
-
-    Attributes:
-        robot: to design for.
-        poses: to reach.
-        winches: how many, or "auto".
-        cables: how many in all.
-        constraints: to keep.
-        options: of the search.
-        improve: whether to begin with the robot's own network.
-    """
-
-    robot: Robot
-    poses: tuple[Pose, ...]
-    winches: int | str
-    cables: int
-    constraints: Constraints
-    options: RouteOptions
-    improve: bool
-
-
-def asked_for(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> Asked:
+def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:
     """What a person's wishes for a robot ask of a design.
 
     Args:
         robot: to design for.
         wishes: of the person.
-        options: of the search; but for the tolerance, which is wished for.
+        options: of the search; if left out its usual ones, with the tolerance that is wished for.
 
     Raises:
         InputError: no pose, or wishes that do not fit the robot.
     """
-    constraints = wished_constraints(robot, wishes)
-    constraints.check(robot)
-    given = options or RouteOptions(tolerance=wishes.tolerance)
-    return Asked(
-        robot=robot,
+    request = DesignRequest(
         poses=wished_poses(robot, wishes),
-        winches=wishes.winches or "auto",
+        winches=wishes.winches or AUTO,
         cables=wishes.cables,
-        constraints=constraints,
-        options=given,
+        constraints=wished_constraints(robot, wishes),
+        options=options or RouteOptions(tolerance=wishes.tolerance),
         improve=wishes.improve,
     )
+    request.fitted(robot)  # what does not fit is told at once
+    return request
 
 
 def wished_poses(robot: Robot, wishes: Wishes) -> tuple[Pose, ...]:
@@ -116,7 +91,8 @@ class Run:
     """How far a design is.
 
     Attributes:
-        asked: what it began with.
+        robot: that is designed for.
+        request: what was asked.
         began: when, on a clock that only runs forward [s].
         rest: error if nothing moved [m].
         best: the robot with the best network so far; with what stays of its own before the first.
@@ -124,7 +100,8 @@ class Run:
         trail: of the best network, in time.
     """
 
-    asked: Asked
+    robot: Robot
+    request: DesignRequest
     began: float
     rest: float
     best: Robot
@@ -132,10 +109,10 @@ class Run:
     trail: tuple[Mark, ...] = field(default=())
 
 
-def beginning(asked: Asked) -> Robot:
+def beginning(robot: Robot, request: DesignRequest) -> Robot:
     """The robot with what a search begins with: its own network if that is improved, else what is kept of it."""
-    robot, limits = asked.robot, asked.constraints
-    if asked.improve:
+    limits = request.constraints
+    if request.improve:
         return robot
     cables = [robot.cables[number] for number in limits.locked_cables]
     kept = {*limits.locked_winches, *(cable.winch for cable in cables)}

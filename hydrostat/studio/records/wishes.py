@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
-from math import isfinite
 
-from hydrostat.design import Zone
+from hydrostat.design import Constraints, DesignRequest, Zone
+from hydrostat.design.constraints import RANGES
+from hydrostat.design.request import COUNTS, ROUTE_RANGES
 from hydrostat.errors import InputError
 
 
@@ -41,16 +42,16 @@ class Wishes:
         InputError: a number out of its range.
     """
 
-    winches: int = 2
-    cables: int = 6
+    winches: int = int(DesignRequest.winches)
+    cables: int = DesignRequest.cables
     poses: tuple[str, ...] = ()
     zones: tuple[tuple[Paint, Zone], ...] = ()
     mirror: str | None = None
-    tension: float = 20.0
-    clearance: float = 0.005
+    tension: float = Constraints.tension
+    clearance: float = Constraints.clearance
     tolerance: float | None = None
-    cables_per_winch: int = 6
-    slack: float = 0.0
+    cables_per_winch: int = Constraints.cables_per_winch
+    slack: float = Constraints.slack
     stepped: bool = False
     torque: float | None = None
     improve: bool = False
@@ -58,31 +59,28 @@ class Wishes:
     kept_cables: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
-        for name, (least, most) in COUNTS.items():
-            if not least <= getattr(self, name) <= most:
-                raise InputError(f"{_said(name)} must be from {least} to {most}, not {getattr(self, name)}")
-        for name, (most, scale, unit) in AMOUNTS.items():
-            value: float | None = getattr(self, name)
-            if value is None:
-                continue
-            least = "at least" if name == "slack" else "above"
-            if not (isfinite(value) and 0 <= value <= most) or (value == 0 and name != "slack"):
-                raise InputError(
-                    f"{_said(name)} must be {least} 0 and at most {scale * most:g} {unit}, not {scale * value:g} {unit}"
-                )
+        if self.winches != 0 and not COUNTS["winches"].holds(self.winches):
+            raise InputError(f"winches must be {COUNTS['winches']}, or 0 for as few as will do, not {self.winches}")
+        for name, allowed in _COUNTED.items():
+            if not allowed.holds(getattr(self, name)):
+                raise InputError(f"{_said(name)} must be {allowed}, not {getattr(self, name)}")
+        for name, (allowed, scale, unit) in _AMOUNTS.items():
+            value = getattr(self, name)
+            if not allowed.holds(value):
+                words = allowed.words(scale, unit)
+                raise InputError(f"{_said(name)} must be {words}, not {scale * value:g} {unit}")
 
 
-COUNTS = {"winches": (0, 20), "cables": (1, 60), "cables_per_winch": (1, 60)}
-"""Least and most of each count."""
+_COUNTED = {"cables": COUNTS["cables"], "cables_per_winch": RANGES["cables_per_winch"]}
 
-AMOUNTS = {
-    "tension": (1000.0, 1.0, "N"),
-    "clearance": (1.0, 1e3, "mm"),
-    "tolerance": (1.0, 1e3, "mm"),
-    "slack": (1.0, 1e3, "mm"),
-    "torque": (100.0, 1.0, "N m"),
+_AMOUNTS = {
+    "tension": (RANGES["tension"], 1.0, "N"),
+    "clearance": (RANGES["clearance"], 1e3, "mm"),
+    "tolerance": (ROUTE_RANGES["tolerance"], 1e3, "mm"),
+    "slack": (RANGES["slack"], 1e3, "mm"),
+    "torque": (RANGES["torque"], 1.0, "N m"),
 }
-"""Most of each amount, and the unit in which it is told."""
+"""What each amount may be, and the unit in which it is told."""
 
 
 def _said(name: str) -> str:

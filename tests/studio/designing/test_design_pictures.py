@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from builders import box_robot, strip_robot
 
-from hydrostat.design import Constraints, RouteOptions
+from hydrostat.design import DesignRequest
 from hydrostat.studio.designing.charts import Chart, front, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.ease import DURATION, Ease
-from hydrostat.studio.designing.run import Asked, Mark, Run
+from hydrostat.studio.designing.run import Mark, Run
 from hydrostat.studio.designing.sketch import EDGE, MARGIN, BodySketch
 
 
@@ -72,10 +72,8 @@ def marks(*errors: float) -> tuple[Mark, ...]:
 
 def run(*errors: float) -> Run:
     robot = strip_robot(columns=10, rows=3)
-    asked = Asked(
-        robot=robot, poses=(), winches=1, cables=2, constraints=Constraints(), options=RouteOptions(), improve=False
-    )
-    return Run(asked=asked, began=0.0, rest=0.02, best=robot, trail=marks(*errors))
+    request = DesignRequest(poses=(Pose(name="up", targets={}),), winches=1, cables=2)
+    return Run(robot=robot, request=request, began=0.0, rest=0.02, best=robot, trail=marks(*errors))
 
 
 def test_the_error_falls_in_steps_from_rest_to_now() -> None:

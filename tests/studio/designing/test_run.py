@@ -8,7 +8,7 @@ from builders import gallery_robot
 from hydrostat.design import Constraints, RouteOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.studio.designing.run import asked_for, beginning, wished_constraints, wished_poses
+from hydrostat.studio.designing.run import beginning, wished_constraints, wished_poses, wished_request
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 
@@ -56,26 +56,26 @@ def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
 
 
 def test_as_few_winches_as_will_do(starfish: Robot) -> None:
-    asked = asked_for(starfish, Wishes(winches=0, cables=4, tolerance=0.003, improve=True))
+    asked = wished_request(starfish, Wishes(winches=0, cables=4, tolerance=0.003, improve=True))
     assert (asked.winches, asked.cables, asked.improve) == ("auto", 4, True)
     assert asked.options == RouteOptions(tolerance=0.003)
-    assert asked_for(starfish, Wishes(winches=3)).winches == 3
+    assert wished_request(starfish, Wishes(winches=3)).winches == 3
 
 
 def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
     far = Wishes(zones=((Paint.KEEP_OUT, Zone(at=(9.0, 9.0), radius=0.01)),))
     with pytest.raises(InputError, match="does not touch the body"):
-        asked_for(starfish, far)
+        wished_request(starfish, far)
     with pytest.raises(InputError, match="mirror"):
-        asked_for(starfish, replace(far, zones=(), mirror="z"))
+        wished_request(starfish, replace(far, zones=(), mirror="z"))
 
 
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"winches": -1}, "winches must be from 0 to 20, not -1"),
-        ({"cables": 61}, "cables must be from 1 to 60, not 61"),
-        ({"cables_per_winch": 0}, "cables per winch must be from 1 to 60, not 0"),
+        ({"winches": -1}, "winches must be a whole number from 1 to 20, or 0 for as few as will do, not -1"),
+        ({"cables": 61}, "cables must be a whole number from 1 to 60, not 61"),
+        ({"cables_per_winch": 0}, "cables per winch must be a whole number from 1 to 60, not 0"),
         ({"tension": 0.0}, "tension must be above 0 and at most 1000 N, not 0 N"),
         ({"clearance": -0.001}, "clearance must be above 0 and at most 1000 mm, not -1 mm"),
         ({"tolerance": float("inf")}, "tolerance must be above 0 and at most 1000 mm, not inf mm"),
@@ -93,7 +93,7 @@ def test_a_search_begins_with_what_stays(starfish: Robot) -> None:
     """Oracle: the names and numbers that were wished for."""
 
     def begun(**wishes: object) -> Robot:
-        return beginning(asked_for(starfish, Wishes(**wishes)))  # type: ignore[arg-type]
+        return beginning(starfish, wished_request(starfish, Wishes(**wishes)))  # type: ignore[arg-type]
 
     assert (begun().winches, begun().cables) == ((), ())
     assert begun(improve=True) is starfish

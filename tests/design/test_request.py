@@ -1,0 +1,92 @@
+"""What a design is asked. Oracles: the fields of the records; the same typed, wished for, and written in Python."""
+
+import json
+from dataclasses import fields, replace
+from typing import Any
+
+import pytest
+from builders import strip_robot
+
+from hydrostat.cli.design_wishes import TypedLimits, TypedRequest, asked_of
+from hydrostat.design import Constraints, DesignMethod, DesignRequest, FibreKind, RouteOptions, TreeOptions
+from hydrostat.design.constraints import RANGES, Range
+from hydrostat.design.request import COUNTS, ROUTE_RANGES
+from hydrostat.errors import InputError
+from hydrostat.robot import Pose, Robot
+from hydrostat.studio.designing.run import wished_request
+from hydrostat.studio.records.wishes import Wishes
+
+UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
+
+
+def robot() -> Robot:
+    return replace(strip_robot(), poses={"up": UP})
+
+
+def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: None) -> None:
+    usual = DesignRequest(poses=(UP,))
+    assert asked_of(robot(), TypedRequest()) == usual
+    assert wished_request(robot(), Wishes()) == usual
+    assert (usual.winches, usual.cables, usual.options) == (2, 6, RouteOptions())
+    assert DesignRequest(poses=(UP,), method=DesignMethod.TREES).options == TreeOptions()
+
+
+def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
+    limits = TypedLimits(tension="12 N", clearance="4 mm", slack="3 mm", stepped=True, lock_winch=("up",))
+    typed = TypedRequest(winches="auto", cables=4, tolerance="2 mm", limits=limits)
+    lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
+    wishes = Wishes(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)  # type: ignore[arg-type]
+    assert asked_of(robot(), typed) == wished_request(robot(), wishes)
+
+
+def test_every_number_has_its_range() -> None:
+    """And its default lies in it."""
+    asked = DesignRequest(poses=(UP,))
+    for ranges, record in ((RANGES, Constraints()), (ROUTE_RANGES, RouteOptions()), (COUNTS, asked)):
+        assert all(allowed.holds(getattr(record, name)) for name, allowed in ranges.items())
+    numbers = {name for name, value in vars(Constraints()).items() if type(value) in (int, float)}
+    assert set(RANGES) == {*numbers, "longest", "torque"}
+    assert set(ROUTE_RANGES) == {field.name for field in fields(RouteOptions)}
+
+
+@pytest.mark.parametrize(
+    ("allowed", "inside", "outside", "words"),
+    [
+        (Range(whole=True, least=1, most=20), (1, 20), (0, 21, 1.5, True, None), "a whole number from 1 to 20"),
+        (Range(above=True, most=1.0, unit="m"), (1e-9, 1), (0.0, 1.1, None, "1"), "above 0 and at most 1 m"),
+        (Range(unit="m"), (0, 9e9), (-1e-9, float("inf"), float("nan")), "finite and at least 0 m"),
+        (Range(whole=True), (0, 9), (-1, 0.0), "a whole number, at least 0"),
+        (Range(optional=True), (None, 1.0), (-1.0,), "finite and at least 0"),
+    ],
+)
+def test_ranges(allowed: Range, inside: tuple[Any, ...], outside: tuple[Any, ...], words: str) -> None:
+    assert [allowed.holds(value) for value in inside] == [True] * len(inside)
+    assert [allowed.holds(value) for value in outside] == [False] * len(outside)
+    assert str(allowed) == words
+
+
+def test_a_range_in_another_unit() -> None:
+    assert Range(above=True, most=1.0, unit="m").words(1e3, "mm") == "above 0 and at most 1000 mm"
+
+
+def test_methods_and_muscles_are_of_closed_sets(unchecked: None) -> None:
+    assert DesignRequest(poses=(UP,), method="trees").method is DesignMethod.TREES  # type: ignore[arg-type]
+    assert TreeOptions(fibres="elements").fibres is FibreKind.ELEMENTS  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r'^fibres = "hairs": must be one of edges, elements$'):
+        TreeOptions(fibres="hairs")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r'^method = "magic": must be one of routes, trees$'):
+        DesignRequest(poses=(UP,), method="magic")  # type: ignore[arg-type]
+
+
+def test_the_request_as_values(unchecked: None) -> None:
+    values = json.loads(json.dumps(DesignRequest(poses=(UP,), winches="auto").as_values()))
+    assert (values["poses"], values["winches"], values["cables"], values["method"]) == (["up"], "auto", 6, "routes")
+    assert values["options"]["hops"] == RouteOptions().hops
+    assert values["constraints"]["tension"] == Constraints().tension
+
+
+def test_improving_allows_what_the_robot_has(unchecked: None) -> None:
+    own = strip_robot()
+    request = DesignRequest(poses=(UP,), improve=True, constraints=Constraints(travel=0.001)).fitted(own)
+    assert request.constraints.travel == max(winch.travel for winch in own.winches)
+    assert DesignRequest(poses=(UP,)).fitted(own) == DesignRequest(poses=(UP,))
