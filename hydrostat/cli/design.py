@@ -68,7 +68,8 @@ def design(
         list[str] | None, typer.Option(metavar="NAME", help="A winch of the robot that stays; may be repeated.")
     ] = None,
     lock_cable: Annotated[
-        list[int] | None, typer.Option(metavar="N", help="A cable that stays, numbered from 1; may be repeated.")
+        list[str] | None,
+        typer.Option(metavar="NAME", help="A cable that stays, by its name or its number from 1; may be repeated."),
     ] = None,
     improve: Annotated[bool, typer.Option("--improve", help="Begin with the robot's own network.")] = False,
     tolerance: Annotated[
@@ -86,8 +87,8 @@ def design(
 
     Writes a robot folder, report.html with pictures of every stage, score.json, and the alternatives as robot folders.
     Ctrl-C ends the search and keeps the best network so far. A file of constraints has lines such as
-    clearance = "4 mm", tension = "15 N", locked_cables = [1], and tables [[keep_out]], [[still]] and [[winch_zone]]
-    with at and radius, box, or outline.
+    clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]], [[still]] and
+    [[winch_zone]] with at and radius, box, or outline.
 
     Example: hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """

@@ -110,10 +110,8 @@ def _words(name: str, value: Any) -> str:
     """The value of one constraint with its unit; nothing if it asks nothing."""
     if isinstance(value, bool):
         return "allowed" if value else "not allowed"
-    if name == "locked_cables":
-        return ", ".join(str(number + 1) for number in value)
     if isinstance(value, tuple):
-        return ", ".join(value) if name == "locked_winches" else str(len(value) or "")
+        return ", ".join(value) if name.startswith("locked") else str(len(value) or "")
     if isinstance(value, float):
         factor, unit = _UNITS.get(name, (1e3, " mm"))
         return f"{factor * value:g}{unit}"

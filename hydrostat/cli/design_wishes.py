@@ -24,7 +24,7 @@ class TypedLimits:
     stepped: bool = False
     symmetric: str | None = None
     lock_winch: tuple[str, ...] = ()
-    lock_cable: tuple[int, ...] = ()
+    lock_cable: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +119,7 @@ def _given(limits: TypedLimits, robot: "Robot") -> dict[str, Any]:
     if limits.lock_winch:
         given["locked_winches"] = tuple(dict.fromkeys(_winch(name, robot) for name in limits.lock_winch))
     if limits.lock_cable:
-        given["locked_cables"] = tuple(dict.fromkeys(_cable(number, robot) for number in limits.lock_cable))
+        given["locked_cables"] = tuple(dict.fromkeys(_cable(name, robot) for name in limits.lock_cable))
     return given
 
 
@@ -130,10 +130,10 @@ def _winch(name: str, robot: "Robot") -> str:
         raise InputError(f"--lock-winch {name}: {error}") from None
 
 
-def _cable(number: int, robot: "Robot") -> int:
-    from hydrostat.design.constraints_file import cable_index
+def _cable(name: str, robot: "Robot") -> str:
+    from hydrostat.design.constraints_file import cable_name
 
     try:
-        return cable_index(number, robot)
+        return cable_name(name, robot)
     except InputError as error:
-        raise InputError(f"--lock-cable {error}") from None
+        raise InputError(f"--lock-cable {name}: {error}") from None

@@ -13,7 +13,7 @@ from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot
 
 
-def violations(robot: Robot, constraints: Constraints, region: Region, *, source: Robot | None = None) -> list[str]:
+def violations(robot: Robot, constraints: Constraints, region: Region) -> list[str]:
     """What about a network cannot be built: a sentence for each place where a constraint is broken.
 
     Lengths may miss a limit by 0.02 mm and angles by 0.1 degrees, for coordinates are rounded to 0.01 mm. What is
@@ -32,13 +32,11 @@ def violations(robot: Robot, constraints: Constraints, region: Region, *, source
         robot: with the network.
         constraints: that it should keep.
         region: of its body, `body_region(robot.body, constraints.clearance)`.
-        source: the robot that the network was designed for, whose cables `locked_cables` counts; the robot itself if
-            left out.
 
     Returns:
         Sentences that name the part, its value and the limit; none for a network that can be built.
     """
-    parts = Parts(robot, constraints, region, source or robot)
+    parts = Parts(robot, constraints, region)
     return [
         *winch_violations(parts),
         *clearance_violations(parts),

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, isfinite
 from numbers import Integral, Real
-from typing import NoReturn, TypeGuard
+from typing import NoReturn
 
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Cable, Mount, Robot, Winch
 from hydrostat.robot.robot import LARGEST_STEP
 
 
@@ -85,7 +85,7 @@ class Constraints:
         mirror: axis whose sign a left-right symmetric network does not feel: "x", "y" or "z"; None: no symmetry. The
             mirror is the plane where that coordinate is 0, the middle of what was drawn.
         locked_winches: names of the robot's own winches that stay.
-        locked_cables: numbers of the robot's own cables that stay as they are, and their winches with them.
+        locked_cables: names of the robot's own cables that stay as they are, and their winches with them.
 
     Raises:
         InputError: a value of the wrong kind or out of its range.
@@ -113,7 +113,7 @@ class Constraints:
     leads: bool = True
     mirror: str | None = None
     locked_winches: tuple[str, ...] = ()
-    locked_cables: tuple[int, ...] = ()
+    locked_cables: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for field in ("winch_zones", "keep_out", "still", "locked_winches", "locked_cables"):
@@ -145,6 +145,12 @@ class Constraints:
         arm = self.spool_radius * self.spool_ratio
         return min(self.tension, self.torque / (arm * self.cables_per_winch))
 
+    def staying(self, robot: Robot) -> tuple[tuple[Winch, ...], tuple[Cable, ...]]:
+        """Winches and cables of a robot that stay: those that are locked, and the winches of locked cables."""
+        cables = tuple(cable for cable in robot.cables if cable.name in self.locked_cables)
+        names = {*self.locked_winches, *(cable.winch for cable in cables)}
+        return tuple(winch for winch in robot.winches if winch.name in names), cables
+
     def check(self, robot: Robot) -> None:
         """Refuse a robot that these constraints do not fit.
 
@@ -165,17 +171,12 @@ class Constraints:
                         f"constraints: {field}[{place}] does not touch the body, so it would change nothing; "
                         "check its place and its unit"
                     )
-        for place, name in enumerate(self.locked_winches):
-            try:
-                robot.winch(name)
-            except InputError as error:
-                raise InputError(f"constraints: locked_winches[{place}]: {error}") from None
-        for place, number in enumerate(self.locked_cables):
-            if number >= len(robot.cables):
-                known = f"from 0 to {len(robot.cables) - 1}" if robot.cables else "none"
-                raise InputError(
-                    f"constraints: locked_cables[{place}] = {number}: the robot has no such cable; its numbers: {known}"
-                )
+        for field, part in (("locked_winches", robot.winch), ("locked_cables", robot.cable)):
+            for place, name in enumerate(getattr(self, field)):
+                try:
+                    part(name)
+                except InputError as error:
+                    raise InputError(f"constraints: {field}[{place}]: {error}") from None
         if self.mount is Mount.WORLD and not robot.winches:
             raise InputError(
                 'constraints: mount = "world": winches in the world stand at places of the robot\'s own winches, and '
@@ -203,17 +204,13 @@ class Constraints:
                 _refuse(field, value, f"{allowed}, or None" if allowed.optional else str(allowed))
 
     def _check_locks(self) -> None:
-        for place, name in enumerate(self.locked_winches):
-            if not isinstance(name, str):
-                _refuse(f"locked_winches[{place}]", name, "the name of a winch")
-        for place, number in enumerate(self.locked_cables):
-            if not (_is_count(number) and number >= 0):
-                _refuse(f"locked_cables[{place}]", number, "the number of a cable, 0 for the first")
-        for field in ("locked_winches", "locked_cables"):
-            values = getattr(self, field)
-            for value in values:
-                if values.count(value) > 1:
-                    raise InputError(f"constraints: {field} names {value!r} twice; name it once")
+        for field, kind in (("locked_winches", "winch"), ("locked_cables", "cable")):
+            names = getattr(self, field)
+            for place, name in enumerate(names):
+                if not isinstance(name, str):
+                    _refuse(f"{field}[{place}]", name, f"the name of a {kind}")
+                if names.count(name) > 1:
+                    raise InputError(f"constraints: {field} names {name!r} twice; name it once")
 
 
 _LENGTH = Range(above=True, unit="m")
@@ -240,10 +237,6 @@ RANGES = {
 
 _ASKEW = 0.02
 """Share of its width by which a body's two sides may lie unevenly about a mirror."""
-
-
-def _is_count(value: object) -> TypeGuard[int]:
-    return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def _several(field: str, given: object) -> tuple[object, ...]:

@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field, Strict
+from pydantic import BeforeValidator, Field, Strict
 
 from hydrostat import units
 from hydrostat.design.constraints import Constraints
@@ -17,6 +17,16 @@ from hydrostat.robot.tables_file import TablesFile, read_text
 
 Count = Annotated[int, Strict()]
 Choice = Annotated[bool, Strict()]
+
+
+def _part(value: object) -> object:
+    """A name, or a number, which counts from 1."""
+    if isinstance(value, bool) or not isinstance(value, int | str):
+        raise ValueError("neither a name nor a number that counts from 1")
+    return value
+
+
+Part = Annotated[int | str, BeforeValidator(_part)]
 
 
 class Axis(StrEnum):
@@ -61,7 +71,7 @@ class ConstraintsTable(TomlTable):
     leads: Choice | None = None
     mirror: Axis | None = None
     locked_winches: list[Name] | None = None
-    locked_cables: list[Count] | None = None
+    locked_cables: list[Part] | None = None
 
 
 ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "still": "still"}
@@ -72,7 +82,8 @@ def read_constraints(path: str | Path, robot: Robot) -> Constraints:
     """Constraints from a file; what it leaves out is as in `Constraints`.
 
     Keys are the fields of `Constraints`: quantities as text with their unit ("5 mm"), zones as tables [[winch_zone]],
-    [[keep_out]] and [[still]] in the length unit of the robot's file, numbers of cables from 1 as in the tables.
+    [[keep_out]] and [[still]] in the length unit of the robot's file, cables by their names, or by numbers that count
+    from 1.
 
     Args:
         path: of the file.
@@ -113,8 +124,8 @@ class _ConstraintsReader(TablesFile):
             given["mirror"] = str(self.table.mirror)
         given["locked_winches"] = tuple(self.table.locked_winches or ())
         given["locked_cables"] = tuple(
-            self.at(f"locked_cables[{place}]", partial(cable_index, number, self.robot))
-            for place, number in enumerate(self.table.locked_cables or ())
+            self.at(f"locked_cables[{place}]", partial(cable_name, name, self.robot))
+            for place, name in enumerate(self.table.locked_cables or ())
         )
         return self.at("", lambda: _fitting(given, self.robot))
 
@@ -131,17 +142,16 @@ class _ConstraintsReader(TablesFile):
         return zone
 
 
-def cable_index(number: int, robot: Robot) -> int:
-    """The index of a cable by its number, which counts from 1 as tables and pictures do.
+def cable_name(given: str | int, robot: Robot) -> str:
+    """The name of a cable, given that, or, where no cable has such a name, its number, which counts from 1.
 
     Raises:
         InputError: there is no such cable.
     """
-    count = len(robot.cables)
-    if not 1 <= number <= count:
-        known = f"its cables are numbered from 1 to {count}" if count else "it has no cables"
-        raise InputError(f"{number}: the robot has no such cable; {known}")
-    return number - 1
+    names, text = [cable.name for cable in robot.cables], str(given)
+    if text not in names and text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= len(names):
+        return names[int(text[:9]) - 1]
+    return robot.cable(text).name
 
 
 def _fitting(given: dict[str, Any], robot: Robot) -> Constraints:

@@ -64,6 +64,7 @@ def _winches(robot: Robot) -> list[dict[str, Any]]:
 def _cables(robot: Robot) -> list[dict[str, Any]]:
     return [
         {
+            "name": cable.name,
             "winch": cable.winch,
             "length": cable.length,
             "sheathed": float(cable.segments[~cable.bare].sum()),

@@ -1,7 +1,9 @@
 """`save_work`, `open_work`: a robot's folder as the studio keeps it: robot.toml and, beside it, studio.json."""
 
 import hashlib
+import json
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -49,8 +51,12 @@ def write_studio_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
     replace_file(folder / STUDIO_FILE, text.encode() + b"\n")
 
 
-def read_studio_file(folder: Path) -> StudioFile:
+def read_studio_file(folder: Path, cables: Sequence[str] = ()) -> StudioFile:
     """What the file says; nothing special if there is none.
+
+    Args:
+        folder: with the file.
+        cables: names of the robot's cables, for a file that numbers them.
 
     Raises:
         InputError: it cannot be read or says something else, in one line.
@@ -60,13 +66,27 @@ def read_studio_file(folder: Path) -> StudioFile:
         return StudioFile(timeline=Timeline(), wishes=Wishes())
     content = read_bytes(file, STUDIO_FILE, LARGEST)
     try:
-        return StudioFile.model_validate_json(content)
+        return StudioFile.model_validate_json(_with_names(content, cables))
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))[:80]
         raise InputError(units.printable(": ".join(filter(None, (STUDIO_FILE, place, first["msg"])))[:300])) from None
     except InputError as error:
         raise InputError(f"{STUDIO_FILE}: {error}") from None
+
+
+def _with_names(content: bytes, cables: Sequence[str]) -> bytes:
+    """A file from before cables had names, which numbers from 0 those that are kept, with their names."""
+    try:
+        read = json.loads(content)
+        kept = read["wishes"]["kept_cables"]
+        numbers = [one for one in kept if type(one) is int]
+    except (ValueError, TypeError, LookupError, RecursionError):
+        return content  # it is told what is wrong when it is looked at
+    if not numbers:
+        return content
+    read["wishes"]["kept_cables"] = [cables[one] for one in numbers if 0 <= one < len(cables)]
+    return json.dumps(read).encode()
 
 
 MOST_TOLD = 5
@@ -81,7 +101,7 @@ def open_work(folder: Path) -> Work:
     """
     robot = load_robot(folder)
     try:
-        kept = read_studio_file(_home(folder))
+        kept = read_studio_file(_home(folder), [cable.name for cable in robot.cables])
     except InputError:
         return Work(robot=robot)
     return Work(robot=robot, timeline=kept.timeline, wishes=kept.wishes)

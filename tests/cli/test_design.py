@@ -87,7 +87,7 @@ OPTIONS = {
     ("--stepped-spools",): {"constraints": replace(PLAIN, spool_ratio=2.0)},
     ("--symmetric", "y"): {"constraints": replace(PLAIN, mirror="y")},
     ("--lock-winch", "down", "--lock-winch", "up"): {"constraints": replace(PLAIN, locked_winches=("down", "up"))},
-    ("--lock-cable", "2", "--lock-cable", "2"): {"constraints": replace(PLAIN, locked_cables=(1,))},
+    ("--lock-cable", "2", "--lock-cable", "down 1"): {"constraints": replace(PLAIN, locked_cables=("down 1",))},
 }
 
 
@@ -109,13 +109,15 @@ def test_options_come_before_the_file(run: Run, strip: Path, search: Search, no_
     assert run("design", strip, *options, "--out", tmp_path / "out")[0] == 0
     zone = Zone(at=(0.05, 0.0), radius=0.005)
     assert search.asked is not None
-    assert search.asked.constraints == Constraints(clearance=0.004, tension=12.0, locked_cables=(1,), keep_out=(zone,))
+    assert search.asked.constraints == Constraints(
+        clearance=0.004, tension=12.0, locked_cables=("down 1",), keep_out=(zone,)
+    )
     card = json.loads((tmp_path / "out" / "score.json").read_text())
     kept = card["request"]["constraints"]
     assert kept["keep_out"] == [{"at": [0.05, 0.0], "radius": 0.005, "box": None, "outline": []}]
     assert kept["tension"] == 12.0
     told = (tmp_path / "out" / "report.html").read_text()
-    for words in ("'clearance': '4 mm'", "'tension': '12 N'", "'keep out': '1'", "'locked cables': '2'"):
+    for words in ("'clearance': '4 mm'", "'tension': '12 N'", "'keep out': '1'", "'locked cables': 'down 1'"):
         assert words in told
     assert "still" not in told
 
@@ -235,7 +237,7 @@ BAD = {
     ("--symmetric", "x"): 'constraints: mirror = "x": the body must lie evenly about x = 0, not from 0 to 200 mm; '
     "move it there, or set mirror to None",
     ("--lock-winch", "bob"): '--lock-winch bob: there is no winch "bob"; its winches are: up, down',
-    ("--lock-cable", "3"): "--lock-cable 3: the robot has no such cable; its cables are numbered from 1 to 2",
+    ("--lock-cable", "3"): '--lock-cable 3: there is no cable "3"; its cables are: up 1, down 1',
     ("--constraints", "none.toml"): "none.toml: there is no such file",
     ("--pose", "dance"): 'there is no pose "dance"; its poses are: up',
 }

@@ -39,7 +39,7 @@ BAD: dict[str, tuple[Any, ...]] = {
     "leads": (1, None, "yes"),
     "mirror": ("w", "X", 0, "left"),
     "locked_winches": ("left", (1,), ("left", "left"), 3),
-    "locked_cables": ((-1,), (0.0,), ("0",), (True,), (2, 2), 0),
+    "locked_cables": ("left 1", (1,), (True,), ("left 1", "left 1"), 0),
 }
 
 GOOD: dict[str, tuple[Any, ...]] = {
@@ -56,7 +56,7 @@ GOOD: dict[str, tuple[Any, ...]] = {
     "spool_ratio": (1, 4.0),
     "mirror": (None, "x", "y", "z"),
     "locked_winches": ((), ["left", "right"]),
-    "locked_cables": ((), [0, np.int64(2)]),
+    "locked_cables": ((), ["left 1", "right 1"]),
 }
 
 
@@ -109,7 +109,7 @@ def test_constraints_that_fit() -> None:
         keep_out=(DISC,),
         mirror="y",
         locked_winches=("up",),
-        locked_cables=(0, 1),
+        locked_cables=("up 1", "down 1"),
         mount=Mount.WORLD,
     )
     limits.check(strip_robot())
@@ -125,9 +125,16 @@ def test_zones_have_the_dimensions_of_the_body(field: str) -> None:
 def test_what_is_locked_must_be_there() -> None:
     told = misfit({"locked_winches": ("up", "left")})
     assert told == 'constraints: locked_winches[1]: there is no winch "left"; its winches are: up, down'
-    told = misfit({"locked_cables": (1, 2)})
-    assert told == "constraints: locked_cables[1] = 2: the robot has no such cable; its numbers: from 0 to 1"
-    assert misfit({"locked_cables": (0,)}, bare=True).endswith("its numbers: none")
+    told = misfit({"locked_cables": ("up 1", "up 2")})
+    assert told == 'constraints: locked_cables[1]: there is no cable "up 2"; its cables are: up 1, down 1'
+    assert 'no cable "up 1"' in misfit({"locked_cables": ("up 1",)}, bare=True)
+
+
+def test_what_stays_is_what_is_locked_and_its_winches() -> None:
+    robot = strip_robot()
+    assert Constraints().staying(robot) == ((), ())
+    assert Constraints(locked_winches=("down",)).staying(robot) == (robot.winches[1:], ())
+    assert Constraints(locked_cables=("up 1",)).staying(robot) == (robot.winches[:1], robot.cables[:1])
 
 
 def test_winches_in_the_world_need_places() -> None:

@@ -7,7 +7,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.design import Constraints, Zone
-from hydrostat.design.constraints_file import ZONES, ConstraintsTable, read_constraints
+from hydrostat.design.constraints_file import ZONES, ConstraintsTable, cable_name, read_constraints
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount
 
@@ -31,7 +31,7 @@ spool_ratio = 2.5
 leads = false
 mirror = "y"
 locked_winches = ["down"]
-locked_cables = [2]
+locked_cables = ["down 1"]
 
 [[winch_zone]]
 box = [[0, -20], [40, 20]]
@@ -74,7 +74,7 @@ MADE = Constraints(
     leads=False,
     mirror="y",
     locked_winches=("down",),
-    locked_cables=(1,),
+    locked_cables=("down 1",),
 )
 
 
@@ -116,10 +116,10 @@ ERRORS = {
     "leads = 1": "line 1: leads: 1 is neither true nor false",
     "cables_per_winch = 2.5": "line 1: cables_per_winch: 2.5 is not a whole number; "
     "write for example cables_per_winch = 4",
-    "locked_cables = [1, 3]": "line 1: locked_cables[1]: 3: the robot has no such cable; "
-    "its cables are numbered from 1 to 2",
-    "locked_cables = [0]": "line 1: locked_cables[0]: 0: the robot has no such cable; "
-    "its cables are numbered from 1 to 2",
+    "locked_cables = [1, 3]": 'line 1: locked_cables[1]: there is no cable "3"; its cables are: up 1, down 1',
+    "locked_cables = [0]": 'line 1: locked_cables[0]: there is no cable "0"; its cables are: up 1, down 1',
+    'locked_cables = ["up"]': 'line 1: locked_cables[0]: there is no cable "up"; its cables are: up 1, down 1',
+    "locked_cables = [true]": "line 1: locked_cables[0]: neither a name nor a number that counts from 1",
     'locked_winches = "up"': 'line 1: locked_winches: "up" is not a list; write for example locked_winches = ["left"]',
     'locked_winches = ["bob"]': 'line 1: locked_winches[0]: there is no winch "bob"; its winches are: up, down',
     "[[keep_out]]\nat = [1, 2]": "line 1: keep_out[0]: a zone about a point needs both at and radius; "
@@ -148,8 +148,20 @@ def test_what_is_wrong_is_one_line(text: str, file: Path) -> None:
 
 def test_a_robot_without_cables_has_none_to_lock(file: Path) -> None:
     file.write_text("locked_cables = [1]")
-    with pytest.raises(InputError, match="the robot has no such cable; it has no cables"):
+    with pytest.raises(InputError, match="there is no cable"):
         read_constraints(file, strip_robot().with_network((), ()))
+
+
+def test_cables_by_name_or_by_number_from_1(file: Path) -> None:
+    """A name comes first: a cable may be called "1"."""
+    robot = strip_robot()
+    file.write_text('locked_cables = [2, "up 1"]')
+    assert read_constraints(file, robot).locked_cables == ("down 1", "up 1")
+    one, two = robot.cables
+    renamed = robot.with_network(robot.winches, [one, replace(two, name="1")])
+    assert [cable_name(given, renamed) for given in ("1", 1, "2", "up 1")] == ["1", "1", "1", "up 1"]
+    with pytest.raises(InputError, match='no cable "3"'):
+        cable_name("3", renamed)
 
 
 def test_no_such_file(file: Path) -> None:

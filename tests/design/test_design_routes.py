@@ -86,11 +86,11 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "mirror, two winches": (Case(2, 4, (PINCH,), plate()), {"mirror": "y", "cables_per_winch": 2}),
     "locked winch": (Case(2, 2, robot=strip()), {"locked_winches": ("up",)}),
     "locked winch at the edge": (Case(1, 1, (UP,), near_the_edge()), {"locked_winches": ("mine",)}),
-    "locked cable": (Case(2, 3, robot=strip()), {"locked_cables": (1,)}),
-    "locked cable alone": (Case(1, 1, robot=strip()), {"locked_cables": (1,)}),
+    "locked cable": (Case(2, 3, robot=strip()), {"locked_cables": ("down 1",)}),
+    "locked cable alone": (Case(1, 1, robot=strip()), {"locked_cables": ("down 1",)}),
     "world": (Case(1, 2, (UP,), strip_robot(columns=10, rows=3, mount=Mount.WORLD)), {"mount": Mount.WORLD}),
     "improved": (Case(2, 2, robot=strip(), improve=True), {}),
-    "improved beside a locked cable": (Case(2, 2, robot=strip(), improve=True), {"locked_cables": (1,)}),
+    "improved beside a locked cable": (Case(2, 2, robot=strip(), improve=True), {"locked_cables": ("down 1",)}),
 }
 
 
@@ -107,7 +107,7 @@ def broken(network: Network) -> list[str]:
     limits = network.constraints
     region = body_region(network.robot.body, limits.clearance)
     return [
-        *violations(network.robot, limits, region, source=network.source),
+        *violations(network.robot, limits, region),
         *pulls(network.robot, network.reached, limits),
     ]
 
@@ -173,7 +173,8 @@ def test_what_is_locked_comes_back_as_it_was(unchecked: None) -> None:
 
 
 def test_a_certificate_of_a_network_with_locked_cables(unchecked: None) -> None:
-    """Locks count the cables of the robot that was designed for, not those of the new network."""
+    """Locks name cables, which keep their names in the new network, wherever they stand there."""
+    assert [cable.name for cable in designed("locked cable alone").robot.cables] == ["down 1"]
     trace = designed("locked cable alone").trace
     assert isinstance(trace, RouteTrace)
     assert trace.certificate is not None
@@ -290,7 +291,7 @@ def test_what_is_asked_for_wrongly() -> None:
     )  # fmt: skip
     error_of(
         "2 cables of the robot are locked, more than the 1 asked for; ask for at least 2".replace("cables", "winches"),
-        winches=1, cables=1, constraints=Constraints(locked_cables=(0, 1)),
+        winches=1, cables=1, constraints=Constraints(locked_cables=("up 1", "down 1")),
     )  # fmt: skip
     error_of(
         "2 winches of the robot are to be improved, more than the 1 asked for; ask for at least 2",

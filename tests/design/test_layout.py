@@ -76,7 +76,7 @@ def test_what_stays_has_no_number() -> None:
     assert usual.ties.shape == (usual.size, count)
     assert layout().ties.shape[1] == count + 2 + 2
     assert layout(Constraints(locked_winches=("up",))).ties.shape[1] == count - 2
-    assert layout(Constraints(locked_cables=(0,))).ties.shape[1] == count - 2 - 12
+    assert layout(Constraints(locked_cables=("up 1",))).ties.shape[1] == count - 2 - 12
     assert layout(Constraints(), mount=Mount.WORLD).ties.shape[1] == count - 2
 
 

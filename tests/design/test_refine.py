@@ -116,7 +116,7 @@ def test_refinement_finds_a_hidden_network_again(unchecked: None) -> None:
     found = refine(bench, region, trial, RefineOptions(iterations=60, effort=1e-4, straightness=0.0, progress=1e-4))
     assert trial.error > 5e-4
     assert found.error < 0.01 * trial.error
-    assert violations(found.layout.robot(), bench.constraints, region, source=bench.source) == []
+    assert violations(found.layout.robot(), bench.constraints, region) == []
 
 
 def test_every_step_lowers_the_error_and_stays_buildable(unchecked: None) -> None:
@@ -125,7 +125,7 @@ def test_every_step_lowers_the_error_and_stays_buildable(unchecked: None) -> Non
     for _ in range(4):
         found = refine(bench, region, trial, RefineOptions(iterations=1, effort=1e-4, straightness=0.0))
         assert found.error < trial.error * (1 + 1e-6)
-        assert violations(found.layout.robot(), bench.constraints, region, source=bench.source) == []
+        assert violations(found.layout.robot(), bench.constraints, region) == []
         for pose, stand in ((pose, stand) for pose in found.poses for stand in found.layout.stands):
             assert pose.contractions.min() >= -stand.winch.release - 1e-12
             assert pose.contractions.max() <= stand.winch.travel + 1e-12

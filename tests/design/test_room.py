@@ -103,7 +103,7 @@ def test_what_is_pushed_back_can_be_built(name: str, unchecked: None) -> None:
     assert violations(robot, constraints, region)
     pushed = pushed_back(layout_of(robot, constraints), region, 0.006)
     assert pushed is not None
-    assert violations(pushed.robot(digits=5), constraints, region, source=robot) == []
+    assert violations(pushed.robot(digits=5), constraints, region) == []
     away = max(np.abs(one.points - other.points).max() for one, other in zip(
         pushed.lines, layout_of(robot, constraints).lines, strict=True))  # fmt: skip
     assert away < 0.04
@@ -119,7 +119,7 @@ def test_what_is_locked_asks_for_no_room() -> None:
     up = moved(UP, 0, 0.03, 0.048)
     beside = tuple((x, y - 0.001) for x, y in up[1:])
     robot = network(up, more=[("up", (up[0], *beside))])
-    start = layout_of(robot, Constraints(locked_cables=(0, 2)))
+    start = layout_of(robot, Constraints(locked_cables=("up 1", "up 2")))
     region = body_region(robot.body, 0.005)
     pushed = pushed_back(start, region, 0.006)
     assert pushed is not None

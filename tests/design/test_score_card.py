@@ -15,7 +15,7 @@ ZONED = Constraints(
     keep_out=(Zone(at=(0.0, 0.0), radius=0.01),),
     still=(Zone(outline=((0.0, 0.0), (0.1, 0.0), (0.0, 0.1))),),
     mount=Mount.WORLD,
-    locked_cables=(0,),
+    locked_cables=("up 1",),
 )
 
 

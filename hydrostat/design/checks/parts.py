@@ -26,24 +26,23 @@ class Parts:
         robot: with the network.
         constraints: that it should keep.
         region: of its body.
-        source: the robot that the network was designed for; it knows the cables that are locked by their numbers.
     """
 
     robot: Robot
     constraints: Constraints
     region: Region
-    source: Robot
 
     @cached_property
     def new_winches(self) -> tuple[int, ...]:
         """Numbers of the winches that are not locked."""
-        stays = {*self.constraints.locked_winches, *(cable.winch for cable in self._locked)}
-        return tuple(index for index, winch in enumerate(self.robot.winches) if winch.name not in stays)
+        winches, _ = self.constraints.staying(self.robot)
+        return tuple(index for index, winch in enumerate(self.robot.winches) if winch not in winches)
 
     @cached_property
     def new_cables(self) -> tuple[int, ...]:
         """Numbers of the cables that are not locked."""
-        return tuple(index for index, cable in enumerate(self.robot.cables) if cable not in self._locked)
+        locked = self.constraints.locked_cables
+        return tuple(index for index, cable in enumerate(self.robot.cables) if cable.name not in locked)
 
     @cached_property
     def numbers(self) -> dict[str, int]:
@@ -71,10 +70,6 @@ class Parts:
     def edge(self) -> str:
         """What a body ends at."""
         return "edge" if self.robot.body.mesh.dim == 2 else "surface"
-
-    @cached_property
-    def _locked(self) -> tuple[Cable, ...]:
-        return tuple(cable for index, cable in enumerate(self.source.cables) if index in self.constraints.locked_cables)
 
 
 def mm(length: float) -> str:

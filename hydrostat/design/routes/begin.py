@@ -1,6 +1,5 @@
 """`layout_of`, `mirrored`: the network of a robot as a layout, and parts with their images on the other side."""
 
-from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -90,7 +89,7 @@ _SAME_PLACE = 1e-4
 """Winches of the two sides may miss each other's image by so much [m]."""
 
 
-def layout_of(robot: Robot, constraints: Constraints, *, locked: Collection[int] | None = None) -> Layout:
+def layout_of(robot: Robot, constraints: Constraints) -> Layout:
     """Winches and cables of a robot; those that are locked stay as they are.
 
     A cable sheathed anywhere but from its winch on is kept as it is too, and its winch: what is sheathed in the middle
@@ -99,15 +98,12 @@ def layout_of(robot: Robot, constraints: Constraints, *, locked: Collection[int]
     Args:
         robot: with the network.
         constraints: that it should keep.
-        locked: numbers of the cables that stay; those of the constraints if left out, which count the cables of the
-            robot that is designed for.
     """
-    locked = constraints.locked_cables if locked is None else locked
     names = [winch.name for winch in robot.winches]
     lines = []
-    for number, (cable, given_name) in enumerate(zip(robot.cables, robot.given_cable_names, strict=True)):
+    for cable, given_name in zip(robot.cables, robot.given_cable_names, strict=True):
         lead = _lead(cable)
-        kept = number in locked or lead is None
+        kept = cable.name in constraints.locked_cables or lead is None
         winch = robot.winch(cable.winch)
         ratio = 1.0 if cable.spool_radius is None else cable.spool_radius / winch.spool_radius
         lines.append(

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Network
 from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.design.request import COUNTS, DesignRequest
@@ -31,7 +30,7 @@ def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, w
     better = Better(watch)
     front: dict[tuple[int, int], Alternative] = {}
     interrupted = False
-    least = max(1, _locked(robot, constraints))
+    least = max(1, len(constraints.staying(robot)[0]))
     if constraints.mirror is not None and constraints.cables_per_winch == 1:
         least = max(least, 2)
     if least > cables:
@@ -75,11 +74,6 @@ def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, w
         seconds=sum(network.seconds for network in found),
         complete=not interrupted and all(network.complete for network in found),
     )
-
-
-def _locked(robot: Robot, constraints: Constraints) -> int:
-    """How many winches stay."""
-    return len({*constraints.locked_winches, *(robot.cables[number].winch for number in constraints.locked_cables)})
 
 
 def _all(network: Network) -> tuple[Alternative, ...]:

@@ -150,24 +150,16 @@ class RouteSearch:
         if self.request.improve:
             self._check_counts("to be improved", len(whole.stands), len(whole.lines))
             pushed = pushed_back(whole, self.region, 0.03 * self.robot.body.mesh.size)
-            told = (
-                None
-                if pushed is None
-                else violations(pushed.robot(digits=_DIGITS), self.constraints, self.region, source=self.robot)
-            )
+            told = None if pushed is None else violations(pushed.robot(digits=_DIGITS), self.constraints, self.region)
             if pushed is None or told:
                 raise InputError(
                     "the robot's own network cannot be moved into what the constraints allow"
                     f"{f' ({told[0]})' if told else ''}; relax them, or design without improving it"
                 )
             return pushed
-        kept = [line for number, line in enumerate(whole.lines) if number in self.constraints.locked_cables]
-        pulling = {line.winch for line in kept}
-        stays = [
-            number
-            for number, stand in enumerate(whole.stands)
-            if number in pulling or stand.winch.name in self.constraints.locked_winches
-        ]
+        winches, cables = self.constraints.staying(self.robot)
+        kept = [line for line in whole.lines if line.kept in cables]
+        stays = [number for number, stand in enumerate(whole.stands) if stand.winch in winches]
         self._check_counts("locked", len(stays), len(kept))
         return replace(
             whole,
@@ -211,7 +203,7 @@ class RouteSearch:
     def judged(self, trial: Trial) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
         robot = trial.layout.robot(digits=_DIGITS)
-        if violations(robot, self.constraints, self.region, source=self.robot):
+        if violations(robot, self.constraints, self.region):
             return None
         simulation = Simulation(robot)
         limits = Limits(tension=self.constraints.tension_limit)
@@ -224,9 +216,7 @@ class RouteSearch:
         return None if pulls(robot, reached, self.constraints) else Alternative(robot=robot, reached=tuple(reached))
 
     def _certificate(self, network: Alternative) -> Certificate | None:
-        stays = [self.robot.cables[number] for number in self.constraints.locked_cables]
-        locked = [number for number, cable in enumerate(network.robot.cables) if cable in stays]
-        layout = layout_of(network.robot, self.constraints, locked=locked)
+        layout = layout_of(network.robot, self.constraints)
         poses = [reached.pose for reached in network.reached]
         return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot), poses))
 

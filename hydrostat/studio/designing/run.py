@@ -65,7 +65,7 @@ def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
         spool_ratio=2.0 if wishes.stepped else 1.0,
         torque=wishes.torque,
         locked_winches=tuple(name for name in wishes.kept_winches if name in names),
-        locked_cables=tuple(number for number in wishes.kept_cables if number < len(robot.cables)),
+        locked_cables=tuple(cable.name for cable in robot.cables if cable.name in wishes.kept_cables),
     )
 
 
@@ -114,9 +114,7 @@ def beginning(robot: Robot, request: DesignRequest) -> Robot:
     limits = request.constraints
     if request.improve:
         return robot
-    cables = [robot.cables[number] for number in limits.locked_cables]
-    kept = {*limits.locked_winches, *(cable.winch for cable in cables)}
-    return robot.with_network([winch for winch in robot.winches if winch.name in kept], cables)
+    return robot.with_network(*limits.staying(robot))
 
 
 def error_at_rest(robot: Robot, poses: tuple[Pose, ...]) -> float:

@@ -36,7 +36,7 @@ class Wishes:
         torque: the most that the motor of a winch gives [N m]; None: as much as the tensions ask.
         improve: begin with the robot's own winches and cables.
         kept_winches: names of the robot's own winches that stay.
-        kept_cables: numbers of the robot's own cables that stay, and their winches with them.
+        kept_cables: names of the robot's own cables that stay, and their winches with them.
 
     Raises:
         InputError: a number out of its range.
@@ -56,7 +56,7 @@ class Wishes:
     torque: float | None = None
     improve: bool = False
     kept_winches: tuple[str, ...] = ()
-    kept_cables: tuple[int, ...] = ()
+    kept_cables: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.winches != 0 and not COUNTS["winches"].holds(self.winches):

@@ -24,7 +24,7 @@ class Work:
 
 
 def followed(
-    work: Work, robot: Robot, renamed: Mapping[str, str] | None = None, cables: Mapping[int, int] | None = None
+    work: Work, robot: Robot, renamed: Mapping[str, str] | None = None, cables: Mapping[str, str] | None = None
 ) -> tuple[Timeline, Wishes]:
     """Timeline and wishes that name only what the robot has.
 
@@ -32,8 +32,8 @@ def followed(
         work: as it was before.
         robot: as it is now.
         renamed: new names of winches, by their old ones.
-        cables: new numbers of cables, by their old ones; if left out, all have their old ones where there are as many
-            as before, else those that are the same.
+        cables: new names of cables, by their old ones; if left out, each is in its old place where there are as many
+            as before, else those that are there still have their old names.
     """
     names = {winch.name for winch in robot.winches}
     new = dict(renamed or {})
@@ -42,16 +42,15 @@ def followed(
         told = {new.get(name, name): value for name, value in key.contractions.items()}
         kept = {name: value for name, value in told.items() if name in names}
         keys.append(key if kept == key.contractions else replace(key, contractions=kept))
-    before, now = work.wishes, len(robot.cables)
+    before, now = work.wishes, [cable.name for cable in robot.cables]
     if cables is None:
-        cables = (
-            {number: number for number in range(now)} if now == len(work.robot.cables) else _same_cables(work, robot)
-        )
+        were = [cable.name for cable in work.robot.cables]
+        cables = dict(zip(were if len(were) == len(now) else now, now, strict=True))
     wishes = replace(
         before,
         poses=tuple(pose for pose in before.poses if pose in robot.poses),
         kept_winches=tuple(name for name in (new.get(name, name) for name in before.kept_winches) if name in names),
-        kept_cables=tuple(cables[number] for number in before.kept_cables if number in cables),
+        kept_cables=tuple(cables[name] for name in before.kept_cables if name in cables),
     )
     return replace(work.timeline, keys=tuple(keys)), before if wishes == before else wishes
 
@@ -63,22 +62,11 @@ def after_design(work: Work, robot: Robot) -> Wishes:
         work: as it was before.
         robot: as it is now.
     """
-    wishes = followed(work, robot, cables=_same_cables(work, robot))[1]
+    same = {cable.name: cable.name for cable in work.robot.cables if cable in robot.cables}
+    wishes = followed(work, robot, cables=same)[1]
     places = {winch.name: winch.at for winch in work.robot.winches}
     stayed = {winch.name for winch in robot.winches if places.get(winch.name) == winch.at}
     return replace(wishes, kept_winches=tuple(name for name in wishes.kept_winches if name in stayed))
-
-
-def _same_cables(work: Work, robot: Robot) -> dict[int, int]:
-    """Numbers of the cables that a robot has as they were before, by their numbers then."""
-    found: dict[int, int] = {}
-    left = dict(enumerate(robot.cables))
-    for number, cable in enumerate(work.robot.cables):
-        same = next((place for place, other in left.items() if other == cable), None)
-        if same is not None:
-            found[number] = same
-            del left[same]
-    return found
 
 
 def fresh_name(stem: str, taken: Collection[str]) -> str:

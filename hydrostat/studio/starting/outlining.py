@@ -139,8 +139,8 @@ def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshape
     def move(point: Point) -> Point:
         return tuple(float(value) for value in np.round(np.array(point) - middle, 9))
 
-    robot, numbers, dropped = _within_body(_moved(work.robot, move), work.robot, body)
-    return Reshaped(work=_matching(work, robot, numbers, move), dropped=dropped)
+    robot, dropped = _within_body(_moved(work.robot, move), work.robot, body)
+    return Reshaped(work=_matching(work, robot, move), dropped=dropped)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,8 +173,8 @@ def _moved(robot: Robot, move: Move) -> _Parts:
     )
 
 
-def _within_body(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, dict[int, int], tuple[str, ...]]:
-    """The robot with all parts that lie in the body, new numbers of its cables by their old ones, the rest in words."""
+def _within_body(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, tuple[str, ...]]:
+    """The robot with all parts that lie in the body, and the rest in words."""
     dropped: list[str] = []
 
     def fits(words: str, points: tuple[Point, ...]) -> bool:
@@ -197,18 +197,18 @@ def _within_body(parts: _Parts, robot: Robot, body: Body) -> tuple[Robot, dict[i
         winch for winch in parts.rest["winches"] if winch.name in worlds or fits(f"winch {winch.name}", (winch.at,))
     ]
     standing = {winch.name for winch in winches}
-    cables: dict[int, Cable] = {}
+    cables: list[Cable] = []
     for number, cable in enumerate(parts.rest["cables"]):
         inside = cable.points[1:] if cable.winch in worlds else cable.points
         if cable.winch not in standing:
             dropped.append(f"cable {number + 1}")
         elif fits(f"cable {number + 1}", inside):
-            cables[number] = cable
+            cables.append(cable)
     markers = [marker for marker in parts.rest["markers"] if fits(f"marker {marker.name}", (marker.at,))]
     poses = _poses_of(parts.poses, {marker.name for marker in markers}, dropped)
     options = {"pins": tuple(pins), "markers": tuple(markers), "poses": poses}
-    made = replace(robot, body=body, winches=tuple(winches), cables=tuple(cables.values()), **options)
-    return made, {old: new for new, old in enumerate(cables)}, tuple(dropped)
+    made = replace(robot, body=body, winches=tuple(winches), cables=tuple(cables), **options)
+    return made, tuple(dropped)
 
 
 def _poses_of(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) -> dict[str, Pose]:
@@ -224,7 +224,7 @@ def _poses_of(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) ->
     return kept
 
 
-def _matching(work: Work, robot: Robot, cables: dict[int, int], move: Move) -> Work:
+def _matching(work: Work, robot: Robot, move: Move) -> Work:
     """Wishes and keyframes that fit the robot."""
 
     def zone_moved(zone: Zone) -> Zone:
@@ -233,5 +233,5 @@ def _matching(work: Work, robot: Robot, cables: dict[int, int], move: Move) -> W
         return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
 
     zones = tuple((paint, zone_moved(zone)) for paint, zone in work.wishes.zones)
-    timeline, wishes = followed(work, robot, cables=cables)
+    timeline, wishes = followed(work, robot)
     return replace(work, robot=robot, timeline=timeline, wishes=replace(wishes, zones=zones))

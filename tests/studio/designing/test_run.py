@@ -31,11 +31,12 @@ def test_every_wish_is_a_constraint(starfish: Robot) -> None:
         stepped=True,
         torque=0.2,
         kept_winches=("left",),
-        kept_cables=(1,),
+        kept_cables=("left 2",),
     )
     assert wished_constraints(starfish, wishes) == Constraints(
         keep_out=(DISC, TRIANGLE), still=(TRIANGLE,), winch_zones=(DISC,), mirror="x", tension=12.0, clearance=0.004,
-        cables_per_winch=3, slack=0.01, spool_ratio=2.0, torque=0.2, locked_winches=("left",), locked_cables=(1,),
+        cables_per_winch=3, slack=0.01, spool_ratio=2.0, torque=0.2, locked_winches=("left",),
+        locked_cables=("left 2",),
     )  # fmt: skip
 
 
@@ -44,8 +45,10 @@ def test_no_wish_is_no_constraint(starfish: Robot) -> None:
 
 
 def test_what_is_kept_but_gone_is_passed_over(starfish: Robot) -> None:
-    constraints = wished_constraints(starfish, Wishes(kept_winches=("left", "nobody"), kept_cables=(0, 99)))
-    assert constraints == Constraints(locked_winches=("left",), locked_cables=(0,))
+    constraints = wished_constraints(
+        starfish, Wishes(kept_winches=("left", "nobody"), kept_cables=("left 1", "gone 7"))
+    )
+    assert constraints == Constraints(locked_winches=("left",), locked_cables=("left 1",))
 
 
 def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
@@ -97,6 +100,6 @@ def test_a_search_begins_with_what_stays(starfish: Robot) -> None:
 
     assert (begun().winches, begun().cables) == ((), ())
     assert begun(improve=True) is starfish
-    kept = begun(kept_winches=("feet",), kept_cables=(0,))
+    kept = begun(kept_winches=("feet",), kept_cables=("right 1",))
     assert kept.cables == starfish.cables[:1]
     assert {winch.name for winch in kept.winches} == {"feet", starfish.cables[0].winch}

@@ -304,14 +304,17 @@ def test_keyframes_and_wishes_follow(starfish: Robot) -> None:
 
 def test_what_is_kept_follows(starfish: Robot) -> None:
     """Oracle: the cables and winches themselves, wherever they are now."""
-    work = Work(robot=starfish, wishes=Wishes(kept_winches=("feet", "left"), kept_cables=(0, 3)))
+    names = (starfish.cables[0].name, starfish.cables[3].name)
+    work = Work(robot=starfish, wishes=Wishes(kept_winches=("feet", "left"), kept_cables=names))
     gone = remove(starfish, ["cable:1"])
     wishes = followed(work, gone)[1]
-    assert [gone.cables[number] for number in wishes.kept_cables] == [starfish.cables[0], starfish.cables[3]]
+    assert [gone.cable(name) for name in wishes.kept_cables] == [starfish.cables[0], starfish.cables[3]]
     assert wishes.kept_winches == ("feet", "left")
-    assert followed(work, remove(starfish, ["cable:3"]))[1].kept_cables == (0,)
-    renamed = followed(work, rename(starfish, "winch:feet", "legs"), {"feet": "legs"})[1]
-    assert (renamed.kept_winches, renamed.kept_cables) == (("legs", "left"), (0, 3))
+    assert followed(work, remove(starfish, ["cable:3"]))[1].kept_cables == names[:1]
+    legs = rename(starfish, "winch:feet", "legs")
+    renamed = followed(work, legs, {"feet": "legs"})[1]
+    assert renamed.kept_winches == ("legs", "left")
+    assert renamed.kept_cables == (legs.cables[0].name, legs.cables[3].name) != names
     assert followed(work, remove(starfish, ["via:0:2"]))[1] is work.wishes
     bare = remove(starfish, ["winch:feet"])
     assert followed(work, bare)[1].kept_winches == ("left",)
@@ -319,13 +322,14 @@ def test_what_is_kept_follows(starfish: Robot) -> None:
 
 def test_a_design_keeps_what_it_has_kept(starfish: Robot) -> None:
     """Oracle: a network in another order, in which one winch has an old name at another place."""
-    work = Work(robot=starfish, wishes=Wishes(kept_winches=("feet", "left"), kept_cables=(0, 3)))
+    names = (starfish.cables[0].name, starfish.cables[3].name)
+    work = Work(robot=starfish, wishes=Wishes(kept_winches=("feet", "left"), kept_cables=names))
     winches = [replace(winch, at=(0.0, -0.03)) if winch.name == "feet" else winch for winch in starfish.winches]
     changed = replace(starfish.cables[0], slack=0.002)
     made = starfish.with_network(winches, [starfish.cables[3], changed, *starfish.cables[1:3]])
     wishes = after_design(work, made)
     assert wishes.kept_winches == ("left",)
-    assert [made.cables[number] for number in wishes.kept_cables] == [starfish.cables[3]]
+    assert [made.cable(name) for name in wishes.kept_cables] == [starfish.cables[3]]
 
 
 def test_risks_are_told_in_the_words_of_the_screen(starfish: Robot) -> None:

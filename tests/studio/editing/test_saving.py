@@ -1,5 +1,6 @@
 """A robot's folder. The oracle is the robot that was saved, read again, and the comments that stood in the file."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -242,6 +243,19 @@ def work_of(robot: Robot) -> Work:
 
     wishes = Wishes(winches=3, zones=((Paint.STILL, Zone(at=(0.0, 0.0), radius=0.01)),), mirror="y", tolerance=0.002)
     return Work(robot=robot, timeline=timeline, wishes=wishes)
+
+
+def test_a_file_that_numbers_kept_cables_is_still_read(tmp_path: Path) -> None:
+    """Oracle: the names of the cables; numbers counted from 0 there. One that is gone is passed over."""
+    robot = load_robot(gallery_folder("starfish"))
+    save_work(Work(robot=robot, wishes=Wishes(kept_cables=("left 1",))), tmp_path / "kept")
+    assert open_work(tmp_path / "kept").wishes.kept_cables == ("left 1",)
+    file = tmp_path / "kept" / "studio.json"
+    read = json.loads(file.read_text())
+    read["wishes"]["kept_cables"] = [0, 3, 99]
+    file.write_text(json.dumps(read))
+    assert open_work(tmp_path / "kept").wishes.kept_cables == (robot.cables[0].name, robot.cables[3].name)
+    assert open_note(tmp_path / "kept") == ""
 
 
 def test_all_work_is_read_again(robot: Robot, tmp_path: Path) -> None:

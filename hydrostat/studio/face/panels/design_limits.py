@@ -168,17 +168,17 @@ def _own(page: Page, shows: list[Show]) -> None:
             return
         names = [name.partition(" ") for name in keep.value]
         winches = tuple(name for kind, _, name in names if kind == "winch")
-        cables = tuple(int(name) for kind, _, name in names if kind == "cable")
+        cables = tuple(name for kind, _, name in names if kind == "cable")
         page.act(lambda: designer.wish(kept_winches=winches, kept_cables=cables))
 
     def show(wishes: Wishes) -> None:
         robot = document.robot
         more.set_visibility(bool(robot.winches or robot.cables))
         options = {f"winch {winch.name}": f"winch {winch.name}" for winch in robot.winches}
-        options |= {f"cable {index}": f"cable {index + 1}, {cable.winch}" for index, cable in enumerate(robot.cables)}
+        options |= {f"cable {cable.name}": f"cable {cable.name}" for cable in robot.cables}
         kept = [
             *(f"winch {name}" for name in wishes.kept_winches),
-            *(f"cable {index}" for index in wishes.kept_cables),
+            *(f"cable {name}" for name in wishes.kept_cables),
         ]
         shown[:] = [name for name in kept if name in options]
         if keep.options != options:
