@@ -22,9 +22,9 @@ from hydrostat.design import Constraints, RouteOptions
 from hydrostat.design.buildable import violations
 from hydrostat.design.network import rms_error
 from hydrostat.design.region import Region, body_region
-from hydrostat.design.routes.layout import Layout, Line, Stand
+from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.price import PricedPath
-from hydrostat.design.routes.propose import lay
+from hydrostat.design.routes.propose import route_along
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
@@ -106,15 +106,15 @@ def _share(on: Ground, winches: int, cables: int, draw: np.random.Generator) -> 
 
 def _with_cables(on: Ground, places: list[int], share: list[int], draw: np.random.Generator) -> Robot | None:
     """A cable after the other, each drawn until it goes with those before."""
-    stands = tuple(Stand(_winch(on, place, number)) for number, place in enumerate(places))
-    lines: list[Line] = []
+    sites = tuple(WinchSite(_winch(on, place, number)) for number, place in enumerate(places))
+    lines: list[CableRoute] = []
     robot = None
     for winch in share:
         for _ in range(TRIES):
             line = _random_line(on, winch, places[winch], draw)
             if line is None:
                 continue
-            robot = Layout(on.robot, on.constraints, stands, (*lines, line)).robot(digits=5)
+            robot = Layout(on.robot, on.constraints, sites, (*lines, line)).robot(digits=5)
             if not violations(robot, on.constraints, on.region):
                 lines.append(line)
                 break
@@ -136,7 +136,7 @@ def _winch(on: Ground, place: int, number: int) -> Winch:
     )
 
 
-def _random_line(on: Ground, winch: int, place: int, draw: np.random.Generator) -> Line | None:
+def _random_line(on: Ground, winch: int, place: int, draw: np.random.Generator) -> CableRoute | None:
     """A walk as a cable; half of them run in a sheath up to some point of their first half."""
     walk = _walk(on, place, draw)
     if len(walk) < SHORTEST + 1:
@@ -149,7 +149,7 @@ def _random_line(on: Ground, winch: int, place: int, draw: np.random.Generator) 
     )
     at = np.asarray(_winch(on, place, winch).at)
     try:
-        return lay(path, on.graph, winch=winch, place=at, spacing=on.spacing) if len(path.nodes) > 1 else None
+        return route_along(path, on.graph, winch=winch, place=at, spacing=on.spacing) if len(path.nodes) > 1 else None
     except HydrostatError:
         return None
 

@@ -37,7 +37,7 @@ class TreeTrace:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Stage:
+class DesignStage:
     """A network on the way.
 
     Attributes:
@@ -76,7 +76,7 @@ class RouteTrace:
         certificate: of the one that was returned; None where the work was interrupted.
     """
 
-    stages: tuple[Stage, ...]
+    stages: tuple[DesignStage, ...]
     certificate: Certificate | None
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from hydrostat.design.network import Stage
+from hydrostat.design.network import DesignStage
 
 Progress = Callable[[str, int, int], None]
 """Told the stage, how much of it is done, and how much there is."""
@@ -12,11 +12,11 @@ def silent(stage: str, done: int, total: int) -> None:
     """No progress wanted."""
 
 
-Watch = Callable[[Stage], None]
+Watch = Callable[[DesignStage], None]
 """Told a network on the way, each better than the ones told before."""
 
 
-def unseen(stage: Stage) -> None:
+def unseen(stage: DesignStage) -> None:
     """Nobody watches."""
 
 
@@ -26,7 +26,7 @@ class Better:
     def __init__(self, watch: Watch) -> None:
         self._watch, self._least = watch, float("inf")
 
-    def __call__(self, stage: Stage) -> None:
+    def __call__(self, stage: DesignStage) -> None:
         """Hear of a network."""
         if stage.error < self._least:
             self._least = stage.error

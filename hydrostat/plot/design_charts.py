@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 
-from hydrostat.design.network import Alternative, Network, Size, Stage, best_errors, on_front
+from hydrostat.design.network import Alternative, Network, Size, DesignStage, best_errors, on_front
 from hydrostat.drawing.palette import ERROR, GHOST, INK, SEAM, WINCHES
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
@@ -20,7 +20,7 @@ _WIDE = 30.0
 
 
 def draw_growth(
-    stages: Sequence[Stage],
+    stages: Sequence[DesignStage],
     *,
     rest: float | None = None,
     final: float | None = None,
@@ -57,7 +57,7 @@ def draw_growth(
     return figure
 
 
-def stage_runs(stages: Sequence[Stage]) -> list[list[int]]:
+def stage_runs(stages: Sequence[DesignStage]) -> list[list[int]]:
     """Indices of stages, a list for each network that was begun: with far fewer cables than the one before."""
     runs: list[list[int]] = []
     before = np.inf

@@ -11,7 +11,7 @@ from hydrostat.design.region import body_region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.bench import Bench
 from hydrostat.design.routes.growth import Growth
-from hydrostat.design.routes.layout import Layout, Line, Stand
+from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.robot import Pose, Winch
@@ -34,8 +34,8 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
     for first, last in permutations(range(len(graph.points)), 2):
         if first not in graph.winch_places or (min(first, last), max(first, last)) not in joined:
             continue
-        stand = Stand(Winch(name="one", at=tuple(map(float, graph.points[first]))))
-        line = Line(0, graph.points[[first, last]])
+        stand = WinchSite(Winch(name="one", at=tuple(map(float, graph.points[first]))))
+        line = CableRoute(0, graph.points[[first, last]])
         found = bench.reached(Layout(robot, LIMITS, (stand,), (line,)), start, iterations=6)
         if found is not None:
             errors.append(found.error)
@@ -52,13 +52,13 @@ def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
     noted: list[int] = []
     growth = Growth(
         Proposals(bench, graph, RouteOptions(hops=4, trials=2, steps=1, starts=1), 0.05),
-        lambda _, trial: noted.append(len(trial.layout.lines)),
+        lambda _, trial: noted.append(len(trial.layout.routes)),
     )
     start = growth.bare(Layout(robot, LIMITS, (), ()))
     assert start is not None
     (seed, *_) = growth.seeds(start, winches=1, cables=cables)
     grown = growth.grown(seed, winches=1, cables=cables)
-    assert len(grown.layout.stands) == 1
-    assert 1 <= len(grown.layout.lines) <= cables
+    assert len(grown.layout.sites) == 1
+    assert 1 <= len(grown.layout.routes) <= cables
     assert noted == list(range(2, cables + 1))
     assert np.isfinite(growth.truly(grown).error)

@@ -10,7 +10,7 @@ from builders import strip_robot
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.begin import flipped, layout_of, mirrored
 from hydrostat.design.routes.growth import without
-from hydrostat.design.routes.layout import Layout, Line, Stand
+from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.robot import Mount, Winch
 
 LOOSE = Constraints(slack=0.01, spool_ratio=2.0)
@@ -25,8 +25,8 @@ def one_cable(*, at: tuple[float, float], mount: Mount = Mount.BODY, **limits: A
     """A mirrored design with its first cable."""
     constraints = Constraints(mirror="y", **limits)
     winch = Winch(name="winch_1", at=at, mount=mount)
-    line = Line(0, np.array([at, *OFF]), lead=1, slack=0.002, ratio=1.2)
-    return Layout(strip_robot(), constraints, (Stand(winch),), (line,))
+    line = CableRoute(0, np.array([at, *OFF]), lead=1, slack=0.002, ratio=1.2)
+    return Layout(strip_robot(), constraints, (WinchSite(winch),), (line,))
 
 
 def test_the_robot_of_a_layout_is_the_one_it_came_from() -> None:
@@ -49,8 +49,8 @@ def test_numbers_there_and_back() -> None:
     numbers = start.numbers + np.random.default_rng(0).uniform(0.0, 1e-3, start.size)
     moved = start.at(numbers)
     assert np.array_equal(moved.numbers, numbers)
-    for index, line in enumerate(moved.lines):
-        assert np.array_equal(line.points[0], moved.stands[line.winch].winch.at)
+    for index, line in enumerate(moved.routes):
+        assert np.array_equal(line.points[0], moved.sites[line.winch].winch.at)
         for point in range(len(line.points)):
             assert np.array_equal(numbers[moved.place_of(index, point)], line.points[point])
 
@@ -59,7 +59,7 @@ def test_slack_is_never_negative() -> None:
     start = layout()
     numbers = start.numbers.copy()
     numbers[start.starts[-2]] = -1e-3
-    assert start.at(numbers).lines[0].slack == 0.0
+    assert start.at(numbers).routes[0].slack == 0.0
 
 
 def test_coordinates_are_rounded() -> None:
@@ -89,37 +89,37 @@ def test_a_cable_sheathed_in_the_middle_stays_with_its_winch() -> None:
 
 
 def assert_symmetric(found: Layout) -> None:
-    for index, line in enumerate(found.lines):
+    for index, line in enumerate(found.routes):
         if line.twin is not None:
-            twin = found.lines[line.twin]
+            twin = found.routes[line.twin]
             assert flipped(found, twin.points) == pytest.approx(line.points, abs=1e-15)
             assert (line.slack, line.ratio, line.lead) == (twin.slack, twin.ratio, twin.lead)
-            assert np.array_equal(line.points[0], found.stands[found.lines[index].winch].winch.at)
+            assert np.array_equal(line.points[0], found.sites[found.routes[index].winch].winch.at)
 
 
 @pytest.mark.parametrize("at", [(0.02, 0.012), (0.02, 0.004)])
 def test_mirrored_parts_follow_their_twins(at: tuple[float, float]) -> None:
     """Beside the mirror there are two winches; near it there is one, which stays in it."""
     both = mirrored(one_cable(at=at, winch_gap=0.02, slack=0.01, spool_ratio=2.0))
-    assert len(both.stands) == (2 if at[1] > 0.01 else 1)
-    assert len(both.lines) == 2
+    assert len(both.sites) == (2 if at[1] > 0.01 else 1)
+    assert len(both.routes) == 2
     assert_symmetric(both)
     free = both.ties.shape[1]
     assert free == (2 if at[1] > 0.01 else 1) + 2 * 3 + 2
     assert np.linalg.matrix_rank(both.ties) == free
     moved = both.at(both.numbers + both.ties @ np.random.default_rng(1).uniform(0.0, 1e-3, free))
     assert_symmetric(moved)
-    assert not np.allclose(moved.lines[0].points, both.lines[0].points)
-    if len(both.stands) == 1:
-        assert moved.stands[0].winch.at[1] == 0.0
+    assert not np.allclose(moved.routes[0].points, both.routes[0].points)
+    if len(both.sites) == 1:
+        assert moved.sites[0].winch.at[1] == 0.0
 
 
 def test_a_second_pair_hangs_on_the_same_winches() -> None:
     one = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
-    line = Line(1, np.array([one.stands[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
-    two = mirrored(replace(one, lines=(*one.lines, line)))
-    assert [line.winch for line in two.lines] == [0, 1, 1, 0]
-    assert [line.twin for line in two.lines] == [None, 0, None, 2]
+    line = CableRoute(1, np.array([one.sites[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
+    two = mirrored(replace(one, routes=(*one.routes, line)))
+    assert [line.winch for line in two.routes] == [0, 1, 1, 0]
+    assert [line.twin for line in two.routes] == [None, 0, None, 2]
     assert_symmetric(two)
     free = two.ties.shape[1]
     moved = two.at(two.numbers + two.ties @ np.random.default_rng(2).uniform(0.0, 1e-3, free))
@@ -130,27 +130,27 @@ def test_a_symmetric_robot_is_tied_together() -> None:
     """As its own network is improved, a symmetric one stays so."""
     made = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
     again = layout_of(made.robot(), made.constraints)
-    assert [stand.twin for stand in again.stands] == [None, 0]
-    assert [line.twin for line in again.lines] == [None, 0]
+    assert [stand.twin for stand in again.sites] == [None, 0]
+    assert [line.twin for line in again.routes] == [None, 0]
     assert np.array_equal(again.ties, made.ties)
     alone = layout_of(strip_robot(), made.constraints)
-    assert [line.twin for line in alone.lines] == [None, None]
+    assert [line.twin for line in alone.routes] == [None, None]
     assert np.array_equal(alone.ties, layout_of(strip_robot(), Constraints()).ties)
 
 
 def test_without_a_cable_its_twin_and_idle_winches_go() -> None:
     one = mirrored(one_cable(at=(0.02, 0.012), winch_gap=0.02))
     assert without(one, 0) is None
-    line = Line(1, np.array([one.stands[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
-    two = mirrored(replace(one, lines=(*one.lines, line)))
+    line = CableRoute(1, np.array([one.sites[1].winch.at, (0.06, -0.008), (0.1, -0.009)]))
+    two = mirrored(replace(one, routes=(*one.routes, line)))
     left = without(two, 0)
     assert left is not None
-    assert len(left.stands) == 2
-    assert [line.twin for line in left.lines] == [None, 0]
+    assert len(left.sites) == 2
+    assert [line.twin for line in left.routes] == [None, 0]
     assert_symmetric(left)
     plain = without(layout(), 0)
     assert plain is not None
-    assert [stand.winch.name for stand in plain.stands] == ["down"]
+    assert [stand.winch.name for stand in plain.sites] == ["down"]
     locked = without(layout(Constraints(locked_winches=("up",))), 0)
     assert locked is not None
-    assert [stand.winch.name for stand in locked.stands] == ["up", "down"]
+    assert [stand.winch.name for stand in locked.sites] == ["up", "down"]

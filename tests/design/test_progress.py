@@ -7,13 +7,13 @@ from builders import strip_robot
 from test_design_routes import DOWN, SMALL, UP, bare
 from test_judge import POSES, shifted
 
-from hydrostat.design import RouteTrace, Stage, design_cables
+from hydrostat.design import DesignStage, RouteTrace, design_cables
 from hydrostat.design.progress import Better
 from hydrostat.design.trees.judge import judge
 
 
 def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) -> None:
-    told: list[Stage] = []
+    told: list[DesignStage] = []
     network = design_cables(bare(), [UP], winches=1, cables=2, options=SMALL, watch=told.append)
     assert isinstance(network.trace, RouteTrace)
     least, expected = float("inf"), []
@@ -25,7 +25,7 @@ def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) 
 
 
 def test_the_fewest_tell_only_what_beats_fewer_winches(unchecked: None) -> None:
-    told: list[Stage] = []
+    told: list[DesignStage] = []
     options = replace(SMALL, tolerance=1e-9)
     design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=options, watch=told.append)
     errors = [stage.error for stage in told]
@@ -34,7 +34,7 @@ def test_the_fewest_tell_only_what_beats_fewer_winches(unchecked: None) -> None:
 
 
 def test_the_watched_may_stop_the_search(unchecked: None) -> None:
-    def stop(stage: Stage) -> None:
+    def stop(stage: DesignStage) -> None:
         raise KeyboardInterrupt
 
     network = design_cables(bare(), [UP, DOWN], winches=2, cables=2, options=SMALL, watch=stop)
@@ -44,7 +44,7 @@ def test_the_watched_may_stop_the_search(unchecked: None) -> None:
 @pytest.mark.parametrize("tension", [100.0, 1e-3])
 def test_judges_tell_what_is_better_and_bears_it(tension: float) -> None:
     robots = [shifted(-0.008), strip_robot(columns=10, rows=3), shifted(0.006)]
-    told: list[Stage] = []
+    told: list[DesignStage] = []
     judge(robots, POSES, tension=tension, progress=lambda *_: None, watch=told.append)
     errors = [stage.error for stage in told]
     assert errors == sorted(set(errors), reverse=True)
@@ -52,9 +52,9 @@ def test_judges_tell_what_is_better_and_bears_it(tension: float) -> None:
 
 
 def test_better_passes_on_what_is_better() -> None:
-    told: list[Stage] = []
+    told: list[DesignStage] = []
     better = Better(told.append)
-    stages = [Stage(words="", robot=bare(), error=error) for error in (3.0, 4.0, 2.0, 2.0, 1.0)]
+    stages = [DesignStage(words="", robot=bare(), error=error) for error in (3.0, 4.0, 2.0, 2.0, 1.0)]
     for stage in stages:
         better(stage)
     assert told == [stages[0], stages[2], stages[4]]

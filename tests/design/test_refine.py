@@ -13,7 +13,7 @@ from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import layout_of, mirrored
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certify import certify
-from hydrostat.design.routes.layout import Layout, Line
+from hydrostat.design.routes.layout import CableRoute, Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import RefineOptions, linear_model, refine
 from hydrostat.design.routes.route_graph import route_graph
@@ -50,8 +50,8 @@ def trial_at(bench: Bench, layout: Layout, contractions: list[tuple[float, ...]]
 def of_a_pair() -> Layout:
     """Two mirrored cables, no longer free of each other."""
     source = strip()
-    winch = layout_of(source, LOOSE).stands[0]
-    line = Line(0, np.array(source.cables[0].points)[[0, 2, 4, 6]], slack=0.002, ratio=1.2)
+    winch = layout_of(source, LOOSE).sites[0]
+    line = CableRoute(0, np.array(source.cables[0].points)[[0, 2, 4, 6]], slack=0.002, ratio=1.2)
     return mirrored(Layout(source, replace(LOOSE, mirror="y"), (winch,), (line,)))
 
 
@@ -126,7 +126,7 @@ def test_every_step_lowers_the_error_and_stays_buildable(unchecked: None) -> Non
         found = refine(bench, region, trial, RefineOptions(iterations=1, effort=1e-4, straightness=0.0))
         assert found.error < trial.error * (1 + 1e-6)
         assert violations(found.layout.robot(), bench.constraints, region) == []
-        for pose, stand in ((pose, stand) for pose in found.poses for stand in found.layout.stands):
+        for pose, stand in ((pose, stand) for pose in found.poses for stand in found.layout.sites):
             assert pose.contractions.min() >= -stand.winch.release - 1e-12
             assert pose.contractions.max() <= stand.winch.travel + 1e-12
         trial = found
@@ -177,9 +177,9 @@ def test_what_one_more_cable_promises_comes_true(unchecked: None) -> None:
     promised = certify(priced, trial).further
     (best,) = priced.priced(trial, count=1)
     points = priced.graph.points
-    line = Line(1, points[list(best.nodes)])
-    stand = replace(trial.layout.stands[0], winch=replace(source.winches[0], name="new", at=tuple(points[best.winch])))
-    added = replace(trial.layout, stands=(*trial.layout.stands, stand), lines=(*trial.layout.lines, line))
+    line = CableRoute(1, points[list(best.nodes)])
+    stand = replace(trial.layout.sites[0], winch=replace(source.winches[0], name="new", at=tuple(points[best.winch])))
+    added = replace(trial.layout, sites=(*trial.layout.sites, stand), routes=(*trial.layout.routes, line))
     assert best.lead == (best.winch,)
     found = bench.reached(added, trial)
     assert found is not None

@@ -13,9 +13,11 @@ from hydrostat.design import (
     Activation,
     Alternative,
     Certificate,
+    DesignMethod,
+    DesignRequest,
+    DesignStage,
     Network,
     RouteTrace,
-    Stage,
     TreeTrace,
 )
 from hydrostat.design.muscles.fibres import edge_fibres
@@ -107,7 +109,7 @@ def grown(network: Network, stages: int = 11) -> Network:
         request=DesignRequest(poses=network.request.poses),
         trace=RouteTrace(
             stages=tuple(
-                Stage(words=told, robot=begun if index < stages // 2 else robot, error=0.03 / (index + 1))
+                DesignStage(words=told, robot=begun if index < stages // 2 else robot, error=0.03 / (index + 1))
                 for index, told in enumerate(words)
             ),
             certificate=Certificate(further=0.0021, paths=12345, slope=0.0123),

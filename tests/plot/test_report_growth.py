@@ -7,7 +7,7 @@ import pytest
 from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
 from plot.test_report import Page
 
-from hydrostat.design import Alternative, Certificate, Network, Stage
+from hydrostat.design import Alternative, Certificate, DesignStage, Network
 from hydrostat.design.network import best_errors, on_front
 from hydrostat.drawing.palette import WINCHES
 from hydrostat.plot import draw_front, draw_growth, inline_svg, report_text
@@ -83,10 +83,10 @@ def test_of_many_alternatives_some_are_shown() -> None:
     assert "12 of 14 are shown." in page
 
 
-def staged(*cables: int) -> list[Stage]:
+def staged(*cables: int) -> list[DesignStage]:
     """Stages with so many cables, whose errors fall from 30 mm."""
     return [
-        Stage(words="", robot=sized(1, count, 0.0).robot, error=0.03 / number)
+        DesignStage(words="", robot=sized(1, count, 0.0).robot, error=0.03 / number)
         for number, count in enumerate(cables, start=1)
     ]
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Points
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.routes.layout import Layout, Line, Stand
+from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.robot import Cable, Mount, Robot
 
 
@@ -16,19 +16,19 @@ def mirrored(layout: Layout) -> Layout | None:
     A new winch nearer to the mirror than half the gap that two winches keep is put into it and pulls both lines. None
     where that winch is locked, or where the world has no winch for the other side.
     """
-    line = layout.lines[-1]
-    number, stand = line.winch, layout.stands[line.winch]
-    stands = list(layout.stands)
-    twin = stand.twin
-    if twin is None and any(other.twin == number for other in stands):
-        twin = next(index for index, other in enumerate(stands) if other.twin == number)
+    route = layout.routes[-1]
+    number, site = route.winch, layout.sites[route.winch]
+    sites = list(layout.sites)
+    twin = site.twin
+    if twin is None and any(other.twin == number for other in sites):
+        twin = next(index for index, other in enumerate(sites) if other.twin == number)
     elif twin is None:
-        image = flipped(layout, np.array([stand.winch.at]))[0]
-        gap = float(np.linalg.norm(image - stand.winch.at))
-        other = _standing(stands, image, number)
-        world = stand.winch.mount is Mount.WORLD
+        image = flipped(layout, np.array([site.winch.at]))[0]
+        gap = float(np.linalg.norm(image - site.winch.at))
+        other = _site_at(sites, image, number)
+        world = site.winch.mount is Mount.WORLD
         if gap < 1e-6:
-            stands[number] = replace(stand, twin=number)
+            sites[number] = replace(site, twin=number)
             twin = number
         elif other is not None:
             twin = other
@@ -36,29 +36,29 @@ def mirrored(layout: Layout) -> Layout | None:
             name = _world_winch(layout, image)
             if name is None:
                 return None
-            twin = len(stands)
-            stands.append(Stand(replace(stand.winch, name=name, at=tuple(map(float, image))), twin=number))
+            twin = len(sites)
+            sites.append(WinchSite(replace(site.winch, name=name, at=tuple(map(float, image))), twin=number))
         elif gap < layout.constraints.winch_gap:
-            if stand.fixed:
+            if site.fixed:
                 return None
-            middle = tuple(float(value) for value in 0.5 * (image + stand.winch.at))
-            stands[number] = replace(stand, winch=replace(stand.winch, at=middle), twin=number)
+            middle = tuple(float(value) for value in 0.5 * (image + site.winch.at))
+            sites[number] = replace(site, winch=replace(site.winch, at=middle), twin=number)
             twin = number
         else:
-            twin = len(stands)
-            stands.append(
-                Stand(
-                    replace(stand.winch, name=f"{stand.winch.name}_mirrored", at=tuple(map(float, image))), twin=number
+            twin = len(sites)
+            sites.append(
+                WinchSite(
+                    replace(site.winch, name=f"{site.winch.name}_mirrored", at=tuple(map(float, image))), twin=number
                 )
             )
-    points = np.vstack([stands[number].winch.at, line.points[1:]])
-    own = replace(line, points=points)
-    make = None if line.make is None else replace(line.make, name="")
-    image_line = Line(
-        twin, flipped(layout, points), lead=line.lead, slack=line.slack, ratio=line.ratio, make=make,
-        twin=len(layout.lines) - 1,
+    points = np.vstack([sites[number].winch.at, route.points[1:]])
+    own = replace(route, points=points)
+    make = None if route.make is None else replace(route.make, name="")
+    image_route = CableRoute(
+        twin, flipped(layout, points), lead=route.lead, slack=route.slack, ratio=route.ratio, make=make,
+        twin=len(layout.routes) - 1,
     )  # fmt: skip
-    return replace(layout, stands=tuple(stands), lines=(*layout.lines[:-1], own, image_line))
+    return replace(layout, sites=tuple(sites), routes=(*layout.routes[:-1], own, image_route))
 
 
 def flipped(layout: Layout, points: Points) -> Points:
@@ -77,10 +77,10 @@ def _world_winch(layout: Layout, place: np.ndarray) -> str | None:
     return None
 
 
-def _standing(stands: list[Stand], place: np.ndarray, but: int) -> int | None:
+def _site_at(sites: list[WinchSite], place: np.ndarray, but: int) -> int | None:
     """A winch that stands at a place already."""
-    for index, stand in enumerate(stands):
-        if index != but and np.linalg.norm(np.subtract(stand.winch.at, place)) < 1e-6:
+    for index, site in enumerate(sites):
+        if index != but and np.linalg.norm(np.subtract(site.winch.at, place)) < 1e-6:
             return index
     return None
 
@@ -100,14 +100,14 @@ def layout_of(robot: Robot, constraints: Constraints) -> Layout:
         constraints: that it should keep.
     """
     names = [winch.name for winch in robot.winches]
-    lines = []
+    routes = []
     for cable, given_name in zip(robot.cables, robot.given_cable_names, strict=True):
         lead = _lead(cable)
         kept = cable.name in constraints.locked_cables or lead is None
         winch = robot.winch(cable.winch)
         ratio = 1.0 if cable.spool_radius is None else cable.spool_radius / winch.spool_radius
-        lines.append(
-            Line(
+        routes.append(
+            CableRoute(
                 names.index(cable.winch),
                 np.array(cable.points),
                 lead=lead or 0,
@@ -117,38 +117,38 @@ def layout_of(robot: Robot, constraints: Constraints) -> Layout:
                 kept=cable if kept else None,
             )
         )
-    held = {line.winch for line in lines if line.kept is not None}
-    stands = [
-        Stand(winch, fixed=number in held or winch.name in constraints.locked_winches)
+    held = {route.winch for route in routes if route.kept is not None}
+    sites = [
+        WinchSite(winch, fixed=number in held or winch.name in constraints.locked_winches)
         for number, winch in enumerate(robot.winches)
     ]
-    layout = Layout(robot, constraints, tuple(stands), tuple(lines))
+    layout = Layout(robot, constraints, tuple(sites), tuple(routes))
     return layout if constraints.mirror is None else _tied(layout)
 
 
 def _tied(layout: Layout) -> Layout:
     """The layout whose parts know their mirror images; what has none is left free."""
-    stands, lines = list(layout.stands), list(layout.lines)
-    places = np.array([stand.winch.at for stand in stands], dtype=float).reshape(-1, layout.dim)
+    sites, routes = list(layout.sites), list(layout.routes)
+    places = np.array([site.winch.at for site in sites], dtype=float).reshape(-1, layout.dim)
     images: dict[int, int] = {}
     for index, image in enumerate(flipped(layout, places)):
         away = np.linalg.norm(places - image, axis=1)
         if away.min() <= _NEAR:
             images[index] = int(away.argmin())
     for index, other in images.items():
-        if other <= index and not stands[index].fixed:
-            stands[index] = replace(stands[index], twin=other)
-    for index, line in enumerate(lines):
-        taken = {other.twin for other in lines}
-        for before, first in enumerate(lines[:index]):
-            free = line.kept is None and first.twin is None and before not in taken
-            if free and _are_twins(layout, first, line, images):
-                lines[index] = replace(line, twin=before)
+        if other <= index and not sites[index].fixed:
+            sites[index] = replace(sites[index], twin=other)
+    for index, route in enumerate(routes):
+        taken = {other.twin for other in routes}
+        for before, first in enumerate(routes[:index]):
+            free = route.kept is None and first.twin is None and before not in taken
+            if free and _are_twins(layout, first, route, images):
+                routes[index] = replace(route, twin=before)
                 break
-    return replace(layout, stands=tuple(stands), lines=tuple(lines))
+    return replace(layout, sites=tuple(sites), routes=tuple(routes))
 
 
-def _are_twins(layout: Layout, first: Line, second: Line, images: dict[int, int]) -> bool:
+def _are_twins(layout: Layout, first: CableRoute, second: CableRoute, images: dict[int, int]) -> bool:
     return (
         images.get(first.winch) == second.winch
         and first.points.shape == second.points.shape

@@ -25,7 +25,7 @@ def certify(proposals: Proposals, trial: Trial) -> Certificate:
     return Certificate(
         further=float(np.sqrt(max(trial.error**2 - 2 * gain, 0.0))),
         paths=len(proposals.graph.edges) * 2 * proposals.options.hops,
-        slope=_slope(model.matrix, model.right, model.rows[model.room <= _HOLDS], trial.error),
+        slope=_slope(model.matrix, model.right, model.rows[model.left <= _HOLDS], trial.error),
     )
 
 
@@ -42,4 +42,4 @@ def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) 
 
 
 _HOLDS = 1e-4
-"""A limit with less room than this [m] holds."""
+"""A limit with a smaller margin than this [m] holds."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import cached_property
 
 from hydrostat.design.buildable import pulls, violations
-from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, Stage
+from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
 from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import Region, body_region
 from hydrostat.design.request import DesignRequest
@@ -54,7 +54,7 @@ class RouteSearch:
         self.winches, self.cables = int(request.winches), request.cables
         self.constraints, self.options = request.constraints, request.route_options
         self.bench = Bench(robot, request.poses, request.constraints)
-        self.stages: list[Stage] = []
+        self.stages: list[DesignStage] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
         self.sizes: dict[tuple[int, int], Trial] = {}
@@ -99,7 +99,7 @@ class RouteSearch:
         begun = growth.bare(self._beginning())
         if begun is None:
             raise HydrostatError("the network to begin with has no equilibrium in reach of its poses; start without it")
-        if begun.layout.lines:
+        if begun.layout.routes:
             self._noted("as it was", begun)
         for seed in growth.seeds(begun, winches=self.winches, cables=self.cables):
             self._noted("the first cable", seed)
@@ -122,7 +122,7 @@ class RouteSearch:
         while left > 0 and not growth.enough(best := self.found[0], self.winches):
             self.progress("Exchanging cables", self.options.exchanges - left, self.options.exchanges)
             better = growth.exchanged(best, winches=self.winches, most=left)
-            left -= len(best.layout.lines)
+            left -= len(best.layout.routes)
             if better is best:
                 break
             self.found.insert(0, growth.polished(better))
@@ -145,10 +145,10 @@ class RouteSearch:
     def _beginning(self) -> Layout:
         """What the search begins with: nothing, what is locked, or all that there is."""
         whole = layout_of(self.robot, self.constraints)
-        if self.request.improve and not whole.lines:
+        if self.request.improve and not whole.routes:
             raise InputError("the robot has no cables to improve; design without improving it")
         if self.request.improve:
-            self._check_counts("to be improved", len(whole.stands), len(whole.lines))
+            self._check_counts("to be improved", len(whole.sites), len(whole.routes))
             pushed = pushed_back(whole, self.region, 0.03 * self.robot.body.mesh.size)
             told = None if pushed is None else violations(pushed.robot(digits=_DIGITS), self.constraints, self.region)
             if pushed is None or told:
@@ -158,13 +158,13 @@ class RouteSearch:
                 )
             return pushed
         winches, cables = self.constraints.staying(self.robot)
-        kept = [line for line in whole.lines if line.kept in cables]
-        stays = [number for number, stand in enumerate(whole.stands) if stand.winch in winches]
+        kept = [route for route in whole.routes if route.kept in cables]
+        stays = [number for number, site in enumerate(whole.sites) if site.winch in winches]
         self._check_counts("locked", len(stays), len(kept))
         return replace(
             whole,
-            stands=tuple(whole.stands[number] for number in stays),
-            lines=tuple(replace(line, winch=stays.index(line.winch)) for line in kept),
+            sites=tuple(whole.sites[number] for number in stays),
+            routes=tuple(replace(route, winch=stays.index(route.winch)) for route in kept),
         )
 
     def _check_counts(self, which: str, winches: int, cables: int) -> None:
@@ -180,10 +180,10 @@ class RouteSearch:
         if words.startswith(("cable", "the first")):
             self.grown += 1
             self.progress("Growing networks", min(self.grown, self._total), self._total)
-        size = len(trial.layout.stands), len(trial.layout.lines)
+        size = len(trial.layout.sites), len(trial.layout.routes)
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
-        stage = Stage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error)
+        stage = DesignStage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error)
         self.stages.append(stage)
         if self.best is None or trial.cost < self.best.cost:
             self.best = trial

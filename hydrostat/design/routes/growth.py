@@ -36,7 +36,7 @@ class Growth:
 
     def bare(self, layout: Layout) -> Trial | None:
         """The trial of a layout as it is, even one without cables."""
-        if layout.lines:
+        if layout.routes:
             return self.bench.reached(layout, None)
         simulation = Simulation(layout.robot())
         return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
@@ -44,7 +44,7 @@ class Growth:
     def seeds(self, trial: Trial, *, winches: int, cables: int) -> list[Trial]:
         """Networks with one cable more, unlike one another, the best first."""
         options = self.proposals.options
-        needed = cables - len(trial.layout.lines)
+        needed = cables - len(trial.layout.routes)
         if needed <= 0:
             return [trial]
         starts = options.starts_for(trial.layout.dim)
@@ -55,12 +55,12 @@ class Growth:
     def grown(self, trial: Trial, *, winches: int, cables: int) -> Trial:
         """The network with as many cables; fewer where no more can be built, or none is needed, or none helps."""
         best = trial
-        while len(trial.layout.lines) < cables and not self.enough(trial, winches):
-            found = self.with_one_more(trial, winches=winches, needed=cables - len(trial.layout.lines))
+        while len(trial.layout.routes) < cables and not self.enough(trial, winches):
+            found = self.with_one_more(trial, winches=winches, needed=cables - len(trial.layout.routes))
             if found is None:
                 break
             trial = found
-            if trial.cost <= _SPOILT * best.cost or len(best.layout.stands) < winches:
+            if trial.cost <= _SPOILT * best.cost or len(best.layout.sites) < winches:
                 best = trial
             self.noted(_words(trial), trial)
         return best
@@ -97,15 +97,15 @@ class Growth:
 
     def exchanged(self, trial: Trial, *, winches: int, most: int) -> Trial:
         """The network after up to `most` cables were taken out in turn, and the best put in where that is better."""
-        for number in range(min(len(trial.layout.lines), most)):
-            line = trial.layout.lines[number]
-            if line.kept is not None or line.twin is not None or len(trial.layout.lines) < 2:
+        for number in range(min(len(trial.layout.routes), most)):
+            route = trial.layout.routes[number]
+            if route.kept is not None or route.twin is not None or len(trial.layout.routes) < 2:
                 continue
             rest = without(trial.layout, number)
             before = None if rest is None else self.bench.reached(rest, None)
             if before is None:
                 continue
-            needed = len(trial.layout.lines) - len(before.layout.lines)
+            needed = len(trial.layout.routes) - len(before.layout.routes)
             found = self.with_one_more(before, winches=winches, needed=needed)
             if found is None:
                 continue
@@ -117,10 +117,10 @@ class Growth:
 
     def pruned(self, trial: Trial) -> Trial:
         """The network less cables that do not earn their place: without them the cost stays the same, or enough."""
-        for number in reversed(range(len(trial.layout.lines))):
-            line = trial.layout.lines[number]
-            others = [other for other in trial.layout.lines if other is not line and other.winch == line.winch]
-            if line.kept is not None or line.twin is not None or not others:
+        for number in reversed(range(len(trial.layout.routes))):
+            route = trial.layout.routes[number]
+            others = [other for other in trial.layout.routes if other is not route and other.winch == route.winch]
+            if route.kept is not None or route.twin is not None or not others:
                 continue
             rest = without(trial.layout, number)
             found = None if rest is None else self.bench.reached(rest, None)
@@ -132,7 +132,7 @@ class Growth:
     def enough(self, trial: Trial, winches: int) -> bool:
         """Whether nothing more is needed."""
         enough = self.proposals.options.enough * self.proposals.graph.size
-        return len(trial.layout.stands) >= winches and trial.cost <= enough
+        return len(trial.layout.sites) >= winches and trial.cost <= enough
 
     def _tried(self, trial: Trial, winches: int, needed: int, count: int) -> list[Trial]:
         layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=count)
@@ -142,10 +142,10 @@ class Growth:
     def _rated(self, trial: Trial) -> float:
         """The cost [m], more for winches that are not deep in the body (R12) and cables that turn much (E14)."""
         layout = trial.layout
-        inner = [stand.winch.at for stand in layout.stands if stand.winch.mount is Mount.BODY]
+        inner = [site.winch.at for site in layout.sites if site.winch.mount is Mount.BODY]
         depths = self.proposals.graph.region.depths(np.array(inner)) if inner else np.zeros(0)
         shallow = np.maximum(1.0 - depths / self.proposals.deepest, 0.0).mean() if inner else 0.0
-        turned = np.mean([turns(line.points).sum() for line in layout.lines])
+        turned = np.mean([turns(route.points).sum() for route in layout.routes])
         return trial.cost * (1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned))
 
     def _short(self, trial: Trial) -> Trial:
@@ -158,33 +158,33 @@ class Growth:
 
 def without(layout: Layout, number: int) -> Layout | None:
     """A layout less a line, its twin, and winches that pull nothing any more; None if nothing is left."""
-    gone = {number} | {index for index, line in enumerate(layout.lines) if line.twin == number}
-    kept = [index for index in range(len(layout.lines)) if index not in gone]
-    pulled = {layout.lines[index].winch for index in kept}
-    stands = [index for index, stand in enumerate(layout.stands) if index in pulled or stand.fixed]
-    for index in list(stands):  # a winch whose twin is gone would have nothing to follow
-        twin = layout.stands[index].twin
-        if twin is not None and twin not in stands:
-            stands.append(twin)
-    stands.sort()
+    gone = {number} | {index for index, route in enumerate(layout.routes) if route.twin == number}
+    kept = [index for index in range(len(layout.routes)) if index not in gone]
+    pulled = {layout.routes[index].winch for index in kept}
+    sites = [index for index, site in enumerate(layout.sites) if index in pulled or site.fixed]
+    for index in list(sites):  # a winch whose twin is gone would have nothing to follow
+        twin = layout.sites[index].twin
+        if twin is not None and twin not in sites:
+            sites.append(twin)
+    sites.sort()
     if not kept:
         return None
-    order = {None: None, **{old: new for new, old in enumerate(stands)}}
+    order = {None: None, **{old: new for new, old in enumerate(sites)}}
     rank = {None: None, **{old: new for new, old in enumerate(kept)}}
     return replace(
         layout,
-        stands=tuple(replace(layout.stands[old], twin=order[layout.stands[old].twin]) for old in stands),
-        lines=tuple(
-            replace(line, winch=stands.index(line.winch), twin=rank[line.twin])
-            for line in (layout.lines[old] for old in kept)
+        sites=tuple(replace(layout.sites[old], twin=order[layout.sites[old].twin]) for old in sites),
+        routes=tuple(
+            replace(route, winch=sites.index(route.winch), twin=rank[route.twin])
+            for route in (layout.routes[old] for old in kept)
         ),
     )
 
 
 def _words(trial: Trial) -> str:
     layout = trial.layout
-    name = layout.stands[layout.lines[-1].winch].winch.name
-    return f"cable {len(layout.lines)}, pulled by {name}"
+    name = layout.sites[layout.routes[-1].winch].winch.name
+    return f"cable {len(layout.routes)}, pulled by {name}"
 
 
 _SEEDS = 3

@@ -13,7 +13,7 @@ from hydrostat.robot.robot import LARGEST_STEP
 
 
 @dataclass(frozen=True, eq=False)
-class Stand:
+class WinchSite:
     """A winch in the making.
 
     Attributes:
@@ -28,7 +28,7 @@ class Stand:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class CableRoute:
     """A cable in the making.
 
     Attributes:
@@ -68,8 +68,8 @@ class Layout:
 
     source: Robot
     constraints: Constraints
-    stands: tuple[Stand, ...]
-    lines: tuple[Line, ...]
+    sites: tuple[WinchSite, ...]
+    routes: tuple[CableRoute, ...]
 
     @property
     def dim(self) -> int:
@@ -78,21 +78,21 @@ class Layout:
 
     def robot(self, *, digits: int | None = None) -> Robot:
         """The robot with this network; coordinates rounded to so many digits of a metre."""
-        winches = [replace(stand.winch, at=_point(stand.winch.at, digits)) for stand in self.stands]
+        winches = [replace(site.winch, at=_point(site.winch.at, digits)) for site in self.sites]
         cables = []
-        for line in self.lines:
-            if line.kept is not None:
-                cables.append(line.kept)
+        for route in self.routes:
+            if route.kept is not None:
+                cables.append(route.kept)
                 continue
-            winch = winches[line.winch]
-            points = (winch.at, *(_point(point, digits) for point in line.points[1:]))
-            slack, ratio = (value if digits is None else round(value, digits) for value in (line.slack, line.ratio))
+            winch = winches[route.winch]
+            points = (winch.at, *(_point(point, digits) for point in route.points[1:]))
+            slack, ratio = (value if digits is None else round(value, digits) for value in (route.slack, route.ratio))
             cables.append(
                 replace(
-                    line.make or Cable(winch=winch.name, points=points),
+                    route.make or Cable(winch=winch.name, points=points),
                     winch=winch.name,
                     points=points,
-                    sheathed=((0, line.lead),) if line.lead else (),
+                    sheathed=((0, route.lead),) if route.lead else (),
                     slack=slack,
                     spool_radius=None if ratio == 1.0 else ratio * winch.spool_radius,
                 )
@@ -102,47 +102,47 @@ class Layout:
     @cached_property
     def starts(self) -> list[int]:
         """Where the points of each line begin among the numbers; then where slacks begin, and ratios."""
-        sizes = [self.dim * len(self.stands), *(self.dim * (len(line.points) - 1) for line in self.lines)]
-        return [int(end) for end in np.cumsum([*sizes, len(self.lines)])]
+        sizes = [self.dim * len(self.sites), *(self.dim * (len(route.points) - 1) for route in self.routes)]
+        return [int(end) for end in np.cumsum([*sizes, len(self.routes)])]
 
     @property
     def size(self) -> int:
         """How many numbers there are."""
-        return self.starts[-1] + len(self.lines)
+        return self.starts[-1] + len(self.routes)
 
-    def place_of(self, line: int, point: int) -> slice:
+    def place_of(self, route: int, point: int) -> slice:
         """The numbers of a point of a line."""
-        begin = self.dim * self.lines[line].winch if point == 0 else self.starts[line] + self.dim * (point - 1)
+        begin = self.dim * self.routes[route].winch if point == 0 else self.starts[route] + self.dim * (point - 1)
         return slice(begin, begin + self.dim)
 
     @cached_property
     def numbers(self) -> Vector:
         """All of them."""
-        parts = [np.ravel([stand.winch.at for stand in self.stands])]
-        parts += [line.points[1:].ravel() for line in self.lines]
-        parts += [[line.slack for line in self.lines], [line.ratio for line in self.lines]]
+        parts = [np.ravel([site.winch.at for site in self.sites])]
+        parts += [route.points[1:].ravel() for route in self.routes]
+        parts += [[route.slack for route in self.routes], [route.ratio for route in self.routes]]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
 
     def at(self, numbers: Vector) -> "Layout":
         """The same network with other numbers."""
         dim, slacks, ratios = self.dim, *self.starts[-2:]
-        places = numbers[: dim * len(self.stands)].reshape(-1, dim)
-        stands = tuple(
-            replace(stand, winch=replace(stand.winch, at=tuple(map(float, place))))
-            for stand, place in zip(self.stands, places, strict=True)
+        places = numbers[: dim * len(self.sites)].reshape(-1, dim)
+        sites = tuple(
+            replace(site, winch=replace(site.winch, at=tuple(map(float, place))))
+            for site, place in zip(self.sites, places, strict=True)
         )
-        lines = []
-        for index, line in enumerate(self.lines):
-            own = numbers[self.starts[index] : self.starts[index] + dim * (len(line.points) - 1)].reshape(-1, dim)
-            lines.append(
+        routes = []
+        for index, route in enumerate(self.routes):
+            own = numbers[self.starts[index] : self.starts[index] + dim * (len(route.points) - 1)].reshape(-1, dim)
+            routes.append(
                 replace(
-                    line,
-                    points=np.vstack([places[line.winch], own]),
+                    route,
+                    points=np.vstack([places[route.winch], own]),
                     slack=max(float(numbers[slacks + index]), 0.0),
                     ratio=float(np.clip(numbers[ratios + index], 1 / LARGEST_STEP, LARGEST_STEP)),
                 )
             )
-        return replace(self, stands=stands, lines=tuple(lines))
+        return replace(self, sites=sites, routes=tuple(routes))
 
     @cached_property
     def ties(self) -> Float[np.ndarray, "numbers free"]:
@@ -153,30 +153,30 @@ class Layout:
             flip["xyz".index(self.constraints.mirror)] = -1.0
         full = np.eye(self.size)
         drop = np.zeros(self.size, dtype=bool)
-        for index, stand in enumerate(self.stands):
+        for index, site in enumerate(self.sites):
             rows = slice(dim * index, dim * (index + 1))
-            if stand.fixed or stand.winch.mount is Mount.WORLD:
+            if site.fixed or site.winch.mount is Mount.WORLD:
                 drop[rows] = True
-            elif stand.twin == index:
+            elif site.twin == index:
                 drop[rows] |= flip < 0
-            elif stand.twin is not None:
-                _follow(full, drop, rows, slice(dim * stand.twin, dim * (stand.twin + 1)), flip)
-        for index, line in enumerate(self.lines):
-            count = len(line.points) - 1
+            elif site.twin is not None:
+                _follow(full, drop, rows, slice(dim * site.twin, dim * (site.twin + 1)), flip)
+        for index, route in enumerate(self.routes):
+            count = len(route.points) - 1
             rows = slice(self.starts[index], self.starts[index] + dim * count)
             singles = [slacks + index, ratios + index]
-            if line.kept is not None:
+            if route.kept is not None:
                 drop[rows] = True
                 drop[singles] = True
-            elif line.twin is not None:
-                twin = slice(self.starts[line.twin], self.starts[line.twin] + dim * count)
+            elif route.twin is not None:
+                twin = slice(self.starts[route.twin], self.starts[route.twin] + dim * count)
                 _follow(full, drop, rows, twin, np.tile(flip, count))
                 for base in (slacks, ratios):
                     _follow(
                         full,
                         drop,
                         slice(base + index, base + index + 1),
-                        slice(base + line.twin, base + line.twin + 1),
+                        slice(base + route.twin, base + route.twin + 1),
                         1.0,
                     )
             if self.constraints.slack == 0.0:

@@ -140,8 +140,8 @@ def price_paths(
         slots: paths that each directed edge keeps for each number of hops.
     """
     places = graph.winch_places if winches is None else np.asarray(winches, dtype=np.int64)
-    search = _Search(graph, moves, residual, pose_of_row, ridge, most, limits, slots)
-    starts = _Starts(graph, places, limits, lead_penalty, leads)
+    search = _PathSearch(graph, moves, residual, pose_of_row, ridge, most, limits, slots)
+    starts = _LeadStarts(graph, places, limits, lead_penalty, leads)
     candidates = [*search.from_winches(starts), *search.to_winches(starts)]
     gains = np.concatenate([gain for gain, _ in candidates])
     paths = np.concatenate([path for _, path in candidates])
@@ -161,7 +161,7 @@ _LANES = 4
 """Numbers that a vector register holds."""
 
 
-class _Starts:
+class _LeadStarts:
     """Where bare parts may begin: for each directed edge the shortest lead to its start."""
 
     def __init__(
@@ -190,7 +190,7 @@ class _Starts:
         return tuple(reversed(points))
 
 
-class _Search:
+class _PathSearch:
     """The two passes over one residual."""
 
     def __init__(
@@ -213,7 +213,7 @@ class _Search:
         self.squares = np.empty_like(self.pulls)
         edge_products(self.moves, self.residual, self.pulls, self.squares)
 
-    def from_winches(self, starts: _Starts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
+    def from_winches(self, starts: _LeadStarts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
         """Gains and points of the best path that ends with each directed edge."""
         blocked = self.graph.world[self.graph.targets]
         begins = np.where(blocked, 0.0, starts.factors)
@@ -221,7 +221,7 @@ class _Search:
         for gains, paths in self._grow(begins, starts.rooms, blocked, none + 1.0, none):
             yield gains, _turned(paths)
 
-    def to_winches(self, starts: _Starts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
+    def to_winches(self, starts: _LeadStarts) -> Iterator[tuple[Vector, Int[np.ndarray, "paths points"]]]:
         """Gains and points of the best path that begins with each directed edge."""
         graph = self.graph
         blocked = graph.world[graph.sources]
@@ -282,7 +282,7 @@ class _Search:
 
 
 def _pick(
-    graph: RouteGraph, starts: _Starts, paths: Int[np.ndarray, "paths points"], count: int
+    graph: RouteGraph, starts: _LeadStarts, paths: Int[np.ndarray, "paths points"], count: int
 ) -> list[tuple[int, tuple[int, ...]]]:
     """Numbers and leads of the first paths that are unlike one another; of like ones only if there are not enough."""
     reach = 2.0 * float(np.median(graph.lengths))

@@ -11,7 +11,7 @@ from hydrostat.design.polyline import Route, resample
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import mirrored
 from hydrostat.design.routes.bench import Bench, Trial
-from hydrostat.design.routes.layout import Layout, Line, Stand
+from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.price import PathLimits, PricedPath, price_paths
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import RouteGraph
@@ -100,7 +100,7 @@ class Proposals:
             count: of layouts from new winches, and of those from winches that there are.
         """
         layout = trial.layout
-        missing = winches - len(layout.stands)
+        missing = winches - len(layout.sites)
         found = []
         if missing > 0:
             places = self._vacant(layout, alone=missing == 1)
@@ -109,21 +109,19 @@ class Proposals:
             others = [path for path in paths if path not in deep][: count // 2]
             found += [(path, None) for path in (*deep, *others)]
         if needed > missing:
-            free = {
-                self._near(stand): index for index, stand in enumerate(layout.stands) if self._has_room(layout, index)
-            }
+            free = {self._near(site): index for index, site in enumerate(layout.sites) if self._has_room(layout, index)}
             if free:
                 paths = self.priced(trial, count=count, winches=list(free))
                 found += [(path, free[path.winch]) for path in paths]
         found.sort(key=lambda pair: -pair[0].gain)
         layouts = [self._with(layout, path, winch) for path, winch in found]
-        most = len(layout.lines) + needed
+        most = len(layout.routes) + needed
         return [added for added in layouts if added is not None and self._counts(added, winches, most)]
 
     def _counts(self, layout: Layout, winches: int, cables: int) -> bool:
         """Whether there are no more winches and cables than allowed: a mirrored cable brings another."""
-        pulled = np.bincount([line.winch for line in layout.lines], minlength=len(layout.stands))
-        fits = len(layout.stands) <= max(winches, 1) and len(layout.lines) <= cables
+        pulled = np.bincount([route.winch for route in layout.routes], minlength=len(layout.sites))
+        fits = len(layout.sites) <= max(winches, 1) and len(layout.routes) <= cables
         return fits and bool(pulled.max() <= layout.constraints.cables_per_winch)
 
     def _depth(self, place: int) -> float:
@@ -134,12 +132,12 @@ class Proposals:
         return _EDGE + (1 - _EDGE) * min(depth / self.deepest, 1.0)
 
     def _has_room(self, layout: Layout, winch: int) -> bool:
-        return sum(line.winch == winch for line in layout.lines) < layout.constraints.cables_per_winch
+        return sum(route.winch == winch for route in layout.routes) < layout.constraints.cables_per_winch
 
-    def _near(self, stand: Stand) -> int:
+    def _near(self, site: WinchSite) -> int:
         """The graph point at which a winch stands, or that is nearest to it."""
-        places = self.graph.winch_places if stand.winch.mount is Mount.WORLD else np.flatnonzero(~self.graph.world)
-        return int(places[np.argmin(np.linalg.norm(self.graph.points[places] - stand.winch.at, axis=1))])
+        places = self.graph.winch_places if site.winch.mount is Mount.WORLD else np.flatnonzero(~self.graph.world)
+        return int(places[np.argmin(np.linalg.norm(self.graph.points[places] - site.winch.at, axis=1))])
 
     def _vacant(self, layout: Layout, *, alone: bool = False) -> list[int]:
         """Places where one more winch may stand; in the mirror, where there can be no second one on its other side."""
@@ -147,22 +145,22 @@ class Proposals:
         if alone and mirror is not None:
             off = np.abs(self.graph.points[places, "xyz".index(mirror)])
             places = places[2 * off < layout.constraints.winch_gap]
-        for stand in layout.stands:
-            gap = 1e-6 if stand.winch.mount is Mount.WORLD else layout.constraints.winch_gap
-            away = np.linalg.norm(self.graph.points[places] - stand.winch.at, axis=1)
+        for site in layout.sites:
+            gap = 1e-6 if site.winch.mount is Mount.WORLD else layout.constraints.winch_gap
+            away = np.linalg.norm(self.graph.points[places] - site.winch.at, axis=1)
             places = places[away > gap]
         return [int(place) for place in places]
 
     def _with(self, layout: Layout, path: PricedPath, winch: int | None) -> Layout | None:
         """A layout with a cable along a path, of a new winch if none is given; None if it cannot be built."""
-        stands = layout.stands
+        sites = layout.sites
         if winch is None:
-            winch, stands = len(stands), (*stands, self._stand(layout, path.winch))
-        place = np.array(stands[winch].winch.at)
-        line = lay(path, self.graph, winch=winch, place=place, spacing=self.spacing)
-        if line is None:
+            winch, sites = len(sites), (*sites, self._new_site(layout, path.winch))
+        place = np.array(sites[winch].winch.at)
+        route = route_along(path, self.graph, winch=winch, place=place, spacing=self.spacing)
+        if route is None:
             return None
-        added = replace(layout, stands=stands, lines=(*layout.lines, line))
+        added = replace(layout, sites=sites, routes=(*layout.routes, route))
         if layout.constraints.mirror is not None:
             image = mirrored(added)
             if image is None:
@@ -170,14 +168,14 @@ class Proposals:
             added = image
         return pushed_back(added, self.graph.region, _REACH * self.graph.size)
 
-    def _stand(self, layout: Layout, place: int) -> Stand:
+    def _new_site(self, layout: Layout, place: int) -> WinchSite:
         constraints = layout.constraints
-        names = {stand.winch.name for stand in layout.stands}
+        names = {site.winch.name for site in layout.sites}
         name = next(f"winch_{number}" for number in range(1, 99) if f"winch_{number}" not in names)
         world = bool(self.graph.world[place])
         if world:
             name = layout.source.winches[place - int((~self.graph.world).sum())].name
-        return Stand(
+        return WinchSite(
             Winch(
                 name=name,
                 at=tuple(map(float, self.graph.points[place])),
@@ -217,7 +215,7 @@ _REACH = 0.03
 """What is farther than this share of the body's size from a limit does not feel it."""
 
 
-def lay(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spacing: float) -> Line | None:
+def route_along(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spacing: float) -> CableRoute | None:
     """A via point about every `spacing` along the bare path, as few as the body allows along the lead.
 
     Args:
@@ -238,11 +236,11 @@ def lay(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spaci
     if len(run) < 2 or np.linalg.norm(np.diff(run, axis=0), axis=1).min() < 1e-6:
         return None
     if not len(lead):
-        return Line(winch, run)
+        return CableRoute(winch, run)
     way = np.vstack([place, lead[1:], run[:1]])
     keep = 2 if graph.world[winch_point] else 1
     straight = _straightened(way, graph, keep)
-    return Line(winch, np.vstack([straight, run]), lead=len(straight))
+    return CableRoute(winch, np.vstack([straight, run]), lead=len(straight))
 
 
 def _smooth(route: Route, spacing: float) -> Route:

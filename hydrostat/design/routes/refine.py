@@ -8,7 +8,7 @@ from hydrostat.arrays import Vector
 from hydrostat.design.region import Region
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
-from hydrostat.design.routes.room import room
+from hydrostat.design.routes.margins import margins
 from hydrostat.ik.search.least_squares import least_squares
 from hydrostat.simulation import rig_slopes
 
@@ -44,12 +44,12 @@ def refine(bench: Bench, region: Region, trial: Trial, options: RefineOptions) -
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A trial to first order: |right + matrix d|^2, rows d <= room, for d = free numbers, then contractions."""
+    """A trial to first order: |right + matrix d|^2, rows d <= left, for d = free numbers, then contractions."""
 
     matrix: np.ndarray
     right: Vector
     rows: np.ndarray
-    room: Vector
+    left: Vector
     scale: Vector
     free: int
 
@@ -67,7 +67,7 @@ class _Refinement:
             if trial.error <= self.options.enough:
                 break
             effort = (
-                self.options.effort * trial.error / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.lines)))
+                self.options.effort * trial.error / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.routes)))
             )
             bend = self.options.straightness * trial.error / np.sqrt(max(len(turns(trial.layout)[0]), 1))
             found = self._step(trial, effort, bend)
@@ -115,9 +115,9 @@ class _Refinement:
         stacked = np.vstack([matrix, np.diag(np.maximum(ridge, 1e-9))])
         aim = np.concatenate([-model.right, np.zeros(len(ridge))])
         rows = model.rows * model.scale
-        step = least_squares(stacked, aim, rows, model.room)
+        step = least_squares(stacked, aim, rows, model.left)
         if step is None:
-            step = least_squares(stacked, aim, rows, np.maximum(model.room, 0.0))
+            step = least_squares(stacked, aim, rows, np.maximum(model.left, 0.0))
         return None if step is None else model.scale * step
 
     def _tried(self, trial: Trial, step: Vector, free: int) -> Trial | None:
@@ -131,8 +131,8 @@ class _Refinement:
         changes = step[free:].reshape(len(trial.poses), -1)
         contractions = []
         for pose, change in zip(trial.poses, changes, strict=True):
-            low = [-stand.winch.release for stand in layout.stands]
-            high = [stand.winch.travel for stand in layout.stands]
+            low = [-site.winch.release for site in layout.sites]
+            high = [site.winch.travel for site in layout.sites]
             contractions.append(np.clip(pose.contractions + change, low, high))
         return self.bench.held(moved, contractions, trial)
 
@@ -151,43 +151,43 @@ def linear_model(
         bend: what a turn of 1 rad counts [m].
     """
     layout, limit = trial.layout, bench.constraints.tension_limit
-    winches, free = len(layout.stands), layout.ties.shape[1]
+    winches, free = len(layout.sites), layout.ties.shape[1]
     count = free + winches * len(trial.poses)
-    matrix, right, rows, rooms = [], [], [], []
+    matrix, right, rows, lefts = [], [], [], []
     for index, pose in enumerate(trial.poses):
         slopes = rig_slopes(trial.simulation, pose, bench.markers[index])
         own = np.zeros((len(slopes.contractions), count))
         own[:, :free] = _by_numbers(layout, slopes) @ layout.ties
         begin = free + winches * index
         own[:, begin : begin + winches] = slopes.contractions
-        markers = len(own) - len(layout.lines)
+        markers = len(own) - len(layout.routes)
         matrix += [-bench.weights[index] * own[:markers], effort * own[markers:]]
         right += [bench.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
         near = pose.tensions > 0.5 * limit
         rows.append(own[markers:][near])
-        rooms.append(limit - pose.tensions[near])
-        for winch, stand in enumerate(layout.stands):
+        lefts.append(limit - pose.tensions[near])
+        for winch, site in enumerate(layout.sites):
             for sign, left in (
-                (1.0, stand.winch.travel - pose.contractions[winch]),
-                (-1.0, pose.contractions[winch] + stand.winch.release),
+                (1.0, site.winch.travel - pose.contractions[winch]),
+                (-1.0, pose.contractions[winch] + site.winch.release),
             ):
                 row = np.zeros((1, count))
                 row[0, begin + winch] = sign
                 rows.append(row)
-                rooms.append(np.array([left]))
+                lefts.append(np.array([left]))
     bends, slopes = turns(layout)
     straight = np.zeros((len(bends), count))
     straight[:, :free] = bend * slopes @ layout.ties
     matrix.append(straight)
     right.append(bend * bends)
-    geometry = room(layout, region, reach=reach)
+    geometry = margins(layout, region, reach=reach)
     tied = np.zeros((len(geometry.rows), count))
     tied[:, :free] = geometry.rows @ layout.ties
     scale = np.full(count, _TRAVEL * bench.constraints.travel)
     scale[:free] = _scales(layout, reach)
     return Model(
         np.vstack(matrix), np.concatenate(right), np.vstack([*rows, tied]),
-        np.concatenate([*rooms, geometry.room]), scale, free,
+        np.concatenate([*lefts, geometry.left]), scale, free,
     )  # fmt: skip
 
 
@@ -197,17 +197,17 @@ def turns(layout: Layout) -> tuple[Vector, np.ndarray]:
     A turn is the difference of the two segments at a point, over their mean length in this layout's cable.
     """
     values, rows = [np.zeros(0)], [np.zeros((0, layout.size))]
-    for index, line in enumerate(layout.lines):
-        if line.kept is not None or len(line.points) < 3:
+    for index, route in enumerate(layout.routes):
+        if route.kept is not None or len(route.points) < 3:
             continue
-        spacing = float(np.linalg.norm(np.diff(line.points, axis=0), axis=1).mean())
-        inner = len(line.points) - 2
+        spacing = float(np.linalg.norm(np.diff(route.points, axis=0), axis=1).mean())
+        inner = len(route.points) - 2
         own = np.zeros((inner, layout.dim, layout.size))
         for point in range(inner):
             for step, weight in enumerate((1.0, -2.0, 1.0)):
                 place = layout.place_of(index, point + step)
                 own[point, :, place] += weight / spacing * np.eye(layout.dim)
-        values.append(np.diff(line.points, n=2, axis=0).ravel() / spacing)
+        values.append(np.diff(route.points, n=2, axis=0).ravel() / spacing)
         rows.append(own.reshape(-1, layout.size))
     return np.concatenate(values), np.vstack(rows)
 
@@ -225,29 +225,29 @@ def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
     """The nearest layout that can be built, by steps of least length; None if that is not found."""
     ties = layout.ties
     for _ in range(_PUSHES):
-        limits = room(layout, region, reach=reach)
-        if not len(limits.room) or limits.room.min() >= -_CLOSE:
+        limits = margins(layout, region, reach=reach)
+        if not len(limits.left) or limits.left.min() >= -_CLOSE:
             return layout
         rows = limits.rows @ ties
-        step = least_squares(np.eye(ties.shape[1]), np.zeros(ties.shape[1]), rows, limits.room)
+        step = least_squares(np.eye(ties.shape[1]), np.zeros(ties.shape[1]), rows, limits.left)
         if step is None:
             return None
         moved = ties @ step
         if np.abs(moved).max(initial=0.0) > layout.source.body.mesh.size:
             return None
         layout = layout.at(layout.numbers + moved)
-    limits = room(layout, region, reach=0.0)
-    return layout if not len(limits.room) or limits.room.min() >= -_CLOSE else None
+    limits = margins(layout, region, reach=0.0)
+    return layout if not len(limits.left) or limits.left.min() >= -_CLOSE else None
 
 
 def _by_numbers(layout: Layout, slopes) -> np.ndarray:
     """Slopes by the numbers of a layout, (rows, numbers)."""
     full = np.zeros((len(slopes.contractions), layout.size))
     begin = 0
-    for index, line in enumerate(layout.lines):
-        for point in range(len(line.points)):
+    for index, route in enumerate(layout.routes):
+        for point in range(len(route.points)):
             full[:, layout.place_of(index, point)] += slopes.points[:, begin + point]
-        begin += len(line.points)
+        begin += len(route.points)
     slacks, ratios = layout.starts[-2:]
     full[:, slacks:ratios] = slopes.slack
     full[:, ratios:] = slopes.ratios

@@ -19,7 +19,7 @@ from hydrostat.design.region import body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.judge import judge, prune
-from hydrostat.design.trees.winch_trees import Tree, WinchTrees
+from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Cable, Pose, Robot, Winch
 
@@ -46,7 +46,7 @@ class _TreePlan:
 
     candidates: tuple[np.ndarray, ...]
     trees: WinchTrees
-    chosen: list[Tree]
+    chosen: list[WinchTree]
 
     @property
     def score(self) -> float:
@@ -168,7 +168,7 @@ class _TreeDesign:
         routes = [route for route in laid if route is not None and length(route) >= shortest]
         return tuple(candidates), _apart(routes, self.spacing)
 
-    def _plant(self, trees: WinchTrees, share: tuple[int, ...], phi: float) -> list[Tree]:
+    def _plant(self, trees: WinchTrees, share: tuple[int, ...], phi: float) -> list[WinchTree]:
         """Winch after winch, each with the routes that are left (E25)."""
         used, taken, chosen = set(), [], []
         for count in share:
@@ -180,7 +180,7 @@ class _TreeDesign:
             chosen.append(tree)
         return chosen
 
-    def _build(self, trees: WinchTrees, chosen: list[Tree]) -> Robot | None:
+    def _build(self, trees: WinchTrees, chosen: list[WinchTree]) -> Robot | None:
         """The network as a robot; None if a cable leaves the body, turns too sharply, or cannot be kept apart."""
         pulled = [
             (index, *trees.cable_points(tree.place, route))
@@ -204,7 +204,7 @@ class _TreeDesign:
         robot = self.robot.with_network(winches, cables)
         return None if violations(robot, self.constraints, self.region) else robot
 
-    def _winch(self, index: int, tree: Tree) -> Winch:
+    def _winch(self, index: int, tree: WinchTree) -> Winch:
         return Winch(
             name=f"winch_{index + 1}",
             at=_point(self.mesh.nodes[tree.place]),

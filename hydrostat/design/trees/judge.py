@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from hydrostat.design.network import Stage, rms_error
+from hydrostat.design.network import DesignStage, rms_error
 from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
@@ -47,7 +47,7 @@ def judge(
             )
             error = rms_error(reached[index])
             if cost(reached[index], tension) <= error:
-                better(Stage(words="a network judged", robot=robots[index], error=error))
+                better(DesignStage(words="a network judged", robot=robots[index], error=error))
         chosen.sort(key=lambda index: cost(reached[index], tension))
         if number < len(_ROUNDS) - 1:
             chosen = chosen[: max(_FEWEST, len(chosen) // _KEPT)]

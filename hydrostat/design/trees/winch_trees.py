@@ -19,7 +19,7 @@ from hydrostat.geometry.mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)
-class Tree:
+class WinchTree:
     """One winch and the routes it pulls.
 
     Attributes:
@@ -58,7 +58,7 @@ class WinchTrees:
         self.leads, self.reversed = self._leads()
         self.shortenings = np.array([[_shortening(mesh, route, nodes) for nodes in posed] for route in routes])
 
-    def best(self, count: int, used: set[int], taken: list[int], phi: float) -> Tree | None:
+    def best(self, count: int, used: set[int], taken: list[int], phi: float) -> WinchTree | None:
         """Best winch with `count` of the routes not yet used, over all places not too near winches `taken` (R41)."""
         nodes = self.mesh.nodes
         rows = np.arange(len(self.places))
@@ -68,7 +68,7 @@ class WinchTrees:
         order = np.argsort(self.shortenings.mean(axis=1), kind="stable")
         order = order[~np.isin(order, list(used))]
         reached = np.isfinite(self.leads[np.ix_(rows, order)])
-        found: Tree | None = None
+        found: WinchTree | None = None
         for pattern in np.unique(reached, axis=0):
             same = rows[(reached == pattern).all(axis=1)]
             if pattern.any():
@@ -79,7 +79,7 @@ class WinchTrees:
 
     def _best_run(
         self, rows: Int[np.ndarray, " places"], order: Int[np.ndarray, " routes"], count: int, phi: float
-    ) -> Tree:
+    ) -> WinchTree:
         """Best of places that reach the same routes, with `count` of these that follow one another in `order`."""
         size = min(count, len(order))
         scale = max(float(self.shortenings.max(initial=0.0)), 1e-9)
@@ -88,7 +88,7 @@ class WinchTrees:
         scores = np.array([tree_score(run, phi) for run in runs]) - self.options.lead_penalty * leads
         row, first = np.unravel_index(np.argmax(np.round(scores, 12)), scores.shape)
         chosen = order[first : first + size].tolist()
-        return Tree(int(self.places[rows[row]]), tuple(sorted(chosen)), float(scores[row, first]))
+        return WinchTree(int(self.places[rows[row]]), tuple(sorted(chosen)), float(scores[row, first]))
 
     def cable_points(self, place: int, route: int) -> tuple[Route, int]:
         """Points of the cable from a winch along its lead and its route, and how many of them are the lead.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hydrostat.drawing.palette import WINCHES
 from hydrostat.studio.designing.design_work import Candidate
-from hydrostat.studio.designing.run import Mark, Run
+from hydrostat.studio.designing.run import DesignRun, Mark
 from hydrostat.units import counted
 
 LEFT, RIGHT, TOP, BOTTOM = 34.0, 10.0, 20.0, 32.0
@@ -162,7 +162,7 @@ def _legend(keys: list[tuple[str, str]]) -> str:
 GROWTH_WIDTH, GROWTH_HEIGHT = 316.0, 132.0
 
 
-def growth_chart(run: Run, seconds: float) -> str:
+def growth_chart(run: DesignRun, seconds: float) -> str:
     """The error against time, as SVG.
 
     Args:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design import DesignRequest, Stage, find_network
+from hydrostat.design import DesignRequest, DesignStage, find_network
 from hydrostat.design.network import rms_error
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Pose, Robot, Winch
@@ -164,7 +164,7 @@ class DesignsFound:
 def design_work(report: Report, robot: Robot, request: DesignRequest) -> DesignsFound:
     """Search, tell of each better network, and return what there is; interrupted, the best so far."""
 
-    def watch(stage: Stage) -> None:
+    def watch(stage: DesignStage) -> None:
         found = stage.robot
         report.part(Glimpse(winches=found.winches, cables=found.cables, error=stage.error, words=stage.words))
 

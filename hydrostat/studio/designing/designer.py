@@ -23,7 +23,7 @@ from hydrostat.studio.designing.design_work import (
 )
 from hydrostat.studio.designing.ease import Ease
 from hydrostat.studio.designing.painter import Painter
-from hydrostat.studio.designing.run import Mark, Run, beginning, error_at_rest, wished_poses, wished_request
+from hydrostat.studio.designing.run import DesignRun, Mark, beginning, error_at_rest, wished_poses, wished_request
 from hydrostat.studio.designing.sketch import BodySketch
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
@@ -67,7 +67,7 @@ class Designer(Stage):
         """
         self._document, self._jobs, self._options = document, jobs, options
         self.painter = Painter(document)
-        self.run: Run | None = None
+        self.run: DesignRun | None = None
         self.chosen: int | None = None
         self.pose: str | None = None
         self.outcome = ""
@@ -167,7 +167,7 @@ class Designer(Stage):
         robot = self._document.robot
         request = wished_request(robot, self.wishes, self._options)
         before = self.run, self._running, self.outcome
-        self.run = Run(
+        self.run = DesignRun(
             robot=robot,
             request=request,
             began=time.monotonic(),

@@ -1,4 +1,4 @@
-"""`Run`: a design that goes on, or has just ended."""
+"""`DesignRun`: a design that goes on, or has just ended."""
 
 from dataclasses import dataclass, field
 
@@ -87,7 +87,7 @@ class Mark:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
+class DesignRun:
     """How far a design is.
 
     Attributes:

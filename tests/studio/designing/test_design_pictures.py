@@ -7,10 +7,11 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.design import DesignRequest
+from hydrostat.robot import Pose
 from hydrostat.studio.designing.charts import Chart, front, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.ease import DURATION, Ease
-from hydrostat.studio.designing.run import Mark, Run
+from hydrostat.studio.designing.run import DesignRun, Mark
 from hydrostat.studio.designing.sketch import EDGE, MARGIN, BodySketch
 
 
@@ -70,10 +71,10 @@ def marks(*errors: float) -> tuple[Mark, ...]:
     return tuple(Mark(seconds=1.0 + n, error=error, winches=1, cables=n + 1) for n, error in enumerate(errors))
 
 
-def run(*errors: float) -> Run:
+def run(*errors: float) -> DesignRun:
     robot = strip_robot(columns=10, rows=3)
     request = DesignRequest(poses=(Pose(name="up", targets={}),), winches=1, cables=2)
-    return Run(robot=robot, request=request, began=0.0, rest=0.02, best=robot, trail=marks(*errors))
+    return DesignRun(robot=robot, request=request, began=0.0, rest=0.02, best=robot, trail=marks(*errors))
 
 
 def test_the_error_falls_in_steps_from_rest_to_now() -> None:

@@ -224,10 +224,17 @@ def test_the_end_of_one_design_does_not_end_the_next(strip: Robot) -> None:
 
 
 def test_what_the_search_refuses_is_told(fresh: Studio) -> None:
-    fresh.designer.wish(winches=2, cables=1)
+    fresh.designer.wish(winches=1, cables=1, mirror="y")
     fresh.designer.design()
     fresh.until(lambda: not fresh.designer.running)
-    assert fresh.designer.outcome.startswith("2 winches and 1 cables")
+    assert fresh.designer.outcome.startswith("1 cable: a mirrored network has its cables in pairs")
+
+
+def test_what_cannot_be_asked_is_told_at_once(fresh: Studio) -> None:
+    fresh.designer.wish(winches=2, cables=1)
+    with pytest.raises(InputError, match="^2 winches and 1 cables"):
+        fresh.designer.design()
+    assert not fresh.designer.running
 
 
 def test_without_poses_it_says_what_to_do(fresh: Studio, strip: Robot) -> None:

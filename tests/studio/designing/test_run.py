@@ -59,10 +59,12 @@ def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
 
 
 def test_as_few_winches_as_will_do(starfish: Robot) -> None:
-    asked = wished_request(starfish, Wishes(winches=0, cables=4, tolerance=0.003, improve=True))
-    assert (asked.winches, asked.cables, asked.improve) == ("auto", 4, True)
+    asked = wished_request(starfish, Wishes(winches=0, cables=4, tolerance=0.003))
+    assert (asked.winches, asked.cables, asked.improve) == ("auto", 4, False)
     assert asked.options == RouteOptions(tolerance=0.003)
     assert wished_request(starfish, Wishes(winches=3)).winches == 3
+    with pytest.raises(InputError, match="give a number of winches to improve"):
+        wished_request(starfish, Wishes(winches=0, improve=True))
 
 
 def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:

@@ -1,4 +1,4 @@
-"""`room`: how much room a layout has within its constraints, to first order."""
+"""`margins`: what the constraints leave a layout to move in, to first order."""
 
 from typing import NamedTuple
 
@@ -13,14 +13,14 @@ from hydrostat.design.zone import Zone
 from hydrostat.robot import Mount
 
 
-class Room(NamedTuple):
-    """Limits on a change d of the numbers of a layout: rows d <= room [m]."""
+class Margins(NamedTuple):
+    """Limits on a change d of the numbers of a layout: rows d <= left [m]."""
 
     rows: Float[np.ndarray, "limits numbers"]
-    room: Float[np.ndarray, " limits"]
+    left: Float[np.ndarray, " limits"]
 
 
-def room(layout: Layout, region: Region, *, reach: float) -> Room:
+def margins(layout: Layout, region: Region, *, reach: float) -> Margins:
     """All limits that a layout is within `reach` [m] of, with a hair of margin each.
 
     Args:
@@ -28,17 +28,17 @@ def room(layout: Layout, region: Region, *, reach: float) -> Room:
         region: where cables may be.
         reach: how far anything will move.
     """
-    return _Room(layout, region, reach).found()
+    return _MarginRows(layout, region, reach).found()
 
 
-class _Room:
+class _MarginRows:
     def __init__(self, layout: Layout, region: Region, reach: float) -> None:
         self.layout, self.region, self.reach = layout, region, reach
         self.constraints: Constraints = layout.constraints
         self.rows: list[np.ndarray] = []
-        self.rooms: list[float] = []
+        self.left: list[float] = []
 
-    def found(self) -> Room:
+    def found(self) -> Margins:
         self._winches()
         self._edges()
         self._gaps()
@@ -46,23 +46,23 @@ class _Room:
         self._lengths()
         self._bounds()
         rows = np.array(self.rows).reshape(-1, self.layout.size)
-        return Room(rows, np.array(self.rooms))
+        return Margins(rows, np.array(self.left))
 
-    def _add(self, room: float, *parts: tuple[slice, Vector]) -> None:
-        if room > self.reach:
+    def _add(self, left: float, *parts: tuple[slice, Vector]) -> None:
+        if left > self.reach:
             return
         row = np.zeros(self.layout.size)
         for place, slope in parts:
             row[place] += slope
         if row.any():
             self.rows.append(row)
-            self.rooms.append(room)
+            self.left.append(left)
 
     def _winches(self) -> None:
         """Winches in the body: deep enough, apart, and in a zone where they may be."""
         layout, dim = self.layout, self.layout.dim
-        places = np.array([stand.winch.at for stand in layout.stands])
-        inner = [i for i, stand in enumerate(layout.stands) if stand.winch.mount is Mount.BODY and not stand.fixed]
+        places = np.array([site.winch.at for site in layout.sites])
+        inner = [i for i, site in enumerate(layout.sites) if site.winch.mount is Mount.BODY and not site.fixed]
         if not inner:
             return
         depths, ways = self.region.depths(places[inner]), self.region.inward(places[inner])
@@ -71,7 +71,7 @@ class _Room:
             need = max(self.constraints.winch_clearance, self.constraints.clearance)
             self._add(depth - need - _HAIR, (own, -way))
             self._zones(places[index], own)
-            for other in range(len(layout.stands)):
+            for other in range(len(layout.sites)):
                 if other == index or (other in inner and other < index):
                     continue
                 self._apart(places[index], own, places[other], slice(dim * other, dim * (other + 1)),
@@ -116,28 +116,28 @@ class _Room:
         rows[every[0], spots.starts[:, None] + every[1]] -= (1 - spots.shares)[:, None] * ways
         rows[every[0], spots.ends[:, None] + every[1]] -= spots.shares[:, None] * ways
         self.rows += list(rows)
-        self.rooms += lefts.tolist()
+        self.left += lefts.tolist()
 
     def _gaps(self) -> None:
         """Holes apart; those of other winches' cables outside a winch."""
         layout, gap = self.layout, self.constraints.hole_gap
-        spots = [(index, point) for index, line in enumerate(layout.lines) for point in range(1, len(line.points))]
+        spots = [(index, point) for index, route in enumerate(layout.routes) for point in range(1, len(route.points))]
         owners = np.array([index for index, _ in spots])
         where = [layout.place_of(*spot) for spot in spots]
-        places = np.concatenate([line.points[1:] for line in layout.lines])
+        places = np.concatenate([route.points[1:] for route in layout.routes])
         away = np.linalg.norm(places[:, None] - places[None], axis=2)
         shared = (away < 1e-6) & (owners[:, None] != owners)
-        stays = np.array([layout.lines[index].kept is not None for index in owners])
+        stays = np.array([layout.routes[index].kept is not None for index in owners])
         seen = ~shared & ~(stays[:, None] & stays)
         for one, other in np.argwhere(np.triu((away < gap + self.reach) & seen, 1)):
             self._apart(places[one], where[one], places[other], where[other], gap)
-        pulled = np.array([layout.lines[index].winch for index in owners])
-        for number, stand in enumerate(layout.stands):
-            if stand.winch.mount is Mount.WORLD:
+        pulled = np.array([layout.routes[index].winch for index in owners])
+        for number, site in enumerate(layout.sites):
+            if site.winch.mount is Mount.WORLD:
                 continue
-            centre, own = np.array(stand.winch.at), slice(layout.dim * number, layout.dim * (number + 1))
-            needs = np.where(pulled == number, gap, 2 * stand.winch.spool_radius)
-            free = ~(stays & stand.fixed)
+            centre, own = np.array(site.winch.at), slice(layout.dim * number, layout.dim * (number + 1))
+            needs = np.where(pulled == number, gap, 2 * site.winch.spool_radius)
+            free = ~(stays & site.fixed)
             for hole in np.flatnonzero(free & (np.linalg.norm(places - centre, axis=1) < needs + self.reach)):
                 self._apart(places[hole], where[hole], centre, own, float(needs[hole]))
 
@@ -150,10 +150,10 @@ class _Room:
     def _turns(self) -> None:
         """No turn sharper than allowed, no arc tighter; slopes by central differences of the three points."""
         turn, radius = np.radians(self.constraints.turn - _DEGREE), self.constraints.bend_radius
-        for index, line in enumerate(self.layout.lines):
-            if line.kept is not None or len(line.points) < 3:
+        for index, route in enumerate(self.layout.routes):
+            if route.kept is not None or len(route.points) < 3:
                 continue
-            corners = np.stack([line.points[:-2], line.points[1:-1], line.points[2:]], axis=1)
+            corners = np.stack([route.points[:-2], route.points[1:-1], route.points[2:]], axis=1)
             for kind in ("turn", "radius") if radius > 0 else ("turn",):
                 values, slopes = _sloped(corners, kind, turn, radius)
                 for corner, (value, slope) in enumerate(zip(values, slopes, strict=True)):
@@ -164,9 +164,9 @@ class _Room:
         longest = self.constraints.longest
         if longest is None:
             return
-        for index, line in enumerate(self.layout.lines):
-            if line.kept is None:
-                spans = np.diff(line.points, axis=0)
+        for index, route in enumerate(self.layout.routes):
+            if route.kept is None:
+                spans = np.diff(route.points, axis=0)
                 lengths = np.linalg.norm(spans, axis=1)
                 units = spans / lengths[:, None]
                 parts = [(self.layout.place_of(index, k), -units[k]) for k in range(len(units))]
@@ -177,15 +177,15 @@ class _Room:
         """Of slack and spool ratios."""
         slacks, ratios = self.layout.starts[-2:]
         most = self.constraints.spool_ratio
-        for index, line in enumerate(self.layout.lines):
+        for index, route in enumerate(self.layout.routes):
             for place, value, low, high in (
-                (slacks + index, line.slack, 0.0, self.constraints.slack),
-                (ratios + index, line.ratio, 1 / most, most),
+                (slacks + index, route.slack, 0.0, self.constraints.slack),
+                (ratios + index, route.ratio, 1 / most, most),
             ):
                 own = slice(place, place + 1)
                 for sign, left in ((1.0, high - value), (-1.0, value - low)):
                     self.rows.append(_unit(self.layout.size, own, sign))
-                    self.rooms.append(left)
+                    self.left.append(left)
 
 
 class _Spots(NamedTuple):
@@ -214,12 +214,12 @@ class _Spots(NamedTuple):
 def _spots(layout: Layout, spacing: float) -> _Spots:
     """Every point of a cable but those that stay, and places about every `spacing` between them."""
     starts, ends, shares, bare, entry, widths = [], [], [], [], [], []
-    for index, line in enumerate(layout.lines):
-        if line.kept is not None:
+    for index, route in enumerate(layout.routes):
+        if route.kept is not None:
             continue
-        stand = layout.stands[line.winch]
-        free = np.inf if stand.winch.mount is Mount.WORLD else layout.constraints.clearance if stand.fixed else 0.0
-        lengths = np.linalg.norm(np.diff(line.points, axis=0), axis=1)
+        site = layout.sites[route.winch]
+        free = np.inf if site.winch.mount is Mount.WORLD else layout.constraints.clearance if site.fixed else 0.0
+        lengths = np.linalg.norm(np.diff(route.points, axis=0), axis=1)
         for point, length in enumerate(lengths):
             here, there = (layout.place_of(index, end).start for end in (point, point + 1))
             count = int(np.clip(np.ceil(length / spacing) - 1, 1, _MOST))
@@ -227,7 +227,7 @@ def _spots(layout: Layout, spacing: float) -> _Spots:
             starts += [there, *[here] * count]
             ends += [there] * (count + 1)
             shares += [0.0, *own]
-            bare += [point + 1 > line.lead, *[point >= line.lead] * count]
+            bare += [point + 1 > route.lead, *[point >= route.lead] * count]
             entry += [False, *((own * length < free) & (point == 0))]
             widths += [0.0, *[1 / (count + 1)] * count]
     return _Spots(
@@ -278,8 +278,8 @@ def _unit(size: int, own: slice, sign: float) -> Vector:
 def _sloped(
     corners: Float[np.ndarray, "corners 3 dim"], kind: str, turn: float, radius: float
 ) -> tuple[Vector, Float[np.ndarray, "corners 3 dim"]]:
-    """Room of each corner [m], and its slopes by the three points."""
-    value = _turn_room if kind == "turn" else _radius_room
+    """Margin of each corner [m], and its slopes by the three points."""
+    value = _turn_margin if kind == "turn" else _radius_margin
     limit = turn if kind == "turn" else radius
     slopes = np.empty_like(corners)
     for point in range(3):
@@ -301,12 +301,12 @@ def _angles(corners: Float[np.ndarray, "corners 3 dim"]) -> tuple[Vector, Vector
     return np.arccos(np.clip(cosines, -1.0, 1.0)), np.minimum(*lengths)
 
 
-def _turn_room(corners: Float[np.ndarray, "corners 3 dim"], turn: float) -> Vector:
-    """As a length: the room of the angle times the shorter segment."""
+def _turn_margin(corners: Float[np.ndarray, "corners 3 dim"], turn: float) -> Vector:
+    """Margin of the angle times the shorter segment, as a length [m]."""
     angles, shorter = _angles(corners)
     return (turn - angles) * shorter
 
 
-def _radius_room(corners: Float[np.ndarray, "corners 3 dim"], radius: float) -> Vector:
+def _radius_margin(corners: Float[np.ndarray, "corners 3 dim"], radius: float) -> Vector:
     angles, shorter = _angles(corners)
     return 0.5 * shorter - radius * np.tan(0.5 * np.minimum(angles, 3.0))

@@ -12,8 +12,8 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import body_region
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.margins import margins
 from hydrostat.design.routes.refine import pushed_back
-from hydrostat.design.routes.room import room
 from hydrostat.design.zone import Zone
 from hydrostat.robot import Body, Cable, Marker, Mount, Pin, Robot, Winch
 
@@ -105,7 +105,7 @@ def test_what_is_pushed_back_can_be_built(name: str, unchecked: None) -> None:
     assert pushed is not None
     assert violations(pushed.robot(digits=5), constraints, region) == []
     away = max(np.abs(one.points - other.points).max() for one, other in zip(
-        pushed.lines, layout_of(robot, constraints).lines, strict=True))  # fmt: skip
+        pushed.routes, layout_of(robot, constraints).routes, strict=True))  # fmt: skip
     assert away < 0.04
 
 
@@ -137,7 +137,7 @@ def test_new_cables_of_a_locked_winch_at_the_edge() -> None:
 
 def quantities(layout: Layout, region: Any) -> np.ndarray:
     """The room of every row, with all rows there."""
-    return room(layout, region, reach=1.0).room
+    return margins(layout, region, reach=1.0).left
 
 
 KINDS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
@@ -165,10 +165,10 @@ def test_rows_are_the_slopes_of_what_they_limit(name: str, unchecked: None) -> N
     region = body_region(robot.body, constraints.clearance)
     start = layout_of(robot, constraints)
     numbers = start.numbers + np.concatenate(
-        [np.random.default_rng(3).uniform(-5e-4, 5e-4, start.starts[-2]), np.full(2 * len(start.lines), 1e-3)]
+        [np.random.default_rng(3).uniform(-5e-4, 5e-4, start.starts[-2]), np.full(2 * len(start.routes), 1e-3)]
     )
     here = start.at(numbers)
-    rows = room(here, region, reach=1.0).rows
+    rows = margins(here, region, reach=1.0).rows
     step, slopes = 1e-7, np.zeros_like(rows)
     for index in range(here.size):
         ends = [quantities(here.at(numbers + sign * step * np.eye(here.size)[index]), region) for sign in (1, -1)]
@@ -184,9 +184,9 @@ def test_only_limits_within_reach_are_told() -> None:
     constraints = Constraints()
     region = body_region(robot.body, constraints.clearance)
     start = layout_of(robot, constraints)
-    far, near = room(start, region, reach=1.0), room(start, region, reach=0.006)
-    bounds = 4 * len(start.lines)
-    assert len(near.room) - bounds == (far.room[:-bounds] <= 0.006).sum()
+    far, near = margins(start, region, reach=1.0), margins(start, region, reach=0.006)
+    bounds = 4 * len(start.routes)
+    assert len(near.left) - bounds == (far.left[:-bounds] <= 0.006).sum()
 
 
 def test_a_layout_far_out_is_given_up() -> None:
@@ -200,5 +200,5 @@ def test_a_layout_far_out_is_given_up() -> None:
 def test_strips_have_room() -> None:
     """The strip of the other tests: every number of its layout is limited by something within the body."""
     start = layout_of(strip_robot(), Constraints(winch_clearance=0.005))
-    rows = room(start, body_region(start.source.body, 0.005), reach=1.0).rows
+    rows = margins(start, body_region(start.source.body, 0.005), reach=1.0).rows
     assert (np.abs(rows).max(axis=0) > 0).all()
