@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hydrostat.cli.options import positive
+from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -86,12 +87,10 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
 
     if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
-    if typed.fibres is not None and typed.fibres not in list(FibreKind):
-        raise InputError(f"--fibres {typed.fibres}: must be one of {', '.join(FibreKind)}")
     if typed.fibres is not None and not trees:
         raise InputError("--fibres is for --method trees; routes need no muscle fibres")
     if typed.fibres is not None:
-        return TreeOptions(fibres=FibreKind(typed.fibres))
+        return TreeOptions(fibres=member(FibreKind, typed.fibres, what="--fibres"))
     if typed.tolerance is not None and not trees:
         return RouteOptions(tolerance=positive("--tolerance", typed.tolerance, LENGTH))
     return None

@@ -6,6 +6,7 @@ from math import inf, isfinite
 from numbers import Integral, Real
 from typing import NoReturn
 
+from hydrostat.closed_set import make_member
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Cable, Mount, Robot, Winch
@@ -123,9 +124,7 @@ class Constraints:
                 if not isinstance(zone, Zone):
                     _refuse(f"{field}[{place}]", zone, "a Zone, such as Zone(at=(0.0, 0.0), radius=0.01)")
         if self.mount is not None:
-            if self.mount not in list(Mount):
-                _refuse("mount", self.mount, '"body", "world", or None to do as the robot does')
-            object.__setattr__(self, "mount", Mount(self.mount))
+            make_member(self, "mount", Mount, what="constraints: mount")
         if not isinstance(self.leads, bool):
             _refuse("leads", self.leads, "True or False")
         if self.mirror not in (None, "x", "y", "z"):

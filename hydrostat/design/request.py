@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
+from hydrostat.closed_set import make_member
 from hydrostat.design.constraints import Constraints, Range
 from hydrostat.design.muscles.fibres import FibreKind
 from hydrostat.errors import InputError
@@ -117,9 +118,7 @@ class TreeOptions:
     lead_penalty: float = 0.1
 
     def __post_init__(self) -> None:
-        if self.fibres not in list(FibreKind):
-            raise InputError(f'fibres = "{self.fibres}": must be one of {", ".join(FibreKind)}')
-        object.__setattr__(self, "fibres", FibreKind(self.fibres))
+        make_member(self, "fibres", FibreKind)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,9 +156,7 @@ class DesignRequest:
             if not isinstance(pose, Pose):
                 raise InputError(f"poses must be Pose records, such as robot.poses.values(), not {pose!r}")
         self._check_counts()
-        if self.method not in list(DesignMethod):
-            raise InputError(f'method = "{self.method}": must be one of {", ".join(DesignMethod)}')
-        object.__setattr__(self, "method", DesignMethod(self.method))
+        make_member(self, "method", DesignMethod)
         kind = _OPTIONS[self.method]
         object.__setattr__(self, "options", self.options or kind())
         if not isinstance(self.options, kind):

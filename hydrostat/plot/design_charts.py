@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
 
-from hydrostat.design.network import Alternative, Network, Size, DesignStage, best_errors, on_front
+from hydrostat.design.network import Alternative, DesignStage, Network, Size, best_errors, on_front
 from hydrostat.drawing.palette import ERROR, GHOST, INK, SEAM, WINCHES
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO

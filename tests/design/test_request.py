@@ -72,9 +72,9 @@ def test_a_range_in_another_unit() -> None:
 def test_methods_and_muscles_are_of_closed_sets(unchecked: None) -> None:
     assert DesignRequest(poses=(UP,), method="trees").method is DesignMethod.TREES  # type: ignore[arg-type]
     assert TreeOptions(fibres="elements").fibres is FibreKind.ELEMENTS  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r'^fibres = "hairs": must be one of edges, elements$'):
+    with pytest.raises(InputError, match=r'^fibres must be one of edges, elements, not "hairs"$'):
         TreeOptions(fibres="hairs")  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r'^method = "magic": must be one of routes, trees$'):
+    with pytest.raises(InputError, match=r'^method must be one of routes, trees, not "magic"$'):
         DesignRequest(poses=(UP,), method="magic")  # type: ignore[arg-type]
 
 
