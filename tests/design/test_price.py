@@ -12,7 +12,7 @@ from builders import mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import body_region
-from hydrostat.design.routes.price import PathLimits, PricedPath, price_paths, steepest_path
+from hydrostat.design.routes.price import PathLimits, PricedPath, price_paths
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.geometry.anchors import Anchors
 from hydrostat.robot import Marker
@@ -119,49 +119,8 @@ def made_case(graph: RouteGraph, seed: int, *, poses: int = 2, rows: int = 4, mo
 
 
 def priced(graph: RouteGraph, case: dict[str, Any], limits: PathLimits, **options: Any) -> list[PricedPath]:
-    settings: dict[str, Any] = {"count": 5, "lead_penalty": 0.3, "leads": False} | options
-    return price_paths(graph, limits=limits, **case, **settings)
-
-
-def best_walk(graph: RouteGraph, gains: np.ndarray, hops: int, turn: float) -> float:
-    """Largest sum of gains of a path that may visit points again, by products of a matrix in the max-plus algebra."""
-    ways = [tuple(way) for pair in graph.edges.tolist() for way in (pair, pair[::-1])]
-    number = {way: index for index, way in enumerate(ways)}
-    own = np.repeat(gains, 2)
-    step = np.full((len(ways), len(ways)), -np.inf)
-    for first, middle, last in allowed_turns(graph, turn):
-        step[number[first, middle], number[middle, last]] = own[number[middle, last]]
-    values, most = own, own.max()
-    for _ in range(hops - 1):
-        values = (values[:, None] + step).max(axis=0)
-        most = max(most, values.max())
-    return float(most)
-
-
-def test_the_steepest_path_of_all() -> None:
-    """Exact where the best walk visits no point twice, as the docstring says; a path of that sum everywhere."""
-    graph, hops, turn = grid_graph(4, 4), 6, 100.0
-    paths = all_paths(graph, hops, turn)
-    starts = np.array([path[0] for path in paths])
-    exact = loops = 0
-    for seed in range(9):
-        gains = np.random.default_rng(seed).normal(size=len(graph.edges)) + 0.3 * (seed % 3)
-        sums = sums_along(graph, paths, gains)
-        found = steepest_path(graph, gains, hops=hops, turn=turn, starts=range(16))
-        for start, (nodes, gain) in enumerate(found):
-            assert nodes in paths
-            assert nodes[0] == start
-            assert gain == pytest.approx(sums_along(graph, [nodes], gains)[0])
-            assert gain <= sums[starts == start].max() + 1e-12
-        most = best_walk(graph, gains, hops, turn)
-        if sums.max() == pytest.approx(most):
-            exact += 1
-            assert max(gain for _, gain in found) == pytest.approx(sums.max())
-        else:
-            loops += 1
-            assert sums.max() < most
-    assert exact >= 3
-    assert loops >= 3
+    lead = {"lead_penalty": options.pop("lead_penalty", 0.3), "leads": options.pop("leads", False)}
+    return price_paths(graph, Missed(**case), replace(limits, **lead), **{"count": 5, **options})
 
 
 @pytest.mark.parametrize("hops", [1, 2])

@@ -1,8 +1,9 @@
 """`design_fewest`: the fewest winches that bring every pose under a tolerance, and what each number gains (F1, F2)."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 
-from hydrostat.design.network import Alternative, Network
+from hydrostat.design.network import Alternative, Network, Size, size_of
 from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.design_routes import RouteSearch
@@ -28,15 +29,9 @@ def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, w
     sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
     found: list[Network] = []
     better = Better(watch)
-    front: dict[tuple[int, int], Alternative] = {}
+    front: dict[Size, Alternative] = {}
     interrupted = False
-    least = max(1, len(constraints.staying(robot)[0]))
-    if constraints.mirror is not None and constraints.cables_per_winch == 1:
-        least = max(least, 2)
-    if least > cables:
-        raise InputError(
-            f"{least} winches are needed at the least, for what is locked or mirrored, but there may be {cables} cables"
-        )
+    least = _fewest(robot, request)
     largest = min(cables, int(COUNTS["winches"].most))
     for winches in range(least, largest + 1):
         most = min(cables, winches * constraints.cables_per_winch)
@@ -56,11 +51,8 @@ def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, w
             if winches == largest and not found:
                 raise
             continue
-        for network in (*(search.judged(trial) for trial in search.sizes.values()), *_all(found[-1])):
-            if network is not None:
-                counts = len(network.robot.winches), len(network.robot.cables)
-                if counts not in front or network.rms_error < front[counts].rms_error:
-                    front[counts] = network
+        judged = (search.judged(trial) for trial in search.sizes.values())
+        _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
         if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
             break
     best = found[-1]
@@ -74,6 +66,27 @@ def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, w
         seconds=sum(network.seconds for network in found),
         complete=not interrupted and all(network.complete for network in found),
     )
+
+
+def _fewest(robot: Robot, request: DesignRequest) -> int:
+    """The number of winches to begin with: those that stay, two where a mirrored network has a cable on each."""
+    constraints, cables = request.constraints, request.cables
+    least = max(1, len(constraints.staying(robot)[0]))
+    if constraints.mirror is not None and constraints.cables_per_winch == 1:
+        least = max(least, 2)
+    if least > cables:
+        raise InputError(
+            f"{least} winches are needed at the least, for what is locked or mirrored, but there may be {cables} cables"
+        )
+    return least
+
+
+def _keep_best(front: dict[Size, Alternative], networks: Iterable[Alternative]) -> None:
+    """Put networks in place of those of their size that have a larger error."""
+    for network in networks:
+        size = size_of(network)
+        if size not in front or network.rms_error < front[size].rms_error:
+            front[size] = network
 
 
 def _all(network: Network) -> tuple[Alternative, ...]:

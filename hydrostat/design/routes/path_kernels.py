@@ -63,25 +63,6 @@ def spread_leads(turns, before, lengths, leads, origins, longest):
                     changed = True
 
 
-@njit(**KERNEL)
-@no_type_check
-def grow_additive(turns, before, sources, targets, gains, best, parents):
-    """Longest paths by additive gains, (hops, directed): the best of exactly so many edges that ends with each edge."""
-    for edge in range(gains.shape[0]):
-        best[0, edge] = gains[edge]
-        parents[0, edge] = -1
-    for hop in range(1, best.shape[0]):
-        for edge in range(gains.shape[0]):
-            most, chosen = -math.inf, -1
-            for slot in range(turns[edge], turns[edge + 1]):
-                came = before[slot]
-                value = best[hop - 1, came] + gains[edge]
-                if value > most and not _visits(parents, sources, targets, hop - 1, came, 1, targets[edge]):
-                    most, chosen = value, came
-            best[hop, edge] = most
-            parents[hop, edge] = chosen
-
-
 @njit(**INNER)
 @no_type_check
 def _visits(parents, sources, targets, hop, label, slots, point):

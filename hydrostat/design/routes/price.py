@@ -13,7 +13,6 @@ from hydrostat.design.routes.path_kernels import (
     count_turns,
     edge_products,
     first_labels,
-    grow_additive,
     grow_labels,
     share_edges,
     spread_leads,
@@ -32,11 +31,34 @@ class PathLimits:
         hops: most edges of its bare part.
         turn: sharpest turn at a via point, lead included, in the rest shape [degrees].
         longest: greatest rest length, lead included [m]; None: any.
+        leads: whether it may begin with a sheathed lead from its winch, which moves nothing.
+        lead_penalty: share of the gain that a lead as long as the body costs.
     """
 
     hops: int
     turn: float
     longest: float | None = None
+    leads: bool = True
+    lead_penalty: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Missed:
+    """What is missed in each row, and what 1 N along each edge of a route graph does to it.
+
+    Attributes:
+        residual: target less marker of each row [m].
+        moves: what 1 N along each edge adds to each row [m/N].
+        pose_of_row: 0, 1, ...
+        ridge: added to |J|^2 of each pose, above 0.
+        most: largest tension [N].
+    """
+
+    residual: Float[np.ndarray, " rows"]
+    moves: Moves
+    pose_of_row: Int[np.ndarray, " rows"]
+    ridge: Float[np.ndarray, " poses"]
+    most: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,53 +85,12 @@ class PricedPath:
         return self.lead[0]
 
 
-def steepest_path(
-    graph: RouteGraph, gains: Vector, *, hops: int, turn: float, starts: Sequence[int]
-) -> list[tuple[tuple[int, ...], float]]:
-    """For each start, the path with the largest sum of gains, and that sum.
-
-    A dynamic program over directed edges and numbers of hops, for all starts at once: for each directed edge the best
-    path that ends with it; paths have no direction, so the starts are where they end. Each keeps one way there and
-    refuses to visit a point twice. Where the best walk has no loop that is exact, and its sum an upper bound of all
-    paths; else it is a heuristic, as the longest simple path is hard.
-
-    Args:
-        graph: of via points.
-        gains: of each undirected edge.
-        hops: most edges of a path.
-        turn: sharpest turn at a via point, in the rest shape [degrees].
-        starts: graph points; one that no edge leaves has an empty path of gain 0.
-    """
-    turns, before = _turns(graph, turn)
-    best = np.empty((hops, len(graph.sources)))
-    parents = np.empty((hops, len(graph.sources)), dtype=np.int64)
-    grow_additive(turns, before, graph.sources, graph.targets, gains[graph.edge_of], best, parents)
-    found = []
-    for start in starts:
-        arriving = graph.reverses[graph.offsets[start] : graph.offsets[start + 1]]
-        if not len(arriving):
-            found.append(((), 0.0))
-            continue
-        hop, which = np.unravel_index(np.argmax(best[:, arriving]), (hops, len(arriving)))
-        label = arriving[which]
-        path = np.empty((1, hops + 1), dtype=np.int64)
-        walk_back(parents, graph.sources, graph.targets, 1, np.array([hop]), np.array([label]), path)
-        found.append((tuple(path[0, : hop + 2].tolist()), float(best[hop, label])))
-    return found
-
-
 def price_paths(
     graph: RouteGraph,
-    moves: Moves,
-    residual: Float[np.ndarray, " rows"],
-    pose_of_row: Int[np.ndarray, " rows"],
-    *,
-    ridge: Float[np.ndarray, " poses"],
-    most: float,
+    missed: Missed,
     limits: PathLimits,
+    *,
     count: int,
-    lead_penalty: float,
-    leads: bool,
     winches: Sequence[int] | None = None,
     slots: int = 4,
 ) -> list[PricedPath]:
@@ -127,21 +108,15 @@ def price_paths(
 
     Args:
         graph: of via points.
-        moves: what 1 N along each edge adds to each row.
-        residual: of each row.
-        pose_of_row: 0, 1, ...
-        ridge: added to |J|^2 of each pose, above 0.
-        most: largest tension [N].
-        limits: hops, turn and length.
+        missed: what is to be lowered, and what each edge does to it.
+        limits: hops, turn, length and lead.
         count: of paths wanted.
-        lead_penalty: share of the gain that a lead as long as the body costs.
-        leads: whether a path may begin with a sheathed lead from its winch, which moves nothing.
         winches: graph points where a winch may stand; all winch places of the graph if left out.
         slots: paths that each directed edge keeps for each number of hops.
     """
     places = graph.winch_places if winches is None else np.asarray(winches, dtype=np.int64)
-    search = _PathSearch(graph, moves, residual, pose_of_row, ridge, most, limits, slots)
-    starts = _LeadStarts(graph, places, limits, lead_penalty, leads)
+    search = _PathSearch(graph, missed, limits, slots)
+    starts = _LeadStarts(graph, places, limits)
     candidates = [*search.from_winches(starts), *search.to_winches(starts)]
     gains = np.concatenate([gain for gain, _ in candidates])
     paths = np.concatenate([path for _, path in candidates])
@@ -164,14 +139,12 @@ _LANES = 4
 class _LeadStarts:
     """Where bare parts may begin: for each directed edge the shortest lead to its start."""
 
-    def __init__(
-        self, graph: RouteGraph, places: Int[np.ndarray, " places"], limits: PathLimits, penalty: float, leads: bool
-    ) -> None:
-        self.graph = graph
+    def __init__(self, graph: RouteGraph, places: Int[np.ndarray, " places"], limits: PathLimits) -> None:
+        self.graph, penalty = graph, limits.lead_penalty
         self.longest = math.inf if limits.longest is None else limits.longest
         self.leads = np.where(np.isin(graph.sources, places), 0.0, np.inf)
         self.origins = np.full(len(graph.sources), -1, dtype=np.int64)
-        if leads:
+        if limits.leads:
             turns, before = _turns(graph, limits.turn)
             reach = min(self.longest, graph.size / penalty if penalty > 0 else math.inf)
             spread_leads(turns, before, graph.lengths[graph.edge_of], self.leads, self.origins, reach)
@@ -193,23 +166,14 @@ class _LeadStarts:
 class _PathSearch:
     """The two passes over one residual."""
 
-    def __init__(
-        self,
-        graph: RouteGraph,
-        moves: Moves,
-        residual: Float[np.ndarray, " rows"],
-        pose_of_row: Int[np.ndarray, " rows"],
-        ridge: Float[np.ndarray, " poses"],
-        most: float,
-        limits: PathLimits,
-        slots: int,
-    ) -> None:
-        self.graph, self.ridge, self.most = graph, ridge, float(most)
+    def __init__(self, graph: RouteGraph, missed: Missed, limits: PathLimits, slots: int) -> None:
+        self.graph, self.ridge, self.most = graph, missed.ridge, float(missed.most)
         self.hops, self.slots = limits.hops, slots
         self.turns, self.before = _turns(graph, limits.turn)
-        self.moves = _by_pose(moves, pose_of_row, len(ridge))
-        self.residual = _by_pose(residual[None], pose_of_row, len(ridge))
-        self.plain, self.pulls = moves, np.empty((len(moves), len(ridge)))
+        poses = len(missed.ridge)
+        self.moves = _by_pose(missed.moves, missed.pose_of_row, poses)
+        self.residual = _by_pose(missed.residual[None], missed.pose_of_row, poses)
+        self.plain, self.pulls = missed.moves, np.empty((len(missed.moves), poses))
         self.squares = np.empty_like(self.pulls)
         edge_products(self.moves, self.residual, self.pulls, self.squares)
 

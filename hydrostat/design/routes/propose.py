@@ -12,7 +12,7 @@ from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import mirrored
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
-from hydrostat.design.routes.price import PathLimits, PricedPath, price_paths
+from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.robot import Mount, Winch
@@ -63,20 +63,22 @@ class Proposals:
                 residuals.append(np.zeros(1))
                 owners.append(np.array([index]))
             ridges.append((_EFFORT * float(np.linalg.norm(residual)) / bench.constraints.tension_limit) ** 2)
-        constraints = bench.constraints
-        return price_paths(
-            self.graph,
-            np.concatenate(moves, axis=1),
-            np.concatenate(residuals),
-            np.concatenate(owners),
+        constraints, options = bench.constraints, self.options
+        missed = Missed(
+            residual=np.concatenate(residuals),
+            moves=np.concatenate(moves, axis=1),
+            pose_of_row=np.concatenate(owners),
             ridge=np.maximum(ridges, 1e-24),
             most=constraints.tension_limit,
-            limits=PathLimits(hops=self.options.hops, turn=self._turn, longest=constraints.longest),
-            count=count,
-            lead_penalty=self.options.lead_penalty,
-            leads=constraints.leads,
-            winches=winches,
         )
+        limits = PathLimits(
+            hops=options.hops,
+            turn=self._turn,
+            longest=constraints.longest,
+            leads=constraints.leads,
+            lead_penalty=options.lead_penalty,
+        )
+        return price_paths(self.graph, missed, limits, count=count, winches=winches)
 
     @property
     def _turn(self) -> float:
