@@ -73,7 +73,7 @@ def marks(*errors: float) -> tuple[Mark, ...]:
 
 def run(*errors: float) -> DesignRun:
     robot = strip_robot(columns=10, rows=3)
-    request = DesignRequest(poses=(Pose(name="up", targets={}),), winches=1, cables=2)
+    request = DesignRequest(poses=(Pose(name="up", targets={"tip": (0.18, 0.06)}),), winches=1, cables=2)
     return DesignRun(robot=robot, request=request, began=0.0, rest=0.02, best=robot, trail=marks(*errors))
 
 
