@@ -68,7 +68,7 @@ class Bench:
 
     @cached_property
     def weights(self) -> list[float]:
-        """Of the residuals of each pose: with these the sum of squares is the squared rms error."""
+        """Weights of the residuals of each pose: with these the sum of squares is the squared rms error."""
         return [1.0 / np.sqrt(len(self.targets) * len(markers)) for markers in self.markers]
 
     def residual(self, simulation: Simulation, pose: int, nodes: Nodes) -> Vector:

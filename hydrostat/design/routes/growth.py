@@ -31,7 +31,7 @@ class Growth:
 
     @property
     def bench(self) -> Bench:
-        """That solves layouts."""
+        """The bench that solves layouts."""
         return self.proposals.bench
 
     def bare(self, layout: Layout) -> Trial | None:

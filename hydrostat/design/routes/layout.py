@@ -73,7 +73,7 @@ class Layout:
 
     @property
     def dim(self) -> int:
-        """Of the body."""
+        """Dimensions of the body, 2 or 3."""
         return self.source.body.mesh.dim
 
     def robot(self, *, digits: int | None = None) -> Robot:

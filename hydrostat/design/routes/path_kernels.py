@@ -102,7 +102,7 @@ def decrease(pull, square, ridge, most):
 @njit(fastmath=FINE, **KERNEL)
 @no_type_check
 def edge_products(moves, residual, pulls, squares):
-    """Of each undirected edge in each pose r . m and |m|^2; m is (edges, poses, rows), r (1, poses, rows)."""
+    """Find r . m and |m|^2 of each undirected edge in each pose; m is (edges, poses, rows), r (1, poses, rows)."""
     for edge in range(moves.shape[0]):
         for pose in range(moves.shape[1]):
             pulls[edge, pose] = _dot(residual, 0, moves, edge, pose)

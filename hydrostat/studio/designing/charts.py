@@ -135,7 +135,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: 
 
 
 def front(points: Sequence[tuple[int, float]]) -> list[tuple[int, float]]:
-    """Of cables and errors, those with a smaller error than all with as few cables."""
+    """Pairs of cables and errors that have a smaller error than all with as few cables."""
     kept: list[tuple[int, float]] = []
     for cables, error in sorted(points):
         if not kept or error < kept[-1][1]:

@@ -83,7 +83,7 @@ class Candidate:
 
     @property
     def length(self) -> float:
-        """Of all cables together [m]."""
+        """Length of all cables together [m]."""
         return sum(cable.length for cable in self.robot.cables)
 
     @property
