@@ -56,8 +56,8 @@ def play(
     table = ProfileTable.open(moves, loaded)
     motors.check(table, speed=speed)
     seconds = float(table.profile.times[-1])
-    often = counted(loop, "time") if loop else "until it is stopped"
-    _say(f"{moves} on {loaded.name}, {counted(len(motors.names), 'winch')}: {seconds:g} s, {often}, at {speed:g}x")
+    often = {0: "until it is stopped", 1: "once"}.get(loop, f"{loop} times")
+    _say(f"{moves} on {loaded.name}, {counted(len(motors.names), 'winch')}: {seconds:.2f} s, {often}, at {speed:g}x")
     back = float(np.abs(table.profile.values[-1] - table.profile.at(0.0)).max())
     if loop != 1 and back > 1e-6:
         _say(f"note: it does not end where it begins; each time anew a winch has {1e3 * back:.1f} mm to go at once")
@@ -88,7 +88,7 @@ def _progress(motors: "Motors", player: "Player", seconds: float) -> tuple[Calla
         shown = now
         which = "" if player.rounds == 1 else f", round {min(player.done + 1, player.rounds):g}"
         which += f" of {player.rounds:g}" if 1 < player.rounds < inf else ""
-        text = f"simulated: {player.time:6.2f} of {seconds:g} s{which}: {_places(motors)}"
+        text = f"simulated: {player.time:6.2f} of {seconds:.2f} s{which}: {_places(motors)}"
         if terminal:
             width = shutil.get_terminal_size().columns - 1
             print(f"\r{text[:width]:<{width}}", end="", flush=True)

@@ -145,9 +145,8 @@ class Motors:
         try:
             gap = 0.0 if self._driven is None else now - self._driven
             if gap > self.patience:
-                raise HydrostatError(
-                    f"the motors were told nothing for {gap:.1f} s, longer than {self.patience:g} s, and hold"
-                )
+                silence = f"told nothing for {gap:.1f} s, longer than {self.patience:g} s"
+                raise HydrostatError(f"the motors were {silence}, and hold; begin again")
             self.link.send(self.command, now, speed=self.fastest)
             self.places = self._read(now)
             self._driven = now

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import hydrostat as hs
+from hydrostat.cli.profiling import PARTS
 from hydrostat.robot import gallery_names, robot_hash
 
 Run = Callable[..., tuple[int, str, str]]
@@ -18,7 +19,7 @@ SQUARE = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path d="
 def test_help_lists_every_command(run: Run) -> None:
     code, out, _ = run("--help")
     assert code == 0
-    for command in ("new", "check", "simulate", "pose", "design", "fabricate"):
+    for command in ("new", "check", "simulate", "pose", "trajectory", "play", "design", "fabricate"):
         assert f"  {command} " in out
         assert "Example: hydrostat" in run(command, "--help")[1]
 
@@ -109,3 +110,9 @@ def test_design_writes_robot_report_score_and_kit(run: Run, tmp_path: Path, star
         assert (tmp_path / "out" / file).stat().st_size > 1000
     told = json.loads((tmp_path / "out" / "kit" / "manifest.json").read_text())
     assert told["robot"]["sha256"] == card["robot"]
+
+
+def test_parts_of_a_profile_are_files_that_there_are() -> None:
+    """Oracle: the folder of the package; a file that was renamed must keep its part."""
+    files = {path.stem for path in Path(hs.__file__).parent.rglob("*.py")}
+    assert set(PARTS) <= files

@@ -30,7 +30,7 @@ def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish:
     assert (code, err) == (0, "")
     lines = out.splitlines()
     assert all(line.startswith("simulated: ") for line in lines)
-    assert lines[0] == f"simulated: {wave} on starfish, 3 winches: 0.6 s, 2 times, at 0.5x"
+    assert lines[0] == f"simulated: {wave} on starfish, 3 winches: 0.60 s, 2 times, at 0.5x"
     assert "round 1 of 2" in lines[1]
     assert lines[-1] == "simulated: played; the motors hold at right 0.0 mm, left 3.0 mm, feet 0.0 mm"
 

@@ -194,6 +194,31 @@ class Counted(Link):
         self.closes += 1
 
 
+def test_motors_of_another_kind_are_plugged_in(document: Document, starfish: Robot) -> None:
+    """Oracle: the links that were made; each robot with other winches has its own, and the one before is closed."""
+    made: list[Counted] = []
+
+    def connect(places: Vector) -> Link:
+        made.append(Counted(len(places)))
+        return made[-1]
+
+    driver = Driver(document, Jobs(document.bell), connect=connect)
+    driver.turn("left", 0.02)
+    settle(driver)
+    assert made[-1].sent[-1].tolist() == [0.0, 0.02, 0.0]
+    before = made[-1]
+    travels = tuple(replace(winch, travel=0.03) for winch in starfish.winches)
+    document.change("less travel", robot=replace(starfish, winches=travels))
+    assert driver.commands()["left"] == 0.02
+    assert (driver.motors.link, driver.motors.high.tolist()) == (before, [0.03] * 3)
+    cables = tuple(cable for cable in starfish.cables if cable.winch != "feet")
+    document.change("delete winch", robot=replace(starfish, winches=starfish.winches[:2], cables=cables))
+    assert driver.places() == {"right": 0.0, "left": 0.02}
+    assert before.closes == 1
+    assert driver.motors.link is made[-1]
+    assert driver.motors.link is not before
+
+
 @pytest.mark.parametrize("place", ["follow", "physics", "timeline"])
 def test_on_any_error_motors_hold_and_nothing_plays(
     driver: Driver, document: Document, monkeypatch: pytest.MonkeyPatch, place: str
