@@ -140,7 +140,7 @@ def printable(text: str) -> str:
 
 @cache
 def unit_factor(unit: str, dimension: Dimension) -> Decimal:
-    """How many SI units one `unit` is.
+    """Find how many SI units one `unit` is.
 
     Raises:
         InputError: the unit is unknown or measures something else.

@@ -24,7 +24,7 @@ from hydrostat.robot.materials import find_material
 
 
 class Source(StrEnum):
-    """What kind of file a body comes from; also its key in robot.toml."""
+    """Kind of file that a body comes from; also its key in robot.toml."""
 
     OUTLINE = "outline"
     SURFACE = "surface"
@@ -32,9 +32,9 @@ class Source(StrEnum):
 
 
 class Volume(StrEnum):
-    """How the change of volume is measured: in each element, or averaged over patches of elements.
+    """Way to measure the change of volume: in each element, or averaged over patches of elements (a kind of F-bar).
 
-    Linear elements are too stiff (they lock) when the material is nearly incompressible; patches are the remedy.
+    Linear elements are too stiff when the material is nearly incompressible (volumetric locking); patches help.
     """
 
     ELEMENT = "element"
@@ -115,11 +115,11 @@ class Body:
 
     @cached_property
     def solid(self) -> Solid | None:
-        """What the closed surface of a body in space encloses; None for other bodies."""
+        """Solid that the closed surface of a body in space encloses; None for other bodies."""
         return None if self.healing is None else Solid(self.healing.surface)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
-        """How far points lie outside the body [m], 0 inside its drawing, its surface or its mesh."""
+        """Distance of points outside the body [m], 0 inside its drawing, its surface or its mesh."""
         distances = locate(self.mesh, points).distances
         if self.solid is not None:
             return np.where(distances > 0, np.maximum(self.solid.distances(points), 0.0), 0.0)

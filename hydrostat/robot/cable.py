@@ -79,7 +79,7 @@ class Cable:
 
     @property
     def bare(self) -> np.ndarray:
-        """Which segments are not sheathed, (points - 1,) booleans."""
+        """Booleans of the segments that are not sheathed, (points - 1,)."""
         bare = np.ones(len(self.points) - 1, dtype=bool)
         for start, end in self.sheathed:
             bare[start:end] = False
@@ -120,7 +120,7 @@ def given_names(cables: Sequence[Cable]) -> tuple[str, ...]:
 
 
 def _numbers(cables: Sequence[Cable]) -> list[int]:
-    """Which of its winch's cables each is, from 1."""
+    """Count of each cable among those of its winch, from 1."""
     seen: Counter[str] = Counter()
     numbers = []
     for cable in cables:

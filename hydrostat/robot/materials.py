@@ -18,7 +18,7 @@ POUND_PER_CUBIC_FOOT = 16.01846
 """[kg/m^3]: castable foams are named after their density in these."""
 
 RUBBER_POISSON = 0.49
-"""Of rubbers: they hardly change their volume (0.4999); nearer to 0.5 only the cost of solving grows."""
+"""Poisson's ratio of rubbers: their volume hardly changes (0.4999); nearer to 0.5 only solving costs more."""
 
 FOAM_POISSON = 0.3
 FOAM_SQUEEZE = 0.6

@@ -91,7 +91,7 @@ def _side(text: str, unit: str | None = None) -> _Side:
 
 
 def _effective(kind: str, entry: Any, factor: Decimal) -> dict[str, Any]:
-    """What each key of a table means, in SI; a key that is left out means the record's default."""
+    """Meaning of each key of a table, in SI; a key that is left out means the record's default."""
     defaults = {field.name: field.default for field in fields(_RECORDS[kind]) if field.default is not MISSING}
     given = {key: getattr(entry, key) for key in type(entry).model_fields}
     values = {key: defaults.get(key) if value is None else _metres(value, factor) for key, value in given.items()}
@@ -160,7 +160,7 @@ def _remarks(free: str) -> str:
 
 
 def _place(laid: Sequence[tuple[TomlBlock, int]], kind: str, number: int) -> int:
-    """Where in the file a new table goes: after the one before it, else before the one after it, else in its order."""
+    """Find the place of a new table: after the one before it, else before the one after it, else in its order."""
     before = [place for place, (block, other) in enumerate(laid) if block.name == kind and other < number]
     if before:
         return before[-1] + 1

@@ -15,7 +15,7 @@ DEFAULT_STIFFNESS = 100e3
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """Holds every node within `radius` of `at`, or every node in a box; if there is none, the point itself (R29, E10).
+    """Boundary condition: holds every node within `radius` of `at`, or in a box; if none, the point itself (R29, E10).
 
     Attributes:
         at: middle of the pin [m]; None with `box`.
@@ -42,7 +42,7 @@ class Pin:
         check_positive("stiffness", self.stiffness, "N/m")
 
     def anchors(self, mesh: Mesh) -> Anchors:
-        """What the pin holds.
+        """Find what the pin holds.
 
         Raises:
             InputError: the pin lies outside the body and holds nothing.
@@ -58,7 +58,7 @@ class Pin:
         return anchors
 
     def holds(self, mesh: Mesh) -> np.ndarray:
-        """Which nodes lie in the pin, (nodes,) booleans."""
+        """Tell which nodes lie in the pin, (nodes,) booleans."""
         if self.box is not None:
             low, high = np.min(self.box, axis=0), np.max(self.box, axis=0)
             return ((mesh.nodes >= low) & (mesh.nodes <= high)).all(axis=1)

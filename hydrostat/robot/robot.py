@@ -108,7 +108,7 @@ class Robot:
 
     @property
     def spool_ratios(self) -> Vector:
-        """What each cable takes in when its winch takes in 1 m, by the radii of their spools, (cables,)."""
+        """Cable that each takes in [m] when its winch takes in 1 m, by the radii of their spools, (cables,)."""
         radii = {winch.name: winch.spool_radius for winch in self.winches}
         own = [(cable.spool_radius or radii[cable.winch]) / radii[cable.winch] for cable in self.cables]
         return np.array(own, dtype=float)

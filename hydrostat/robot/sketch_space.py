@@ -25,7 +25,7 @@ from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Winch
 
 NODES = 900
-"""Of a sketch, if neither a number nor an element size is asked for: as many as the thesis's hand (N3)."""
+"""Nodes of a sketch, if neither a number nor an element size is asked for: as many as the thesis's hand (N3)."""
 
 SHORTEST, LONGEST = 0.002, 20.0
 """Bodies are as long [m]; what is not was probably meant in another unit."""
@@ -227,7 +227,7 @@ class _Limb:
         return np.average(mesh.nodes[mesh.elements[part]].mean(axis=1), axis=0, weights=mesh.volumes[part])
 
     def reach(self, mesh: Mesh, share: float, side: Vector) -> float:
-        """How far the limb goes from its middle to a side [m]."""
+        """Distance that the limb goes from its middle to a side [m]."""
         nodes = mesh.nodes[np.unique(mesh.elements[self.part(mesh, share)])]
         return float(((nodes - self.middle(mesh, share)) @ side).max())
 
@@ -281,5 +281,5 @@ def _spaced(points: list[Vector]) -> Points:
 
 
 def _point(place: Float[np.ndarray, " 3"]) -> Point:
-    """To a hundredth of a millimetre."""
+    """A place rounded to a hundredth of a millimetre."""
     return tuple(round(float(value), 5) for value in place)

@@ -30,13 +30,13 @@ class TablesFile(ABC):
     """Turns the text of one file into records."""
 
     kind = "a robot"
-    """What the file describes."""
+    """Thing that the file describes, in complaints."""
 
     empty: str | None = "the file is empty; begin with format = 1, or run hydrostat new"
-    """What is said of a file without text; None: it may have none."""
+    """Complaint of a file without text; None: it may have none."""
 
     unit = "mm"
-    """Of coordinates."""
+    """Unit of coordinates."""
 
     def __init__(self, file: Path, text: str) -> None:
         self.file = file
@@ -57,7 +57,7 @@ class TablesFile(ABC):
         return tuple(units.scale_up(value, self.unit, units.LENGTH) for value in coordinates)
 
     def at(self, key: str, make: Callable[[], _Record], *, otherwise: str | None = None) -> _Record:
-        """What `make` makes; its complaint is located at the field it begins with, else at `otherwise`."""
+        """Call `make`; its complaint is located at the field it begins with, else at `otherwise`."""
         from hydrostat.robot.schema import allowed_keys
 
         try:
@@ -124,7 +124,7 @@ def read_text(file: Path) -> str:
 
 
 def read_bytes(file: Path, name: str, most: int) -> bytes:
-    """What stands in a file, at most so many bytes; complaints name it `name`.
+    """Bytes of a file, at most so many; complaints name it `name`.
 
     Raises:
         InputError: it cannot be read, or is larger.

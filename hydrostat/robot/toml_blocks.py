@@ -69,7 +69,7 @@ def _tokens(text: str) -> Iterator[tuple[int, str, int]]:
 
 
 def _headers(text: str) -> Iterator[tuple[int, str, bool]]:
-    """Where each header's line begins, the first part of its key, and whether that is all of it."""
+    """Find where each header's line begins, the first part of its key, and whether that is all of it."""
     fresh, line = True, 0
     for place, token, depth in _tokens(text):
         if token == "\n":
@@ -85,7 +85,7 @@ def _headers(text: str) -> Iterator[tuple[int, str, bool]]:
 
 
 def _parted(text: str, *, last: bool) -> tuple[str, str, str]:
-    """What belongs to a block, what stands apart after it, and the comments right above the next one."""
+    """Part a text: what belongs to a block, what stands apart after it, and the comments right above the next one."""
     end = 0
     for place, token, _ in _tokens(text):
         if token.strip() and not token.startswith("#"):

@@ -9,7 +9,7 @@ from hydrostat.robot.checks import Point, check_not_negative, check_point, check
 
 
 class Mount(StrEnum):
-    """Where a winch sits: in the body, or fixed in the world beside it."""
+    """Place where a winch sits: in the body, or fixed in the world beside it."""
 
     BODY = "body"
     WORLD = "world"

@@ -88,7 +88,7 @@ def half_space(place: Place, outward: Place) -> Field:
 
 
 def union(*fields: Field, blend: float = 0.0) -> Field:
-    """What is in any of the fields, one after the other; creases between them are filled over a width `blend` [m].
+    """Union: what is in any of the fields, in turn; creases between them are filled over a width `blend` [m].
 
     Two fields that are equal at a place are lowered there by a quarter of the blend; where they differ by more than
     the blend nothing changes.
@@ -101,7 +101,7 @@ def union(*fields: Field, blend: float = 0.0) -> Field:
 
 
 def intersection(*fields: Field, blend: float = 0.0) -> Field:
-    """What is in all of the fields; edges between them are rounded over a width `blend` [m]."""
+    """Intersection: what is in all of the fields; edges between them are rounded over a width `blend` [m]."""
 
     def distance(points: Points) -> Vector:
         return -reduce(lambda one, two: _lower(one, two, blend), (-field(points) for field in fields))

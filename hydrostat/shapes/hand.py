@@ -38,7 +38,7 @@ Direction = Float[np.ndarray, " 3"]
 _ACROSS = np.array([1.0, 0.0, 0.0])
 _LENGTH_TO_KNUCKLE = HAND_LENGTH - sum(PHALANGES["middle"]) - SOFT_TIPS["middle"]
 _SPREAD = (HAND_BREADTH - INDEX_BREADTH) / 3
-"""From knuckle to knuckle, so that the breadth of the hand is right [m]."""
+"""Distance from knuckle to knuckle, so that the breadth of the hand is right [m]."""
 
 _SIZES = MappingProxyType({"index": 1.0, "middle": 1.0, "ring": 0.95, "little": 0.86})
 """Breadth and thickness of the fingers as shares of those of the index finger; but for that one assumed."""
@@ -46,7 +46,7 @@ _SIZES = MappingProxyType({"index": 1.0, "middle": 1.0, "ring": 0.95, "little": 
 
 @dataclass(frozen=True, kw_only=True)
 class HandPosture:
-    """How a hand holds its fingers.
+    """Way in which a hand holds its fingers.
 
     Attributes:
         fans: angle of each finger in the plane of the palm, towards the thumb [degrees].
@@ -140,7 +140,7 @@ def _finger(name: str, place: int, posture: HandPosture) -> Limb:
 
 
 def _metacarpal_base(knuckle: Direction, name: str) -> Direction:
-    """Where the metacarpal of a finger begins: near the middle of the wrist, its length away from the knuckle."""
+    """Place where the metacarpal of a finger begins: near the middle of the wrist, its length away from the knuckle."""
     lean = np.array([0.62 * knuckle[0] - knuckle[0], -4e-3 - knuckle[1], 0.0])
     lean[2] = -np.sqrt(METACARPALS[name] ** 2 - lean @ lean)
     return knuckle + lean
@@ -171,7 +171,7 @@ def _thumb(posture: HandPosture) -> Limb:
 
 
 def _palm(limbs: dict[str, Limb]) -> list[Field]:
-    """What fills the palm between the metacarpals and makes the webs between the fingers."""
+    """Flesh that fills the palm between the metacarpals and makes the webs between the fingers."""
     between = []
     for one, two in pairwise(FINGERS[1:]):
         root, knuckle, joint = (limbs[one].joints[:3] + limbs[two].joints[:3]) / 2

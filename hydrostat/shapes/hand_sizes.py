@@ -14,7 +14,7 @@ sources: see `hand.py`, where such numbers are called assumed.
 from types import MappingProxyType
 
 FINGERS = ("thumb", "index", "middle", "ring", "little")
-"""In the order of the rays."""
+"""Names in the order of the rays."""
 
 METACARPALS = MappingProxyType(
     {"thumb": 46.22e-3, "index": 68.12e-3, "middle": 64.60e-3, "ring": 58.00e-3, "little": 53.69e-3}
@@ -38,16 +38,16 @@ SOFT_TIPS = MappingProxyType(
 """Soft tissue beyond the last bone [m] (Buryanov and Kotiuk 2010)."""
 
 HAND_LENGTH = 189e-3
-"""From the crease of the wrist to the tip of the middle finger [m] (Pheasant and Haslegrave 2006)."""
+"""Length from the crease of the wrist to the tip of the middle finger [m] (Pheasant and Haslegrave 2006)."""
 
 HAND_BREADTH = 87e-3
 """Across the knuckles of the four fingers [m] (Pheasant and Haslegrave 2006)."""
 
 HAND_THICKNESS = 33e-3
-"""From back to palm at the knuckle of the middle finger [m] (Pheasant and Haslegrave 2006)."""
+"""Thickness from back to palm at the knuckle of the middle finger [m] (Pheasant and Haslegrave 2006)."""
 
 INDEX_BREADTH, INDEX_THICKNESS = 21e-3, 19e-3
-"""Of the index finger at its middle joint [m] (Pheasant and Haslegrave 2006)."""
+"""Sizes of the index finger at its middle joint [m] (Pheasant and Haslegrave 2006)."""
 
 THUMB_BREADTH, THUMB_THICKNESS = 23e-3, 22e-3
-"""Of the thumb at its last joint [m] (Pheasant and Haslegrave 2006)."""
+"""Sizes of the thumb at its last joint [m] (Pheasant and Haslegrave 2006)."""

@@ -17,7 +17,7 @@ LEAST_ANGLE = 20.0
 """Triangles with a smaller angle [degrees] make the simulation less exact."""
 
 LEAST_DIHEDRAL = 10.0
-"""So do tetrahedra with a smaller angle between two faces [degrees]."""
+"""Tetrahedra with a smaller angle between two faces [degrees] do so, too."""
 
 LOCKING_POISSON = 0.35
 """From this Poisson's ratio on, what locking adds to the bending stiffness of linear elements is worth a word."""
@@ -32,7 +32,7 @@ LEAST_ACROSS = {2: 2.0, 3: 3.0}
 """A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
 
 GOOD_ACROSS = 4
-"""As many are enough: 14 % too stiff in the plane, 5 to 27 % in space, by the pattern of the mesh."""
+"""Elements across a limb that are enough: 14 % too stiff in the plane, 5 to 27 % in space, by the mesh's pattern."""
 
 TOO_STIFF = {2: {2: "50 % or more"}, 3: {2: "20 to 100 % or more", 3: "10 to 100 %"}}
 """How much too stiff a limb is in bending with fewer elements across than this, by the pattern of the mesh."""
@@ -66,7 +66,7 @@ def _slivers(mesh: Mesh) -> Iterator[str]:
 
 
 def _unlike(body: Body) -> Iterator[str]:
-    """What of a surface its mesh does not follow, for all that it got finer elements there."""
+    """Find what of a surface its mesh does not follow, for all that it got finer elements there."""
     if body.healing is None or body.element_size is None:
         return
     surface = body.healing.surface

@@ -25,7 +25,7 @@ def winch_risks(robot: Robot) -> Iterator[str]:
 
 
 def cover(body: Body, points: Points) -> Float[np.ndarray, " points"]:
-    """How far points are from the edge of a flat body, as drawn, or from the surface of a body in space [m]."""
+    """Distance of points from the edge of a flat body, as drawn, or from the surface of a body in space [m]."""
     if body.outline is None:
         return clearance(body.mesh, points)
     from shapely import distance

@@ -1,4 +1,4 @@
-"""How risks are told: lengths and places in millimetres, several parts with the same risk in one line."""
+"""Words for risks: lengths and places in millimetres, several parts with the same risk in one line."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -50,5 +50,5 @@ def place(point: Float[np.ndarray, " dim"]) -> str:
 
 
 def known_up_to(material: Material, limit: str) -> str:
-    """How far the numbers of a material are believed."""
+    """Limit up to which the numbers of a material are believed."""
     return f"{material.name or 'the material'} is known up to {limit} (an estimate from lengths alone)"
