@@ -2,7 +2,8 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -106,7 +107,8 @@ def name_cables(cables: Iterable[Cable]) -> tuple[Cable, ...]:
             while (name := _usual_name(cable.winch, number)) in taken:
                 number += 1
             taken.add(name)
-            cable = replace(cable, name=name)
+            cable = copy(cable)  # not made anew: all else is checked, and designs make robots by the thousand
+            object.__setattr__(cable, "name", name)
         named.append(cable)
     return tuple(named)
 
