@@ -56,7 +56,7 @@ COMMON = {
     }.items()
     for unit, factor in factors.items()
 }
-"""How many SI units the units are that stand in most files; with any other, pint is loaded, which takes 0.3 s."""
+"""How many SI units the units are that stand in most files; with any other, pint is loaded, which takes 0.35 s."""
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([^\W\d_].*?)?\s*", re.DOTALL)
 _SYMBOL = r"[^\W\d_]+(?:\s*(?:\^|\*\*)\s*-?\d|[²³])?"
