@@ -5,13 +5,11 @@ from collections.abc import Iterable
 import numpy as np
 from jaxtyping import Float, Int
 from manifold3d import Error
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interferences
-from hydrostat.fabrication.solids.printed import Printed, loose_edges
+from hydrostat.fabrication.solids.printed import Printed, connected, loose_edges
 from hydrostat.robot import Robot
 
 _ON_BED = 1e-4
@@ -65,11 +63,9 @@ def _wedges(corners: Float[np.ndarray, "triangles 3 3"]) -> Float[np.ndarray, " 
 
 def _pieces(vertices: Float[np.ndarray, "vertices 3"], triangles: Int[np.ndarray, "triangles 3"]) -> int:
     """Bodies that share no vertex; hollows within a body are inside out and do not count."""
-    count = len(vertices)
-    ones, others = triangles.reshape(-1), np.roll(triangles, 1, axis=1).reshape(-1)
-    links = coo_matrix((np.ones(len(ones)), (ones, others)), shape=(count, count))
-    bodies, body = connected_components(links, directed=False)
-    volumes = np.bincount(body[triangles[:, 0]], _wedges(vertices[triangles] - vertices.mean(axis=0)), bodies)
+    links = np.stack([triangles, np.roll(triangles, 1, axis=1)], axis=2).reshape(-1, 2)
+    body = connected(links, len(vertices))
+    volumes = np.bincount(body[triangles[:, 0]], _wedges(vertices[triangles] - vertices.mean(axis=0)))
     return int(np.count_nonzero(volumes > _CRUMB))
 
 

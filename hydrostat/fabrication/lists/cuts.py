@@ -222,7 +222,9 @@ def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube
         bore: inner diameter [mm].
         tube: outer diameter [mm].
     """
-    rows = [(f"C{cut.cable}", cut.winch, *_ends(robot, cut), bore, tube, cut.run, cut.seat, cut.length) for cut in cuts]
+    rows = [
+        (f"C{cut.cable}", cut.winch, *_tube_ends(robot, cut), bore, tube, cut.run, cut.seat, cut.length) for cut in cuts
+    ]
     if rows:
         run, seat = sum(cut.run for cut in cuts), sum(cut.seat for cut in cuts)
         rows.append(("total", f"{len(cuts)} pieces", "", "", bore, tube, run, seat, run + seat))
@@ -234,11 +236,11 @@ def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube
             *number_columns("bore", "outside", "run", "seat", "cut to", unit="mm"),
         ),
         rows=tuple(rows),
-        notes=_notes(cuts),
+        notes=_sheath_notes(cuts),
     )
 
 
-def _notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
+def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
     """What is said below the table: of cutting, and of tubes whose length is no matter of the simulation."""
     if not cuts:
         return ("No cable of this robot runs in a tube.",)
@@ -281,7 +283,7 @@ def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int,
     )
 
 
-def _ends(robot: Robot, cut: SheathCut) -> tuple[str, str]:
+def _tube_ends(robot: Robot, cut: SheathCut) -> tuple[str, str]:
     last = len(robot.cables[cut.cable - 1].points) - 1
     begin = "base" if cut.start is None else point_name(cut.start, last)
     return begin, "where the cable begins" if cut.end == 0 else point_name(cut.end, last)

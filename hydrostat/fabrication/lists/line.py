@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.table import Table, number_columns, text_columns
+from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
 from hydrostat.robot import Robot
 
 POUND = 4.448222
@@ -111,42 +111,35 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
     """
     if len(tensions) != len(robot.cables):
         raise InputError(f"{len(tensions)} tensions given for {len(robot.cables)} cables")
-    problems, warnings, rows = [], [], []
+    problems: list[str] = []
+    warnings: list[str] = []
+    rows: list[tuple[Cell, ...]] = []
     for number, (cable, tension) in enumerate(zip(robot.cables, map(float, tensions), strict=True), start=1):
-        named = f'cable C{number} of winch "{cable.winch}"'
-        pulls = f"{named} pulls {tension:.1f} N"
+        pulls = f'cable C{number} of winch "{cable.winch}" pulls {tension:.1f} N'
+        verdict = "holds"
         if tension > line.at_knot:
             problems.append(f"{pulls}, but {line.name} breaks at its knot at {line.at_knot:.0f} N; {_remedy(tension)}")
             verdict = "breaks"
         elif tension > line.working_load:
-            warnings.append(
-                f"{pulls}, above the working load of {line.name}, {line.working_load:.0f} N; {_remedy(tension)}"
-            )
+            load = f"above the working load of {line.name}, {line.working_load:.0f} N"
+            warnings.append(f"{pulls}, {load}; {_remedy(tension)}")
             verdict = "above the working load"
-        else:
-            verdict = "holds"
         if hold is not None and tension > hold:
             warnings.append(
                 f"{pulls}, but its stopper may slip at {hold:.0f} N (estimated): tie a knot behind the stopper once it "
                 "is set"
             )
             verdict = f"{verdict}; knot the stopper"
-        rows.append(
-            (
-                f"C{number}",
-                cable.winch,
-                tension,
-                line.name,
-                line.strength,
-                line.at_knot,
-                line.working_load,
-                hold,
-                verdict,
-            )
-        )
-    largest = float(max(tensions, default=0.0))
+        strengths = (line.strength, line.at_knot, line.working_load, hold)
+        rows.append((f"C{number}", cable.winch, tension, line.name, *strengths, verdict))
+    table = _line_table(tuple(rows), line, largest=float(max(tensions, default=0.0)))
+    return LineCheck(line=line, table=table, problems=tuple(problems), warnings=tuple(warnings))
+
+
+def _line_table(rows: tuple[tuple[Cell, ...], ...], line: FishingLine, *, largest: float) -> Table:
+    """Strength of a line against the tension of each cable, and which line would do for the largest [N]."""
     enough = next((each for each in LINES if each.working_load >= largest), None)
-    table = Table(
+    return Table(
         name="line_strength",
         title="Strength of the line",
         columns=(
@@ -156,7 +149,7 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
             *number_columns("breaks at", "at a knot", "working load", "stopper holds", unit="N", decimals=0),
             *text_columns("verdict"),
         ),
-        rows=tuple(rows),
+        rows=rows,
         notes=(
             f"At a knot a line keeps {KNOT:g} of its strength, if badly tied; tie a doubled Palomar. Working load: "
             f"{SAFETY:g} of that.",
@@ -168,7 +161,6 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
             SOURCE,
         ),
     )
-    return LineCheck(line=line, table=table, problems=tuple(problems), warnings=tuple(warnings))
 
 
 def _remedy(tension: float) -> str:

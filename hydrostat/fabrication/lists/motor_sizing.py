@@ -121,12 +121,12 @@ def size_winches(robot: Robot, demand: Demand, motor: Motor) -> tuple[WinchSizin
         if not getattr(motor, name) > 0:
             raise InputError(f"{name} of {motor.title} must be above 0, not {getattr(motor, name):g}")
     return tuple(
-        _size(robot, demand, motor, winch, float(torque))
+        _sizing(robot, demand, motor, winch, float(torque))
         for winch, torque in zip(robot.winches, demand.torques, strict=True)
     )
 
 
-def _size(robot: Robot, demand: Demand, motor: Motor, winch: Winch, torque: float) -> WinchSizing:
+def _sizing(robot: Robot, demand: Demand, motor: Motor, winch: Winch, torque: float) -> WinchSizing:
     mine = [
         float(tension)
         for cable, tension in zip(robot.cables, demand.tensions, strict=True)

@@ -33,7 +33,7 @@ def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:
             gap = None if before is None else math.dist(before, stitch.place)
             along, before = along + (gap or 0.0), stitch.place
             name = point_name(stitch.number - 1, last)
-            rows.append((f"C{cable.cable}", cable.winch, name, _way(stitch), *stitch.place, gap, along))
+            rows.append((f"C{cable.cable}", cable.winch, name, _through_cloth(stitch), *stitch.place, gap, along))
     return Table(
         name="stitching",
         title="Stitching order",
@@ -50,7 +50,7 @@ def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:
     )
 
 
-def _way(stitch: Stitch) -> str:
+def _through_cloth(stitch: Stitch) -> str:
     if not stitch.passes:
         return f"tie, stays {stitch.after}"
     return "out" if stitch.after is Side.OUTSIDE else "in"

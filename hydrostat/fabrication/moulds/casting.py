@@ -99,7 +99,7 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
         silicone_cost=SILICONE_PRICE * sum(mix.mass for mix in silicone) / 1e3,
         times=_times(cast, silicone=bool(pours)),
         release=_release(foams),
-        notes=_notes(foams, silicone=bool(pours)),
+        notes=_casting_notes(foams, silicone=bool(pours)),
     )
     return casting, (*problems, *_poisoned(cast, silicone=bool(pours)))
 
@@ -171,7 +171,7 @@ def _release(foams: bool) -> str:
     return "a thin coat of release spray; silicone does not stick to plastic, but grips the layers of a print"
 
 
-def _notes(foams: bool, *, silicone: bool) -> tuple[str, ...]:
+def _casting_notes(foams: bool, *, silicone: bool) -> tuple[str, ...]:
     notes = []
     if foams:
         notes.append(

@@ -88,23 +88,23 @@ def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, 
     (left, bottom, low), (right, top, high) = block.low, block.high
     xs, ys = (left + INSET, right - INSET), (bottom + INSET, top - INSET)
     keys = tuple(((x, y), _ODD_KEY if (x, y) == (xs[1], ys[1]) else _KEY) for x in xs for y in ys)
-    rows = [(x, y) for y in _steps(bottom, top, block.y_cuts) for x in xs]
+    rows = [(x, y) for y in _bolt_places(bottom, top, block.y_cuts) for x in xs]
     taken = [(vent, BOLT) for vent in vents] + ([] if sprue is None else [(sprue.x, sprue.funnel)])
-    free = [_beside(x, taken) for x in _steps(left, right, block.x_cuts)]
-    rows += [(x, ys[0]) for x in _steps(left, right, block.x_cuts)]
+    free = [_beside(x, taken) for x in _bolt_places(left, right, block.x_cuts)]
+    rows += [(x, ys[0]) for x in _bolt_places(left, right, block.x_cuts)]
     rows += [(x, ys[1]) for x in free if left + 4 * INSET < x < right - 4 * INSET]
     bolts = tuple(sorted(rows))
     return Closing(
         keys=keys,
         bolts=bolts,
-        bumps=joined([_cone(spot, radius, 0.0) for spot, radius in keys]),
-        sockets=joined([_cone(spot, radius, clearance) for spot, radius in keys]),
+        bumps=joined([_key(spot, radius, 0.0) for spot, radius in keys]),
+        sockets=joined([_key(spot, radius, clearance) for spot, radius in keys]),
         holes=joined([rod(np.array([x, y, low - 1.0]), np.array([x, y, high + 1.0]), BOLT) for x, y in bolts]),
         slots=joined([_slot(block, side, [y for x, y in bolts if x == xs[side]]) for side in (0, 1)]),
     )
 
 
-def _steps(low: float, high: float, cuts: tuple[float, ...]) -> list[float]:
+def _bolt_places(low: float, high: float, cuts: tuple[float, ...]) -> list[float]:
     """Places along a side, evenly within each piece between two cuts."""
     found = []
     for start, end in pairwise((low, *cuts, high)):
@@ -122,7 +122,7 @@ def _beside(x: float, taken: list[tuple[float, float]]) -> float:
     return -np.inf
 
 
-def _cone(spot: Spot, radius: float, clearance: float) -> Manifold:
+def _key(spot: Spot, radius: float, clearance: float) -> Manifold:
     """A key, or with a clearance its socket, as high as it is above the plane and rooted below it."""
     wide, height = radius + clearance, _KEY_HEIGHT + clearance
     root = rod(np.array([*spot, -_ROOT]), np.array([*spot, 0.0]), wide)

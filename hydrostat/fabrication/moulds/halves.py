@@ -66,7 +66,7 @@ def make_halves(
     above = _upper_side(pockets)
     upper, lower = (solid ^ above) - closing.sockets, (solid - above) + closing.bumps
     account = {"box": volume(block.solid), "body": volume(body)}
-    account["dents"], account["pockets"] = _inside(body, dents, pockets)
+    account["dents"], account["pockets"] = _taken(body, dents, pockets)
     account["cavity"] = volume(cavity)
     account |= _voids(block, cavity, openings, closing)
     account |= {"upper": volume(upper), "lower": volume(lower)}
@@ -91,7 +91,7 @@ def volume(solid: Manifold) -> float:
     return float(solid.volume())
 
 
-def _inside(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tuple[float, float]:
+def _taken(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> tuple[float, float]:
     """What dents take of the body [mm^3], and what pockets take of the rest."""
     cores = joined(pocket.core for pocket in pockets)
     return volume(body ^ dents), volume(cores ^ body) - volume(cores ^ body ^ dents)
@@ -167,19 +167,19 @@ def _fitted(solid: Manifold, bed: tuple[float, float, float]) -> Pieces:
 
 def _printed(name: str, title: str, solids: tuple[Manifold, ...], lying: _Lying, note: str) -> list[Printed]:
     if len(solids) == 1:
-        return [Printed(name=name, title=title, solid=_laid(solids[0], lying), note=note)]
+        return [Printed(name=name, title=title, solid=_on_bed(solids[0], lying), note=note)]
     return [
         Printed(
             name=f"{name}_{number}",
             title=f"{title}, piece {number} of {len(solids)}",
-            solid=_laid(solid, lying),
+            solid=_on_bed(solid, lying),
             note=note + _JOINED,
         )
         for number, solid in enumerate(solids, start=1)
     ]
 
 
-def _laid(solid: Manifold, lying: _Lying) -> Manifold:
+def _on_bed(solid: Manifold, lying: _Lying) -> Manifold:
     """A solid turned, its lowest corner at the origin."""
     turned = solid.rotate(lying)
     low = turned.bounding_box()[:3]

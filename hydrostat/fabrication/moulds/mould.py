@@ -98,7 +98,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     solid = body_solid(robot.body)
     pull = find_pull(solid)
     stance = find_stance(pull, _held(robot))
-    inside = _inside(robot, options, solid, pull, stance, pockets or {})
+    inside = _fill_block(robot, options, solid, pull, stance, pockets or {})
     closing = make_closing(
         inside.block,
         sprue=inside.sprue,
@@ -165,7 +165,7 @@ def _held(robot: Robot) -> Float[np.ndarray, "held 3"]:
     return np.column_stack([nodes, np.zeros((len(nodes), 3 - mesh.dim))])
 
 
-def _inside(
+def _fill_block(
     robot: Robot,
     options: MouldOptions,
     solid: Manifold,

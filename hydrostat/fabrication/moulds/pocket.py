@@ -104,7 +104,8 @@ def make_pockets(
             raise InputError(f'the pocket of winch "{name}" must be above 0 mm along all sides, not {box.size}')
     inside = [winch for winch in robot.winches if winch.mount is Mount.BODY and winch.name in boxes]
     ways = [
-        _ways(winch.name, body, stance.into(_spot(winch.at)[None])[0], boxes[winch.name], clearance) for winch in inside
+        _pockets_for(winch.name, body, stance.into(_spot(winch.at)[None])[0], boxes[winch.name], clearance)
+        for winch in inside
     ]
     return _together(ways)
 
@@ -163,13 +164,15 @@ class _Lying:
     wires: tuple[int, int]
 
 
-def _ways(name: str, body: Manifold, at: Float[np.ndarray, "3"], room: WinchRoom, clearance: float) -> list[Pocket]:
+def _pockets_for(
+    name: str, body: Manifold, at: Float[np.ndarray, "3"], room: WinchRoom, clearance: float
+) -> list[Pocket]:
     """All ways to lay a winch that leave the least of it outside the body, each open to either half."""
     lain = _lain(at, room)
     boxes = [_cuboid(way, clearance) for way in lain]
     outside = [round(max(_part_outside(box, body), _OUTSIDE), 3) for box in boxes]
     best = [way for way, out in zip(lain, outside, strict=True) if out == min(outside)]
-    return [_laid(name, body, way, upper, clearance) for way in best for upper in (True, False)]
+    return [_pocket(name, body, way, upper, clearance) for way in best for upper in (True, False)]
 
 
 def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[_Lying]:
@@ -188,14 +191,14 @@ def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[_Lying]:
     return list(dict.fromkeys(found))
 
 
-def _laid(name: str, body: Manifold, way: _Lying, upper: bool, clearance: float) -> Pocket:
+def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: float) -> Pocket:
     """A pocket for a winch laid one way, open to one half."""
     low, high = np.reshape(body.bounding_box(), (2, 3))
     at = np.array(way.middle)
     a, b, c = (side + 2 * clearance for side in way.sides)
     far = (high[2] if upper else low[2]) + (5.0 if upper else -5.0)
     deep = at[2] - c / 2 if upper else at[2] + c / 2
-    straight = _box(at, a, b, deep, far)
+    straight = _upright_box(at, a, b, deep, far)
     reach = straight + _groove(at, (a, b), way.wires, deep, far)
     core = next((part for part in (reach ^ body).decompose() if _holds(part, at)), Manifold())
     skin = _skin(at, (a, b, c), upper) - straight
@@ -241,17 +244,17 @@ def _groove(at: np.ndarray, across: tuple[float, float], wires: tuple[int, int],
     spot, sides = at.copy(), [0.0, 0.0]
     spot[axis] += sign * (across[axis] + depth) / 2
     sides[axis], sides[1 - axis] = depth, min(width, across[1 - axis])
-    return _box(spot, sides[0], sides[1], deep, far)
+    return _upright_box(spot, sides[0], sides[1], deep, far)
 
 
 def _skin(at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Manifold:
     """The room with a skin round it, but for its open side."""
     sign = 1.0 if upper else -1.0
     deep, end = at[2] - sign * (sides[2] / 2 + _LEAST_SKIN), at[2] + sign * sides[2] / 2
-    return _box(at, sides[0] + 2 * _LEAST_SKIN, sides[1] + 2 * _LEAST_SKIN, deep, end)
+    return _upright_box(at, sides[0] + 2 * _LEAST_SKIN, sides[1] + 2 * _LEAST_SKIN, deep, end)
 
 
-def _box(at: np.ndarray, width: float, height: float, deep: float, far: float) -> Manifold:
+def _upright_box(at: np.ndarray, width: float, height: float, deep: float, far: float) -> Manifold:
     low, high = min(deep, far), max(deep, far)
     return Manifold.cube((width, height, high - low)).translate((at[0] - width / 2, at[1] - height / 2, low))
 
@@ -297,10 +300,10 @@ def cable_dents(robot: Robot, surface: FineSurface, stance: Stance, *, deepest: 
     for place in range(len(spots)):
         if all(np.linalg.norm(spots[place] - spots[other]) > 2 * _DENT_RADIUS for other in kept):
             kept.append(place)
-    return joined(_cone(spots[place], inward[place]) for place in kept)  # their roots meet where cables are near
+    return joined(_dent(spots[place], inward[place]) for place in kept)  # their roots meet where cables are near
 
 
-def _cone(spot: Float[np.ndarray, "3"], inward: Float[np.ndarray, "3"]) -> Manifold:
+def _dent(spot: Float[np.ndarray, "3"], inward: Float[np.ndarray, "3"]) -> Manifold:
     """A blunt cone that stands on the wall with its root in it."""
     upright = rod(np.array([0.0, 0.0, -_DENT]), np.array([0.0, 0.0, _DENT]), 2 * _DENT_RADIUS - 0.4, 0.4)
     return upright.transform(np.column_stack([axes_along(inward).T, spot]))

@@ -10,11 +10,11 @@ from typing import no_type_check
 
 import numba as nb
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float
 from manifold3d import Manifold
 
 from hydrostat.arrays import Vector
-from hydrostat.fabrication.solids.printed import triangles_of
+from hydrostat.fabrication.solids.printed import TriangleMesh, triangles_of
 from hydrostat.kernel import KERNEL
 
 _OUT = 5e-4
@@ -33,33 +33,8 @@ _MOST = 16_000
 """Triangles that are looked at, about."""
 
 
-@dataclass(frozen=True, eq=False)
-class FineSurface:
-    """The surface of a body in triangles so small that each is asked once.
-
-    Attributes:
-        vertices: places [mm].
-        triangles: of three vertices; seen from outside they turn counter-clockwise.
-    """
-
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
-
-    @cached_property
-    def corners(self) -> Float[np.ndarray, "triangles 3 3"]:
-        """Corners of each triangle [mm]."""
-        return self.vertices[self.triangles]
-
-    @cached_property
-    def crosses(self) -> Float[np.ndarray, "triangles 3"]:
-        """Normal of each triangle, outward, twice as long as its area [mm^2]."""
-        corners = self.corners
-        return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-
-    @cached_property
-    def areas(self) -> Vector:
-        """Area of each triangle [mm^2]."""
-        return np.linalg.norm(self.crosses, axis=1) / 2
+class FineSurface(TriangleMesh):
+    """Surface of a body in triangles so small that each is asked once."""
 
     @cached_property
     def normals(self) -> Float[np.ndarray, "triangles 3"]:

@@ -55,8 +55,10 @@ def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> 
         (warnings if possible else problems)[pile[0]].append(words)
     moved = [number for number, way in enumerate(ways) if places[number] is not way.alone or any(places[number].slid)]
     if moved:
-        told = "; ".join(places[number].told for number in moved)
-        warnings[moved[0]].append(f"lay these units so, seen from the front, or they meet or reach the seam: {told}")
+        ways_told = "; ".join(places[number].instruction for number in moved)
+        warnings[moved[0]].append(
+            f"lay these units so, seen from the front, or they meet or reach the seam: {ways_told}"
+        )
     return tuple(
         LaidUnit(place=place, problems=tuple(wrong), warnings=tuple(minded))
         for place, wrong, minded in zip(places, problems, warnings, strict=True)

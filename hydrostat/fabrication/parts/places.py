@@ -77,7 +77,7 @@ class UnitPlace:
         return (90 + quarter * round(_turned(way - self.turn) / quarter)) % 360
 
     @property
-    def told(self) -> str:
+    def instruction(self) -> str:
         """Instruction to lay it, for a person."""
         right, ahead = self.slid
         slid = ""
@@ -104,14 +104,14 @@ def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[UnitPlace]:
     turns = sorted(range(-180 + _STEP, 181, _STEP), key=lambda turn: (abs(turn), turn))
     slides = ((0.0, 0.0), *((sign * x, sign * y) for x, y in ((0.0, _SLIDE), (_SLIDE, 0.0)) for sign in (1.0, -1.0)))
     return [
-        _place(box, seam, turn=box.along + turn, slid=slid, across=across, flipped=flipped)
+        _laid_out(box, seam, turn=box.along + turn, slid=slid, across=across, flipped=flipped)
         for slid in slides
         for across, flipped in ((True, False), (False, False), (False, True))
         for turn in turns
     ]
 
 
-def _place(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, across: bool, flipped: bool) -> UnitPlace:
+def _laid_out(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, across: bool, flipped: bool) -> UnitPlace:
     """Lay a unit with its +y at a turn [degrees]: x is to the right of it, or z to the right or to the left."""
     angle = math.radians(turn)
     up = (math.cos(angle), math.sin(angle))

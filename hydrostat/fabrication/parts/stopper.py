@@ -135,7 +135,7 @@ def _button(options: PartOptions, height: float) -> Construction:
     return Turning(side).moved(_OFF_CENTRE, 0, 0)
 
 
-def _steps(options: PartOptions) -> list[float]:
+def _rib_angles(options: PartOptions) -> list[float]:
     """Angles of the ribs [degrees]; those of base and lid take turns, with room for the cable between them."""
     apart = (_RIB + 1.3 * options.cable) / (_POST + options.cable / 2)
     first, last = 45.0, _EXIT - 30
@@ -156,7 +156,7 @@ def _key(radius: float, flat: float, height: float) -> Construction:
 def _base(options: PartOptions, rib: float) -> Construction:
     deck, track = _deck(), _track(options)
     body: Construction = _button(options, deck + rib) - Cylinder(rib + 1, track).moved(0, 0, deck)
-    for angle in _steps(options)[::2]:
+    for angle in _rib_angles(options)[::2]:
         body = body + _rib(angle, rib + 0.2, _POST - 0.2, track + 0.2).moved(0, 0, deck - 0.2)
     body = body + Cylinder(rib + options.cable / 4 + 0.2, _POST).moved(0, 0, deck - 0.2)
     body = body + _key(_KEY, _FLAT, rib + _KEY_HEIGHT).moved(0, 0, deck - 0.2)
@@ -181,7 +181,7 @@ def _lid(options: PartOptions, rib: float) -> Construction:
     """Lid with its lower face at z = 0, as it lies on the base; ribs hang below."""
     free = options.fit
     body: Construction = _button(options, _LID).turned(x=180).moved(0, 0, _LID)
-    for angle in _steps(options)[1::2]:
+    for angle in _rib_angles(options)[1::2]:
         body = body + _rib(angle, rib + 0.2, _POST + free, _track(options) - 0.2).moved(0, 0, -rib)
     body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT + 1).moved(0, 0, -1)
     body = body - Cylinder(20, M2X6.passage / 2).moved(0, 0, -1)

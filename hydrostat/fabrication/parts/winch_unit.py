@@ -152,7 +152,7 @@ def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[Winch
         for winch in robot.winches
         if (cables := tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name))
     ]
-    laid = _laid(robot, [draft for draft in drafts if draft.winch.mount is Mount.BODY])
+    laid = _lay_units(robot, [draft for draft in drafts if draft.winch.mount is Mount.BODY])
     parts = WinchParts()
     return tuple(draft.unit(robot, parts, laid.get(draft.winch.name)) for draft in drafts)
 
@@ -211,7 +211,7 @@ class _UnitDraft:
         )
 
 
-def _laid(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
+def _lay_units(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
     """Lay units in a flat body: each by the name of its winch; none in space."""
     if robot.body.thickness is None:
         return {}
@@ -221,7 +221,7 @@ def _laid(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
             at=(1e3 * draft.winch.at[0], 1e3 * draft.winch.at[1]),
             low=draft.housing.room.low,
             high=draft.housing.room.high,
-            along=_way(robot, draft.cables[0]),
+            along=_heading(robot, draft.cables[0]),
         )
         for draft in drafts
     ]
@@ -229,7 +229,7 @@ def _laid(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit]:
     return {each.place.box.winch: each for each in laid}
 
 
-def _way(robot: Robot, cable: int) -> float:
+def _heading(robot: Robot, cable: int) -> float:
     """Way in which a cable of a flat robot goes on from its winch, counted from +x [degrees]."""
     first, second = robot.cables[cable].points[:2]
     return math.degrees(math.atan2(second[1] - first[1], second[0] - first[0]))
@@ -245,7 +245,7 @@ def _azimuths(robot: Robot, cables: tuple[int, ...], mount: Mount, laid: LaidUni
         return (90,) * len(cables)
     if laid is None:
         return tuple((90 + 90 * round(4 * place / len(cables))) % 360 for place in range(len(cables)))
-    return tuple(laid.place.azimuth(_way(robot, cable)) for cable in cables)
+    return tuple(laid.place.azimuth(_heading(robot, cable)) for cable in cables)
 
 
 def _exit(housing: Housing, place: int, cable: int) -> Exit:

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from jaxtyping import Bool, Float, Int
-from scipy.sparse import coo_array, csc_array
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import split
@@ -15,6 +14,7 @@ from shapely.ops import split
 from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Disc, Patch
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
+from hydrostat.fabrication.solids.printed import connected
 
 _DIRECTIONS = 12
 _SHIFTS = (0.0, -0.06, 0.06)
@@ -103,9 +103,7 @@ def cut_chord(mesh: SkinMesh, patch: Patch, number: int, chord: Chord) -> SkinMe
     one, other = sorted(pieces[sides[nearest]].tolist())
     links = np.sort(pieces[sides[border]], axis=1)
     links = links[(links != [one, other]).any(axis=1)]
-    count = int(pieces.max()) + 1
-    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
-    group = connected_components(graph, directed=False)[1]
+    group = connected(links, int(pieces.max()) + 1)
     halves = [(cut.patch == number) & (group[pieces] == group[piece]) for piece in (one, other)]
     lesser = min(halves, key=lambda half: cut.areas[half].sum())
     return cut.labelled(np.where(lesser, int(cut.patch.max()) + 1, cut.patch))
@@ -129,15 +127,9 @@ def _groups(triangles: Int[np.ndarray, "triangles 3"], label: Int[np.ndarray, " 
     """Number connected groups of triangles of one label."""
     ends = np.sort(triangles[:, ((0, 1), (1, 2), (2, 0))].reshape(-1, 2), axis=1)
     order = np.lexsort((ends[:, 1], ends[:, 0]))
-    pairs = (
-        order[:-1][(ends[order[:-1]] == ends[order[1:]]).all(axis=1)],
-        order[1:][(ends[order[:-1]] == ends[order[1:]]).all(axis=1)],
-    )
-    one, other = pairs[0] // 3, pairs[1] // 3
-    same = label[one] == label[other]
-    count = len(triangles)
-    graph = coo_array((np.ones(int(same.sum())), (one[same], other[same])), shape=(count, count))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    shared = (ends[order[:-1]] == ends[order[1:]]).all(axis=1)
+    links = np.column_stack([order[:-1][shared], order[1:][shared]]) // 3
+    return connected(links[label[links[:, 0]] == label[links[:, 1]]], len(triangles))
 
 
 def _chord(outline: BaseGeometry, through: np.ndarray, along: np.ndarray) -> Chord | None:

@@ -5,34 +5,23 @@ from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from shapely import Polygon
 
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh
+from hydrostat.fabrication.solids.printed import TriangleMesh, connected
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Disc:
-    """A patch in space.
+class Disc(TriangleMesh):
+    """A patch in space, with vertices of its own.
 
     Attributes:
-        vertices: [mm].
-        triangles: of its own vertices, counter-clockwise from outside.
         rim: its boundary, counter-clockwise from outside.
         of: number of each vertex in the skin.
     """
 
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
     rim: Int[np.ndarray, " rim"]
     of: Int[np.ndarray, " vertices"]
-
-    @cached_property
-    def areas(self) -> Float[np.ndarray, " triangles"]:
-        """Areas of the triangles in space [mm^2]."""
-        corners = self.vertices[self.triangles]
-        return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -74,10 +63,7 @@ def disc_of(mesh: SkinMesh, number: int) -> Disc:
         [3 * place[side] + (mesh.triangles[side] == vertex[:, None]).argmax(axis=1) for side in ends[shared].T]
         for vertex in mesh.edges[0][shared].T
     ]
-    one, other = np.concatenate(links, axis=1)
-    count = len(corners)
-    graph = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
-    groups = connected_components(graph, directed=False)[1].astype(np.int64)
+    groups = connected(np.concatenate(links, axis=1).T, len(corners))
     of = np.zeros(int(groups.max()) + 1, dtype=np.int64)
     of[groups] = corners
     triangles = groups.reshape(-1, 3)

@@ -62,7 +62,7 @@ def patch_panel(
         if all(math.dist(place, other) > SHARED for _, other in holes[:index]):
             shapes += _hole(hole, place, options)
     for _, own in cables:
-        shapes += _runs(own, skin.seam, options)
+        shapes += _cable_lines(own, skin.seam, options)
     labels = PanelLabels(skin.seam, tuple(shapes), mirrored=False)
     labels.notch_names(strokes, skin.cut)
     if opening:
@@ -94,7 +94,7 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
     )
 
 
-def _runs(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: PatternOptions) -> tuple[Shape, ...]:
+def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: PatternOptions) -> tuple[Shape, ...]:
     """The cable between neighbouring holes on this patch: solid outside, dashed inside."""
     shapes: list[Shape] = []
     clear = options.pinhole / 2 + _CLEAR

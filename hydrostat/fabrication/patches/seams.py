@@ -138,7 +138,7 @@ class PatchNotch:
     place: Place
 
 
-def _steps(seam: Seam) -> list[tuple[float, bool]]:
+def _notch_places(seam: Seam) -> list[tuple[float, bool]]:
     """How far along a seam its notches are [mm], and whether each has a letter."""
     if seam.length < _SHORTEST:
         return []
@@ -152,7 +152,7 @@ def _steps(seam: Seam) -> list[tuple[float, bool]]:
 def _named(seams: tuple[Seam, ...]) -> list[list[tuple[str, float]]]:
     """Letters and places of the notches of each seam."""
     letters = notch_letters()
-    return [[(next(letters) if lettered else "", along) for along, lettered in _steps(seam)] for seam in seams]
+    return [[(next(letters) if lettered else "", along) for along, lettered in _notch_places(seam)] for seam in seams]
 
 
 def patch_notches(seams: tuple[Seam, ...]) -> dict[int, list[PatchNotch]]:

@@ -5,10 +5,9 @@ from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.solids.printed import TriangleMesh, connected
 from hydrostat.geometry.surface import Surface
 from hydrostat.robot import Body
 
@@ -19,29 +18,14 @@ _SHARE = 0.03
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SkinMesh:
+class SkinMesh(TriangleMesh):
     """A closed surface cut into patches.
 
     Attributes:
-        vertices: [mm].
-        triangles: seen counter-clockwise from outside.
         patch: number of the patch of each triangle.
     """
 
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
     patch: Int[np.ndarray, " triangles"]
-
-    @cached_property
-    def crosses(self) -> Float[np.ndarray, "triangles 3"]:
-        """Normal of each triangle, twice its area long [mm^2]."""
-        corners = self.vertices[self.triangles]
-        return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-
-    @property
-    def areas(self) -> Float[np.ndarray, " triangles"]:
-        """Areas of the triangles [mm^2]."""
-        return np.linalg.norm(self.crosses, axis=1) / 2
 
     @cached_property
     def edges(self) -> tuple[Int[np.ndarray, "edges 2"], Int[np.ndarray, "triangles 3"]]:
@@ -61,9 +45,7 @@ class SkinMesh:
         """Number the connected groups of triangles with one label, in the order of their first triangles."""
         sides = self.neighbours
         same = sides[label[sides[:, 0]] == label[sides[:, 1]]]
-        count = len(self.triangles)
-        graph = coo_array((np.ones(len(same)), (same[:, 0], same[:, 1])), shape=(count, count))
-        return connected_components(graph, directed=False)[1].astype(np.int64)
+        return connected(same, len(self.triangles))
 
     def labelled(self, patch: Int[np.ndarray, " triangles"]) -> "SkinMesh":
         """The same triangles in other patches."""

@@ -37,7 +37,7 @@ def gusset_panels(
     cuts = []
     for ring, seam in enumerate((skin.seam.exterior, *skin.seam.interiors)):
         own = [notch for notch in notches if notch.ring == ring]
-        ends = _ends(seam.length, [notch.along for notch in own if notch.name], options.gusset_piece)
+        ends = _strip_ends(seam.length, [notch.along for notch in own if notch.name], options.gusset_piece)
         cuts += [(own, start, end, seam.length) for start, end in pairwise(ends)]
     return tuple(
         _piece(f"{name} - gusset {number} of {len(cuts)}", number, _StripPiece(*cut), thickness, options)
@@ -55,7 +55,7 @@ class _StripPiece:
         self.notches = sorted((min(max(along, 0.0), self.length), name) for along, name in near)
 
 
-def _ends(length: float, notches: list[float], longest: float) -> list[float]:
+def _strip_ends(length: float, notches: list[float], longest: float) -> list[float]:
     """Places where a strip is cut: at the last notch before it would become too long, else just there [mm]."""
     ends = [0.0]
     while length - ends[-1] > longest + 1e-9:

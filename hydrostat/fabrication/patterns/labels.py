@@ -206,7 +206,7 @@ class PanelLabels:
                 for side in (-2.2 - letter.width / 2, 2.2 + letter.width / 2)
             ]
             free = cloth.difference(self._seam)
-            best = max(middles, key=lambda middle: round(free.intersection(_frame(middle, letter)).area, 3))
+            best = max(middles, key=lambda middle: round(free.intersection(_letter_box(middle, letter)).area, 3))
             self._shapes.extend(letter.lines((-best[0], best[1]) if self._mirrored else best))
 
     def edge_names(self, upper: str, lower: str) -> None:
@@ -263,7 +263,7 @@ class PanelLabels:
         for height in _NAMES:
             lettering = Lettering(text, height)
             middle = self._space.beside(at, lettering.width, height, gap=gap)
-            choices.append((lettering, middle, _way(at, middle, lettering)))
+            choices.append((lettering, middle, _to_label(at, middle, lettering)))
         near = (choice for choice in choices if np.linalg.norm(choice[2]) < gap + _NEAR)
         lettering, middle, way = next(near, choices[-1])
         self._write(lettering, middle)
@@ -273,13 +273,13 @@ class PanelLabels:
             self._space.take_line(leader)
 
 
-def _frame(middle: Place, letter: Lettering) -> Polygon:
+def _letter_box(middle: Place, letter: Lettering) -> Polygon:
     """The box of a text."""
     x, y = middle
     return box(x - letter.width / 2, y - letter.height / 2, x + letter.width / 2, y + letter.height / 2)
 
 
-def _way(at: Place, middle: Place, lettering: Lettering) -> np.ndarray:
+def _to_label(at: Place, middle: Place, lettering: Lettering) -> np.ndarray:
     """Way from a place to the nearest point of its label [mm]."""
     half = np.array([lettering.width, lettering.height]) / 2
     offset = np.subtract(middle, at)

@@ -43,7 +43,7 @@ class _PanelBox(NamedTuple):
 
 def lay_out(panels: tuple[Panel, ...], strips: tuple[Panel, ...], gap: float) -> Sheet:
     """Lay panels in a row, and strips below them in rows that are no wider, a gap [mm] between all."""
-    row, others = [_box(panel) for panel in panels], [_box(strip) for strip in strips]
+    row, others = [_bounds(panel) for panel in panels], [_bounds(strip) for strip in strips]
     width = max(
         sum(box.size[0] + gap for box in row) + gap,
         _RULER + 30 + 2 * gap,
@@ -78,7 +78,7 @@ def _shelves(boxes: list[_PanelBox], width: float, gap: float) -> list[list[_Pan
     return shelves
 
 
-def _box(panel: Panel) -> _PanelBox:
+def _bounds(panel: Panel) -> _PanelBox:
     bounds = shapely.total_bounds(np.array([shape.geometry for shape in panel.shapes]))
     return _PanelBox(panel, bounds[:2], bounds[2:] - bounds[:2])
 

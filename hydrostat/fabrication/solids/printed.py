@@ -6,7 +6,10 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from manifold3d import Manifold
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
+from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.construct import Construction, solid_of
 
 _DECIMALS = 5
@@ -150,6 +153,41 @@ class Printed:
     def written(self) -> FileMesh:
         """Its vertices [mm] and triangles, as every file lists them."""
         return file_mesh(self.solid)
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Surface in triangles.
+
+    Attributes:
+        vertices: places [mm].
+        triangles: of three vertices each; seen from outside they turn counter-clockwise.
+    """
+
+    vertices: Float[np.ndarray, "vertices 3"]
+    triangles: Int[np.ndarray, "triangles 3"]
+
+    @cached_property
+    def corners(self) -> Float[np.ndarray, "triangles 3 3"]:
+        """Corners of each triangle [mm]."""
+        return self.vertices[self.triangles]
+
+    @cached_property
+    def crosses(self) -> Float[np.ndarray, "triangles 3"]:
+        """Normal of each triangle, outward, twice as long as its area [mm^2]."""
+        corners = self.corners
+        return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+    @cached_property
+    def areas(self) -> Vector:
+        """Area of each triangle [mm^2]."""
+        return np.linalg.norm(self.crosses, axis=1) / 2
+
+
+def connected(links: Int[np.ndarray, "links 2"], count: int) -> Int[np.ndarray, " count"]:
+    """Number the groups of so many things that links join, in the order of their first members."""
+    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
+    return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
 def triangles_of(solid: Manifold) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:

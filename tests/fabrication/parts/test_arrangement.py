@@ -60,7 +60,7 @@ def test_flat_robots_of_the_gallery_have_room(name: str, motor: Motor, unchecked
         assert one.footprint.intersection(other.footprint).area <= TOUCHES or one.depth + other.depth <= room
     told = " ".join(text for unit in units for text in unit.warnings)
     for place in places:
-        assert place.slid == (0.0, 0.0) or place.told in told
+        assert place.slid == (0.0, 0.0) or place.instruction in told
 
 
 @pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
@@ -201,5 +201,5 @@ def test_it_takes_little_time_and_is_the_same_again(unchecked: None):
     for one, other in zip(first, second, strict=True):
         assert one.place is not None
         assert other.place is not None
-        assert one.place.told == other.place.told
+        assert one.place.instruction == other.place.instruction
         assert Polygon(one.place.footprint).equals(other.place.footprint)
