@@ -167,7 +167,7 @@ class Document:
         self.bell.ring(Topic.ROBOT, Topic.THINGS)
 
     def seal(self) -> None:
-        """A drag is over: the next change is one of its own."""
+        """End a drag: the next change is one of its own."""
         with self._lock:
             if self._past and self._past[-1].merge:
                 last = self._past[-1]
@@ -183,7 +183,7 @@ class Document:
         return self._move(self._future, self._past, least=1)
 
     def mark_saved(self, folder: Path, work: Work) -> None:
-        """This work is saved in this folder; nothing happens if another robot was opened meanwhile."""
+        """Note that this work is saved in this folder; nothing happens if another robot was opened meanwhile."""
         with self._lock:
             if not any(change.work is work for change in (*self._past, *self._future)):
                 return

@@ -21,7 +21,7 @@ PATIENCE = 5.0
 
 @dataclass(frozen=True, kw_only=True)
 class JobState:
-    """How far the work is.
+    """State of the work: how far it is.
 
     Attributes:
         title: such as "Designing cables".

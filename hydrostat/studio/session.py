@@ -133,7 +133,7 @@ class Session:
             self.tell(note, Tone.BAD)
 
     def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:
-        """A screen's pointer takes hold of something; whether it did.
+        """Take hold of something with a screen's pointer; whether it did.
 
         Args:
             screen: which one.
@@ -152,7 +152,7 @@ class Session:
         return bool(held)
 
     def drag(self, screen: str, hit: Hit, stamp: float = 0.0) -> None:
-        """The pointer of a screen has moved; nothing happens if it holds nothing."""
+        """Follow the pointer of a screen, which has moved; nothing happens if it holds nothing."""
         with self._lock:
             if self._holder != screen:
                 return
@@ -161,7 +161,7 @@ class Session:
         self.bell.ring(Topic.SHAPE)
 
     def release(self, screen: str) -> None:
-        """The pointer of a screen has let go."""
+        """Let go of what the pointer of a screen held."""
         with self._lock:
             if self._holder != screen:
                 return
@@ -169,14 +169,14 @@ class Session:
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def click(self, screen: str, hit: Hit) -> None:
-        """A screen's pointer was pressed at one place."""
+        """Take a click of a screen's pointer."""
         with self._lock:
             if self._holder in (None, screen) and self.document.is_open:
                 self._try(lambda: self.current.click(hit))
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def key(self, name: str) -> bool:
-        """A key of the current stage; whether it meant something."""
+        """Heed a key of the current stage; whether it meant something."""
         with self._lock:
             meant = self.document.is_open and bool(self._try(lambda: self.current.key(name)))
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
@@ -228,7 +228,7 @@ class Session:
         self.bell.ring(Topic.NOTE)
 
     def step(self, now: float) -> bool:
-        """A bit of work of the current stage; whether there is more. Called by a thread of its own.
+        """Do a bit of work of the current stage; whether there is more. Called by a thread of its own.
 
         Args:
             now: time [s] of a clock that only runs forward.
@@ -259,7 +259,7 @@ class Session:
         return self._show.moment(robot, shape, things, head, node_values(robot, shape.nodes, self.colouring))
 
     def left(self, screen: str) -> None:
-        """A screen is gone."""
+        """Let go for a screen that is gone."""
         self.release(screen)
 
     def close(self) -> None:

@@ -45,35 +45,35 @@ class Stage(ABC):
 
     @abstractmethod
     def shape(self) -> RobotShape:
-        """Where the body is now."""
+        """Shape that the body has now."""
 
     @abstractmethod
     def things(self) -> Sequence[Thing]:
         """What is shown beside the body, in an order that does not change while a person drags."""
 
     def enter(self) -> None:
-        """It is shown from now on."""
+        """Begin: the stage is shown from now on."""
 
     def leave(self) -> None:
-        """Another stage is shown."""
+        """End: another stage is shown."""
 
     def grab(self, hit: Hit) -> bool:
         """Take hold of what is under the pointer; False: nothing to hold, the view may be turned instead."""
         return False
 
     def drag(self, hit: Hit) -> None:
-        """The pointer has moved with what it holds."""
+        """Follow the pointer, which has moved with what it holds."""
 
     def release(self) -> None:
-        """The pointer has let go."""
+        """Let go of what the pointer held."""
 
     def click(self, hit: Hit) -> None:
-        """The pointer was pressed and let go at the same place."""
+        """Take a click: the pointer was pressed and let go at the same place."""
 
     def key(self, name: str) -> bool:
-        """A key such as "delete", "escape", "space", "r" or "g"; whether it meant something here."""
+        """Heed a key such as "delete", "escape", "space", "r" or "g"; whether it meant something here."""
         return False
 
     def step(self, now: float) -> bool:
-        """A bit of work, at a time [s] of a clock that only runs forward; whether there is more to do."""
+        """Do a bit of work, at a time [s] of a clock that only runs forward; whether there is more to do."""
         return False

@@ -108,7 +108,7 @@ def open_work(folder: Path) -> Work:
 
 
 def open_note(folder: Path) -> str:
-    """Why keyframes and wishes of a folder could not be read; "" if they could."""
+    """Reason why keyframes and wishes of a folder could not be read; "" if they could."""
     try:
         read_studio_file(_home(folder))
     except InputError as error:
@@ -151,7 +151,7 @@ def folder_stamp(folder: Path) -> str:
 
 
 def changed_outside(folder: Path, stamp: str) -> bool:
-    """Whether someone else wrote into a folder since it had this `folder_stamp`."""
+    """Tell whether someone else wrote into a folder since it had this `folder_stamp`."""
     return folder_stamp(folder) not in ("", stamp)
 
 
@@ -205,7 +205,7 @@ def _body_file(home: Path) -> str:
 
 
 def _is_other(file: Path, content: bytes) -> bool:
-    """Whether there is a file of other content; also one that cannot be read."""
+    """Tell whether there is a file of other content; also one that cannot be read."""
     try:
         return file.exists() and file.read_bytes() != content
     except OSError:

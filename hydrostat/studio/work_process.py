@@ -22,18 +22,18 @@ AGAIN = 0.02
 
 @runtime_checkable
 class Report(Protocol):
-    """How work in another process tells of itself."""
+    """The way in which work in another process tells of itself."""
 
     def progress(self, stage: str, done: int, total: int) -> None:
-        """How far it is."""
+        """Tell how far it is."""
         ...
 
     def part(self, value: Any) -> None:
-        """Something found on the way."""
+        """Hand over something that was found on the way."""
         ...
 
     def finish(self) -> None:
-        """The work is done but for handing it over: from here on nothing interrupts it."""
+        """Say that the work is done but for handing it over: from here on nothing interrupts it."""
         ...
 
 

@@ -10,7 +10,7 @@ from hydrostat.robot import Point
 from hydrostat.studio.document import Document
 from hydrostat.studio.records.wishes import Paint
 from hydrostat.studio.stage import Hit
-from hydrostat.studio.view.things import Area, Dot, Look, Polyline, Stroke, Thing
+from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
 
 COLOURS = {Paint.KEEP_OUT: "#c8243f", Paint.WINCH_ZONES: "#00795f", Paint.STILL: "#5a3da6"}
 """Of each paint."""
@@ -202,7 +202,7 @@ class Painter:
             things += _handles(self.chosen, *zones[self.chosen])
         open_line = self._line or self._corners
         if open_line and self.paint is not None:
-            things.append(Polyline(points=open_line, stroke=Stroke.PATH, colour=COLOURS[self.paint]))
+            things.append(Strand(points=open_line, stroke=Stroke.PATH, colour=COLOURS[self.paint]))
         for corner in self._corners:
             things.append(Dot(at=corner, look=Look.HANDLE, colour=COLOURS[self.paint or Paint.KEEP_OUT]))
         return things

@@ -39,7 +39,7 @@ class Keyframes:
 
     @property
     def timeline(self) -> Timeline:
-        """As it is now."""
+        """Keyframes as they are now."""
         return self._document.work.timeline
 
     @property

@@ -10,7 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.editing.mirror import Mirror
 from hydrostat.studio.editing.place import add_cable, add_winch
-from hydrostat.studio.view.things import Dot, Look, Polyline, Stroke, Thing
+from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
 
 NEAR_WINCH = 0.03
 """A first point so near to a winch, as a share of the body, means that winch."""
@@ -85,17 +85,17 @@ def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> li
         things += _draft(robot, draft)
         if mirror is not None and any(mirror.point(point) != point for point in draft.points):
             twin = CableDraft(points=tuple(mirror.point(point) for point in draft.points))
-            things += [thing for thing in _draft(robot, twin) if isinstance(thing, Polyline)]
+            things += [thing for thing in _draft(robot, twin) if isinstance(thing, Strand)]
     return things
 
 
-def _axis(robot: Robot, mirror: Mirror) -> Polyline:
+def _axis(robot: Robot, mirror: Mirror) -> Strand:
     """The line about which a flat body is mirrored."""
     nodes, along = robot.body.mesh.nodes, 1 - mirror.axis
     margin = BEYOND * robot.body.mesh.size
     ends = (float(nodes[:, along].min()) - margin, float(nodes[:, along].max()) + margin)
     points = tuple(mirror.on_plane((end, end)) for end in ends)
-    return Polyline(points=points, stroke=Stroke.PATH, colour=MUTED, loose=-1)
+    return Strand(points=points, stroke=Stroke.PATH, colour=MUTED, loose=-1)
 
 
 def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
@@ -105,7 +105,7 @@ def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
     start, *rest = draft.points
     things: list[Thing] = []
     if rest:
-        things.append(Polyline(points=draft.points, stroke=Stroke.CABLE, colour=colour, loose=-1))
+        things.append(Strand(points=draft.points, stroke=Stroke.CABLE, colour=colour, loose=-1))
     if draft.winch is None:
         things.append(Dot(at=start, look=Look.WINCH, colour=colour, stuck=False))
     vias = [Dot(at=point, look=Look.HANDLE, colour=colour, stuck=False) for point in rest]

@@ -97,7 +97,7 @@ class Editor(Stage):
         return [*robot_things(robot, vias=True, chosen=chosen), *overlay(robot, self.draft, self.mirror)]
 
     def leave(self) -> None:
-        """Another stage is shown: what was begun is dropped."""
+        """Drop what was begun: another stage is shown."""
         self.draft, self._hold, self._refused = None, None, ""
 
     # What the panel does.
@@ -125,7 +125,7 @@ class Editor(Stage):
         self._ring()
 
     def set_depth(self, depth: float) -> None:
-        """How deep below the skin of a body in space winches and cables are placed [m].
+        """Set how deep below the skin of a body in space winches and cables are placed [m].
 
         Raises:
             InputError: it is no depth in this body.
@@ -271,7 +271,7 @@ class Editor(Stage):
             self._add(add, at)
 
     def key(self, name: str) -> bool:
-        """Delete, escape, enter, and a letter for each tool."""
+        """Heed delete, escape, enter, and a letter for each tool."""
         if name == "delete":
             if self.draft is not None:
                 self.draft = self.draft.shorter()

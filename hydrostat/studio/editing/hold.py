@@ -81,7 +81,7 @@ class Hold:
     start: Point = ()
 
     def places(self, at: Point) -> dict[str, Point]:
-        """Where the parts go when the held one goes to a place [m]."""
+        """Places of the parts [m], by key, when the held one goes to a place."""
         if self.mirror is not None and self.flat:
             return {self.key: self.mirror.on_plane(at)}
         if self.mirror is not None and self.twin:

@@ -33,12 +33,12 @@ class Mirror:
         return tuple(0.0 if axis == self.axis else value for axis, value in enumerate(at))
 
     def holds(self, robot: Robot, key: str) -> bool:
-        """Whether a part is on the plane."""
+        """Tell whether a part is on the plane."""
         at = place_of(robot, key)
         return at is not None and abs(at[self.axis]) <= SAME * robot.body.mesh.size
 
     def near(self, robot: Robot, at: Point) -> bool:
-        """Whether a new part there is meant to be on the plane."""
+        """Tell whether a new part there is meant to be on the plane."""
         return abs(at[self.axis]) <= ON_PLANE * robot.body.mesh.size
 
     def twin(self, robot: Robot, key: str) -> str | None:

@@ -53,7 +53,7 @@ def find_part(robot: Robot, key: str) -> Part | None:
 
 
 def place_of(robot: Robot, key: str) -> Point | None:
-    """Where a part is [m]; None for a cable, which is in many places, and for what there is not."""
+    """Place of a part [m]; None for a cable, which is in many places, and for what there is not."""
     part = find_part(robot, key)
     if part is None or part.kind is Kind.CABLE:
         return None

@@ -23,7 +23,7 @@ class Download:
 
     @property
     def media_type(self) -> str:
-        """As browsers name its kind."""
+        """Name that browsers have for its kind, such as "image/png"."""
         return MEDIA_TYPES.get(self.name.rpartition(".")[2], "application/octet-stream")
 
     @property

@@ -84,7 +84,7 @@ class Exporter(Stage):
         return self._result(Export.PICTURES) or ()
 
     def outdated(self, export: Export) -> bool:
-        """Whether something was made, and the robot has changed since."""
+        """Tell whether something was made, and the robot has changed since."""
         return export in self._made and self._result(export) is None
 
     def choose(self, options: KitOptions) -> None:
@@ -156,7 +156,7 @@ class Exporter(Stage):
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Robot")
 
     def enter(self) -> None:
-        """A process stands ready, so that work begins at once."""
+        """Let a process stand ready, so that work begins at once."""
         self._jobs.warm(make_kit.__module__)
 
     def shape(self) -> RobotShape:

@@ -40,7 +40,7 @@ class KitMade:
 
     @property
     def told(self) -> str:
-        """How many checks hold, such as "8 of 8 checks hold"."""
+        """Count of the checks that hold, such as "8 of 8 checks hold"."""
         held = sum(check.passed for check in self.checks)
         return f"{held} of {len(self.checks)} checks hold"
 

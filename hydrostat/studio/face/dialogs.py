@@ -5,11 +5,11 @@ from pathlib import Path
 
 from nicegui import ui
 
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.work_folder import doubts
 
 
-def save_dialog(page: Page) -> Callable[[], None]:
+def save_dialog(page: WindowPage) -> Callable[[], None]:
     """Build the dialogs; returns what saves: at once where nothing can be lost by it, else after asking."""
     document = page.session.document
     with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
@@ -79,22 +79,37 @@ class _Sure:
         return ui.button(words, on_click=lambda: self._dialog.submit(answer)).props(f"no-caps {look}")
 
 
-async def may_leave(page: Page) -> bool:
+async def may_leave(page: WindowPage) -> bool:
     """Ask if there is work that is not saved; what the person says."""
     document = page.session.document
     if document.saved:
         return True
+    title, words = f"{document.robot.name} is not saved", "Another robot takes its place, and what was changed is lost."
+    return await ask(page, title, words, "Go back", "Throw the changes away", name="leave", negative=True)
+
+
+async def ask(
+    page: WindowPage, title: str, words: str, no: str, yes: str, *, name: str, negative: bool = False
+) -> bool:
+    """Ask a person of this window for a yes or no; a click beside it means no.
+
+    Args:
+        page: of the window.
+        title: what it is about.
+        words: what would come of it.
+        no: on the button that leaves all as it is.
+        yes: on the button that goes on.
+        name: of the question, for tests.
+        negative: whether something is lost by it.
+    """
     with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
-        ui.label(f"{document.robot.name} is not saved").classes("studio-title")
-        ui.label("Another robot takes its place, and what was changed is lost.").classes("studio-hint")
+        ui.label(title).classes("studio-title")
+        ui.label(words).classes("studio-hint")
         with ui.row().classes("w-full justify-end"):
-            ui.button("Go back", on_click=lambda: dialog.submit(False)).props("flat no-caps").props(
-                'data-testid="leave-no"'
-            )
-            leave = ui.button("Throw the changes away", on_click=lambda: dialog.submit(True)).props(
-                "unelevated no-caps color=negative"
-            )
-            leave.props('data-testid="leave-yes"')
+            back = ui.button(no, on_click=lambda: dialog.submit(False))
+            back.props(f'flat no-caps data-testid="{name}-no"')
+            go = ui.button(yes, on_click=lambda: dialog.submit(True))
+            go.props(f'unelevated no-caps data-testid="{name}-yes"' + (" color=negative" if negative else ""))
     answer = bool(await dialog)
     dialog.delete()
     return answer

@@ -134,7 +134,7 @@ class OutlineEditor(ui.element, component="static/outline_editor.js"):
         self.run_method("put", send_loops(loops))
 
     def set_fault(self, faulty: bool) -> None:
-        """Whether these are no body, and so are drawn as a warning."""
+        """Draw them as a warning, as they are no body, or as usual."""
         if self._props["fault"] != faulty:
             self._props["fault"] = faulty
             self.update()
@@ -148,7 +148,7 @@ class OutlineEditor(ui.element, component="static/outline_editor.js"):
         self.run_method("redo")
 
     def add_loop(self) -> None:
-        """The next clicks draw a loop, a hole if it lies inside."""
+        """Draw a loop with the next clicks, a hole if it lies inside."""
         self.run_method("begin")
 
     def remove_corner(self) -> None:
@@ -160,11 +160,11 @@ class OutlineEditor(ui.element, component="static/outline_editor.js"):
         self.run_method("fit")
 
     def set_mirror(self, on: bool) -> None:
-        """Whether both sides of x = 0 change together."""
+        """Let both sides of x = 0 change together, or each alone."""
         self.run_method("setMirror", on)
 
     def set_snap(self, on: bool) -> None:
-        """Whether corners stay on the grid."""
+        """Keep corners on the grid, or set them free."""
         self.run_method("setSnap", on)
 
 

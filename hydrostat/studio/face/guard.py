@@ -98,7 +98,7 @@ class Guard:
         return ""
 
     def _is_ours(self, host: str) -> bool:
-        """Whether a host, such as "localhost:8000", is this studio."""
+        """Tell whether a host, such as "localhost:8000", is this studio."""
         name, port = host, "80"
         if not host.endswith("]") and ":" in host:
             name, _, port = host.rpartition(":")
@@ -155,7 +155,7 @@ class _Body:
 
 
 def _is_near(scope: Scope, headers: Headers) -> bool:
-    """Whether a browser says that our own page asks, or nobody does, or that a person follows a link to the page."""
+    """Tell whether, as a browser says, our own page asks, or nobody, or a person who follows a link to the page."""
     sites = headers.getlist("sec-fetch-site")
     follows = scope["type"] == "http" and scope["method"] == "GET" and headers.get("sec-fetch-dest") == "document"
     return all(site in ("same-origin", "none") for site in sites) or (follows and "origin" not in headers)
@@ -166,7 +166,7 @@ def _is_count(text: str) -> bool:
 
 
 def _is_number(name: str) -> bool:
-    """Whether a name of a machine is an address in numbers."""
+    """Tell whether a name of a machine is an address in numbers."""
     try:
         ip_address(name[1:-1] if name.startswith("[") and name.endswith("]") else name)
     except ValueError:

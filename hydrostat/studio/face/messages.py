@@ -33,7 +33,7 @@ class Pointer(_Message):
 
 
 class LetGo(_Message):
-    """The pointer has let go."""
+    """Let go of what the pointer held."""
 
     kind: Literal["release"]
 

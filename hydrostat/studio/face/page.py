@@ -1,7 +1,7 @@
-"""`Page`: one browser window on a session."""
+"""`WindowPage`: one browser window on a session."""
 
 from collections import defaultdict
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Any
 
 from nicegui import run, ui
@@ -20,7 +20,7 @@ COLOURS = {Tone.GOOD: "positive", Tone.PLAIN: "dark", Tone.BAD: "negative"}
 Refresh = Callable[[], Any]
 
 
-class Page:
+class WindowPage:
     """One browser window: its view, its panel, and what is to be drawn again when something changes.
 
     Attributes:
@@ -54,6 +54,30 @@ class Page:
         (self._lasting if lasting else self._passing)[topic].append(refresh)
         refresh()
 
+    def on_new(
+        self, topics: Sequence[Topic], state: Callable[[], object], room: ui.element, build: Callable[[], Any]
+    ) -> None:
+        """Fill a room, and fill it anew after one of some topics rang where what it shows is another by then.
+
+        Args:
+            topics: that matter.
+            state: what it shows.
+            room: to fill.
+            build: what fills it.
+        """
+        drawn: list[object] = []
+
+        def show() -> None:
+            now = state()
+            if drawn != [now]:
+                drawn[:] = [now]
+                room.clear()
+                with room:
+                    build()
+
+        for topic in topics:
+            self.on(topic, show)
+
     def act(self, action: Callable[..., Any], *arguments: Any) -> Any:
         """Do something with the session; what was wrong is told to the person of this window. None if it was."""
         try:
@@ -63,7 +87,7 @@ class Page:
             return None
 
     async def act_slowly(self, action: Callable[..., Any], *arguments: Any) -> Any:
-        """As `act`, for what may take a second or more: in a thread, so that the page goes on."""
+        """Do what `act` does in a thread, for what may take a second or more: the page goes on."""
         try:
             return await run.io_bound(action, *arguments)
         except HydrostatError as error:
@@ -79,7 +103,7 @@ class Page:
         return lambda: self.act_slowly(action, *arguments)
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
-        """A note for the person of this window."""
+        """Show a note to the person of this window."""
         timeout = 8000 if tone is Tone.BAD else 2500
         ui.notify(text, color=COLOURS[tone], position="bottom", multi_line=len(text) > 60, timeout=timeout)
 
@@ -87,7 +111,7 @@ class Page:
         """Show another stage, in all windows."""
         self.act(self.session.go, stage)
 
-    def show_panel(self, build: Callable[["Page"], None]) -> None:
+    def show_panel(self, build: Callable[["WindowPage"], None]) -> None:
         """Fill panel and bottom anew."""
         self._passing.clear()
         for room in (self.panel, self.bottom, self.whole):
@@ -109,5 +133,22 @@ class Page:
                 self.tell(note.text, note.tone)
 
     def close(self) -> None:
-        """The window is gone."""
+        """End: the window is gone."""
         self._leave()
+
+
+def icon_button(
+    icon: str, words: str, action: Callable[[], Any] | None, *, small: bool = True, colour: str | None = None
+) -> ui.button:
+    """A round button with a sign alone; its words are told to who points at it or cannot see it.
+
+    Args:
+        icon: its sign.
+        words: what it does.
+        action: called when it is pressed.
+        small: whether it is a small one.
+        colour: of its sign; None: as the words around it.
+    """
+    button = ui.button(icon=icon, color=colour, on_click=action).props("flat round dense" + " size=sm" * small)
+    button.props["aria-label"] = words
+    return button.tooltip(words)

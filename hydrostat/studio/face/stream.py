@@ -120,7 +120,7 @@ class _Screen:
         self._serial = -1
 
     def saw(self, count: int) -> None:
-        """So many pictures have arrived."""
+        """Note that so many pictures have arrived."""
         self._flying = max(0, self._flying - count)
         self._room.set()
 

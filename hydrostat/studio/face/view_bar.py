@@ -4,7 +4,7 @@ from nicegui import ui
 
 from hydrostat.drawing import palette
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.view.colouring import Colouring
 
 RAMP = palette.TENSION
@@ -14,32 +14,22 @@ AXES = {"off": None, "x": "x", "y": "y", "z": "z"}
 COLOURINGS = {Colouring.FELT: "Felt", Colouring.STRAIN: "Strain", Colouring.STRESS: "Stress"}
 
 
-def view_bar(page: Page) -> None:
+def view_bar(page: WindowPage) -> None:
     """Buttons in a corner of the view, and the legend in another."""
     _legend(page)
     view = page.viewport
     with ui.element("div").classes("studio-view-bar"):
-        _button("fit_screen", "Fit", view.fit)
+        icon_button("fit_screen", "Fit", view.fit)
         space = ui.element("div").classes("column gap-1")
         with space:
-            _button("crop_portrait", "Front (1)", lambda: view.view("front"))
-            _button("flip", "Side (3)", lambda: view.view("side"))
-            _button("layers", "Top (7)", lambda: view.view("top"))
-            with (
-                ui.button(color=None, icon="view_in_ar")
-                .props('flat round dense size=sm aria-label="Looks"')
-                .tooltip("Looks")
-            ):
+            icon_button("crop_portrait", "Front (1)", lambda: view.view("front"))
+            icon_button("flip", "Side (3)", lambda: view.view("side"))
+            icon_button("layers", "Top (7)", lambda: view.view("top"))
+            with icon_button("view_in_ar", "Looks", None):
                 _space_menu(page)
-        with (
-            ui.button(color=None, icon="palette")
-            .props('flat round dense size=sm aria-label="Colours"')
-            .tooltip("Colours")
-        ):
+        with icon_button("palette", "Colours", None):
             _colour_menu(page)
-        mesh = (
-            ui.button(color=None, icon="grid_4x4").props('flat round dense size=sm aria-label="Mesh"').tooltip("Mesh")
-        )
+        mesh = icon_button("grid_4x4", "Mesh", None)
         mesh.on_click(lambda: _toggle_mesh(page, mesh))
 
     def show() -> None:
@@ -49,7 +39,7 @@ def view_bar(page: Page) -> None:
     page.on(Topic.ROBOT, show, lasting=True)
 
 
-def _legend(page: Page) -> None:
+def _legend(page: WindowPage) -> None:
     """What the colours of the body mean, in another corner."""
     with ui.element("div").classes("studio-legend") as box:
         title = ui.label()
@@ -69,7 +59,7 @@ def _legend(page: Page) -> None:
     page.on(Topic.THINGS, show, lasting=True)
 
 
-def _space_menu(page: Page) -> None:
+def _space_menu(page: WindowPage) -> None:
     view = page.viewport
     with ui.menu(), ui.column().classes("q-pa-md gap-2").style("min-width: 220px"):
         ui.switch("Perspective", value=True, on_change=lambda event: view.orthographic(not event.value))
@@ -82,7 +72,7 @@ def _space_menu(page: Page) -> None:
             control.on_value_change(lambda: view.section(AXES[axis.value], share.value or 0.0))
 
 
-def _colour_menu(page: Page) -> None:
+def _colour_menu(page: WindowPage) -> None:
     session = page.session
     with ui.menu(), ui.column().classes("q-pa-md gap-2"):
         choice = ui.radio(COLOURINGS, value=session.colouring)
@@ -90,13 +80,7 @@ def _colour_menu(page: Page) -> None:
     page.on(Topic.THINGS, lambda: choice.set_value(session.colouring), lasting=True)
 
 
-def _toggle_mesh(page: Page, button: ui.button) -> None:
+def _toggle_mesh(page: WindowPage, button: ui.button) -> None:
     shown = "flat" in button.props
     button.props(remove="flat" if shown else "outline", add="outline" if shown else "flat")
     page.viewport.mesh(shown)
-
-
-def _button(icon: str, words: str, action: object) -> None:
-    ui.button(icon=icon, color=None, on_click=lambda: action()).props(  # type: ignore[operator]
-        f'flat round dense size=sm aria-label="{words}"'
-    ).tooltip(words)

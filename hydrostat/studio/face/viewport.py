@@ -61,7 +61,7 @@ class Viewport(ui.element, component="static/viewport.js"):
         self.update()
 
     def set_brush(self, brush: bool) -> None:
-        """Whether a drag beside the body paints instead of moving the view."""
+        """Let a drag beside the body paint instead of moving the view, or not."""
         self._props["brush"] = brush
         self.update()
 
@@ -87,7 +87,7 @@ class Viewport(ui.element, component="static/viewport.js"):
         self.run_method("orthographic", on)
 
     def opacity(self, value: float) -> None:
-        """How solid a body in space looks, from 0 to 1."""
+        """Set how solid a body in space looks, from 0 to 1."""
         self.run_method("opacity", value)
 
     def mesh(self, on: bool) -> None:

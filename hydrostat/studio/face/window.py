@@ -9,7 +9,7 @@ from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.dialogs import save_dialog
-from hydrostat.studio.face.page import HEARTBEAT, Page
+from hydrostat.studio.face.page import HEARTBEAT, WindowPage, icon_button
 from hydrostat.studio.face.panels.design_panel import design_panel
 from hydrostat.studio.face.panels.drive_panel import drive_panel
 from hydrostat.studio.face.panels.edit_panel import edit_panel
@@ -46,9 +46,9 @@ PANELS = {
 Ask = Callable[[], Any]
 
 
-def build_window(session: Session) -> Page:
+def build_window(session: Session) -> WindowPage:
     """Build the page of one browser window; it follows the session from now on."""
-    page = Page(session)
+    page = WindowPage(session)
     dark = dress()
     tour = Tour()
     ask_save, ask_help = save_dialog(page), help_dialog(tour)
@@ -87,7 +87,7 @@ def build_window(session: Session) -> Page:
     return page
 
 
-def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> None:
+def _header(page: WindowPage, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> None:
     """Name, stages, undo, save."""
     session = page.session
     with ui.header().classes("studio-header"):
@@ -127,8 +127,7 @@ def _header(page: Page, dark: ui.dark_mode, ask_save: Ask, ask_help: Ask) -> Non
 
 
 def _tool(icon: str, words: str, action: Ask) -> ui.button:
-    button = ui.button(icon=icon, color=None, on_click=lambda: action())
-    return button.props(f'flat round dense aria-label="{words}"').classes("studio-tool").tooltip(words)
+    return icon_button(icon, words, lambda: action(), small=False).classes("studio-tool")
 
 
 async def _recall(dark: ui.dark_mode) -> None:
@@ -154,7 +153,7 @@ DARK = "hydrostat-dark"
 SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 
-def _key(page: Page, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> Any:
+def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: Ask, ask_help: Ask) -> Any:
     """What a key does; see `tour.KEYS`. Returns what is still to be waited for, if anything."""
     if not event.action.keydown:
         return None

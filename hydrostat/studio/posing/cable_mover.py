@@ -63,7 +63,7 @@ class CableMover(Mover):
 
     @property
     def pose(self) -> SolvedPose:
-        """Where the robot is."""
+        """Pose that the robot is in."""
         return self._pose
 
     def limited(self, tension: float) -> "CableMover":

@@ -51,7 +51,7 @@ class Wish:
 
 
 class Anchored:
-    """Where held points are stuck to the mesh, found once for as long as they are the same; any thread may ask."""
+    """Anchors of held points in the mesh, found once for as long as they are the same; any thread may ask."""
 
     def __init__(self, mesh: Mesh) -> None:
         """Points of this body."""
@@ -68,15 +68,15 @@ class Anchored:
         return anchors
 
     def goals(self, held: Mapping[str, Held]) -> Points:
-        """Where they should go [m], (points, dim)."""
+        """Targets of held points [m], (points, dim)."""
         return np.array([point.target for point in held.values()], dtype=float).reshape(-1, self._mesh.dim)
 
     def places(self, held: Mapping[str, Held], nodes: Nodes) -> Points:
-        """Where they are when the nodes are at `nodes` [m], (points, dim)."""
+        """Places of held points when the nodes are at `nodes` [m], (points, dim)."""
         return self.anchors(held).positions(nodes)
 
     def errors(self, held: Mapping[str, Held], nodes: Nodes) -> dict[str, float]:
-        """How far each is from its target [m]."""
+        """Distance of each held point from its target [m], by name."""
         misses = np.linalg.norm(self.places(held, nodes) - self.goals(held), axis=1)
         return dict(zip(held, misses.tolist(), strict=True))
 

@@ -24,7 +24,7 @@ class Movers:
         self._cables: CableMover | None = None
 
     def ready(self, robot: Robot, mode: Mode) -> bool:
-        """Whether there is a mover that fits, so that none has to be made."""
+        """Tell whether there is a mover that fits, so that none has to be made."""
         found = self._muscles if mode is Mode.MUSCLES else self._cables
         return found is not None and same_physics(found.robot, robot, mode)
 
@@ -61,12 +61,12 @@ class Movers:
 
 
 def same_body(first: Robot, second: Robot) -> bool:
-    """Whether two robots have the same nodes."""
+    """Tell whether two robots have the same nodes."""
     return first.body.mesh is second.body.mesh
 
 
 def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
-    """Whether what moves one moves the other in the same way; markers and poses do not matter."""
+    """Tell whether what moves one moves the other in the same way; markers and poses do not matter."""
     if first is second:
         return True
     if not (same_body(first, second) and first.body == second.body):

@@ -146,7 +146,7 @@ class Poser(Stage):
         return True
 
     def drag(self, hit: Hit) -> None:
-        """What is held should follow the pointer; the newest place wins."""
+        """Let what is held follow the pointer; the newest place wins."""
         with self._lock:
             self._fit()
             hold = self._hold
@@ -154,7 +154,7 @@ class Poser(Stage):
                 self._hold_at(hold.name, hold.point, np.array(hit.world) + hold.offset)
 
     def release(self) -> None:
-        """The target stays where it is."""
+        """Let go: the target stays where it is."""
         self._hold = None
 
     def click(self, hit: Hit) -> None:
@@ -169,7 +169,7 @@ class Poser(Stage):
             self._chosen = now.known(name) if kind in ("marker", "target", "point") else ""
 
     def key(self, name: str) -> bool:
-        """R: rest; delete: let go of what is chosen; g: the next click or drag moves it; escape: choose nothing."""
+        """Heed r: rest; delete: let go of what is chosen; g: the next click or drag moves it; escape: choose none."""
         if name == "r":
             self.rest()
         elif name == "delete" and self._chosen in self.held:

@@ -90,7 +90,7 @@ class _ReachSearch:
     cloud: Cloud | None = None
 
     def fits(self, robot: Robot, tension: float) -> bool:
-        """Whether it would find the same with this robot and this limit."""
+        """Tell whether it would find the same with this robot and this limit."""
         same = tension == self.tension and _place(robot, self.marker) == _place(self.robot, self.marker)
         return same and same_physics(self.robot, robot, Mode.CABLES)
 
@@ -106,7 +106,7 @@ class MarkerReach:
 
     @property
     def marker(self) -> str:
-        """Whose cloud it is; "" for none."""
+        """Marker whose cloud it is; "" for none."""
         return "" if self._search is None else self._search.marker
 
     @property
@@ -122,7 +122,7 @@ class MarkerReach:
 
     @property
     def count(self) -> int:
-        """How many places have been found."""
+        """Number of places that have been found."""
         cloud = None if self._search is None else self._search.cloud
         return 0 if cloud is None else len(cloud.points)
 

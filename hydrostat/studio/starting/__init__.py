@@ -1,1 +1,1 @@
-"""How work begins: the gallery, a folder, an upload, a drawing by hand, what a crash left."""
+"""Beginnings of work: the gallery, a folder, an upload, a drawing by hand, what a crash left."""

@@ -53,7 +53,7 @@ class HeldFolder:
 
 
 def is_held(folder: Path) -> bool:
-    """Whether a process that lives holds a folder."""
+    """Tell whether a process that lives holds a folder."""
     try:
         with (folder / LOCK).open("r+b") as file:
             _lock(file)
@@ -110,7 +110,7 @@ class Left:
 
     @property
     def words(self) -> str:
-        """Such as "14:32: starfish"; with the day if it was not today."""
+        """Line of it such as "14:32: starfish"; with the day if it was not today."""
         today = self.time.date() == datetime.now(self.time.tzinfo).date()
         return f"{self.time:%H:%M}: {self.name}" if today else f"{self.time:%d %b %H:%M}: {self.name}"
 
@@ -163,7 +163,7 @@ class Autosave:
             self._writer.start()
 
     def close(self) -> None:
-        """The studio ends: what is saved is kept no longer, what is not is there next time."""
+        """End with the studio: what is saved is kept no longer, what is not is there next time."""
         self._keep()
         with self._lock:
             if self._held is not None:

@@ -123,7 +123,7 @@ _SOFTNESS = ((20e3, "as soft as jelly"), (100e3, "soft"), (500e3, "rather firm")
 
 
 def material_words(material: Material) -> str:
-    """Such as "soft, Young's modulus 30 kPa, 40 kg/m3, may be squeezed by 60 % and stretched by 50 %"."""
+    """Describe a material: "soft, Young's modulus 30 kPa, 40 kg/m3, may be squeezed by 60 % and stretched by 50 %"."""
     feel = next((words for most, words in _SOFTNESS if material.young < most), "stiff")
     words = f"{feel}, Young's modulus {young_words(material)}, {material.density:.0f} kg/m³"
     if material.largest_squeeze is None or material.largest_stretch is None:

@@ -65,12 +65,12 @@ def read_loops(raw: Any) -> tuple[Loop, ...]:
 
 
 def send_loops(loops: Iterable[Loop]) -> list[list[list[Any]]]:
-    """What a screen is sent; the other way round than `read_loops`."""
+    """Lists that a screen is sent; the other way round than `read_loops`."""
     return [[[corner.x, corner.y, corner.smooth] for corner in loop] for loop in loops]
 
 
 def handles(loop: Loop) -> tuple[Ring, Ring, Ring]:
-    """For each side its start and its two handles [mm]; those of a straight side lie on it."""
+    """Start and two handles of each side [mm]; those of a straight side lie on it."""
     places = np.array([(corner.x, corner.y) for corner in loop], dtype=float)
     smooth = np.array([corner.smooth for corner in loop])
     ends = np.roll(places, -1, axis=0)
@@ -126,7 +126,7 @@ def loops_svg(loops: Sequence[Loop]) -> tuple[bytes, tuple[float, float]]:
 
 
 def fitted(outline: Outline) -> tuple[Loop, ...]:
-    """As few corners as follow an outline to a share of its size."""
+    """Loops of as few corners as follow an outline to a share of its size."""
     return tuple(_fitted(1e3 * ring, 1e3 * outline.size) for ring in outline.rings)
 
 

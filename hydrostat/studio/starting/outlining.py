@@ -60,7 +60,7 @@ class Outlining:
         return cls(fitted(robot.body.outline), robot)
 
     def take(self, raw: Any) -> None:
-        """What a screen has sent.
+        """Take what a screen has sent.
 
         Raises:
             InputError: it is no loops.

@@ -80,7 +80,7 @@ def suggestions(text: str) -> list[str]:
 
 
 def is_robot(folder: Path) -> bool:
-    """Whether a folder holds a robot."""
+    """Tell whether a folder holds a robot."""
     try:
         return (folder / "robot.toml").is_file()
     except (OSError, ValueError):

@@ -38,7 +38,7 @@ _LIGHT = {"name", "material"}
 
 
 class Starter(Stage):
-    """How work begins: a robot of the gallery, a folder, a file that is brought, an outline drawn by hand.
+    """The stage where work begins: a robot of the gallery, a folder, a file that is brought, an outline drawn by hand.
 
     Attributes:
         autosave: keeps the work of the session.
@@ -112,7 +112,7 @@ class Starter(Stage):
         return self.sketch is not None and self.sketch.draft is self.draft and not self.problem
 
     def get_ready(self) -> None:
-        """Files may be brought soon: from now on a process that meshes them is kept ready."""
+        """Keep a process ready from now on that meshes files, which may be brought soon."""
         self._eager = True
         self._jobs.warm(*_MODULES)
 

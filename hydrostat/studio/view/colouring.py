@@ -78,7 +78,7 @@ def node_strains(robot: Robot, nodes: Nodes) -> Vector:
     It is what a thread drawn on the body along the worst direction would be lengthened by. A flat body in plane strain
     has the stretch 1 across the plane, so nothing is below 0 there.
     """
-    grid = _grid(robot.body.mesh)
+    grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes)
     return grid.average @ (np.sqrt(shape.largest()) - 1.0)
 
@@ -89,14 +89,14 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
     Cauchy's stress is mu/J (B - I) + lambda/J ln J I (Bonet 1998 and `NeoHookean`), so only B's deviator counts: it is
     mu/J sqrt(3/2) |dev B|.
     """
-    grid = _grid(robot.body.mesh)
+    grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes)
     mu, _ = robot.body.material.lame
     return grid.average @ (mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
 
 
 @dataclass(frozen=True, eq=False)
-class _Grid:
+class _NodeOperators:
     """What of a mesh does not change.
 
     Attributes:
@@ -111,7 +111,7 @@ class _Grid:
 
 
 @lru_cache(maxsize=2)
-def _grid(mesh: Mesh) -> _Grid:
+def _operators(mesh: Mesh) -> _NodeOperators:
     count, corners = mesh.elements.shape
     dim = mesh.dim
     inverse = np.linalg.inv(np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2))
@@ -124,7 +124,7 @@ def _grid(mesh: Mesh) -> _Grid:
     total = np.maximum(np.bincount(mesh.elements.ravel(), weights, len(mesh.nodes)), np.finfo(float).tiny)
     places = (mesh.elements.ravel(), np.repeat(np.arange(count), corners))
     average = csr_array((weights / total[mesh.elements.ravel()], places), shape=(len(mesh.nodes), count))
-    return _Grid(dim, slopes, average)
+    return _NodeOperators(dim, slopes, average)
 
 
 class _Stretch:
@@ -136,7 +136,7 @@ class _Stretch:
         volume: J.
     """
 
-    def __init__(self, grid: _Grid, nodes: Nodes) -> None:
+    def __init__(self, grid: _NodeOperators, nodes: Nodes) -> None:
         slopes = (grid.slopes @ nodes).reshape(-1, grid.dim, grid.dim)
         rows = [slopes[:, axis] for axis in range(grid.dim)]
         stretch = np.zeros((3, 3, len(slopes)))

@@ -12,11 +12,11 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.packet import packet
-from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Polyline, RobotShape, Thing
+from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, RobotShape, Strand, Thing
 
 Table = Float[np.ndarray, "rows 3"]
 
-KINDS_OF_THINGS = {Dot: "dot", Polyline: "line", Ghost: "ghost", Cloud: "cloud", Area: "area"}
+KINDS_OF_THINGS = {Dot: "dot", Strand: "line", Ghost: "ghost", Cloud: "cloud", Area: "area"}
 """What a screen calls each."""
 
 
@@ -48,7 +48,7 @@ class Picture:
         self._things = tuple(things)
 
     def fits(self, robot: Robot, things: Sequence[Thing]) -> bool:
-        """Whether these need no new scene: only places in the world and loads may differ."""
+        """Tell whether these need no new scene: only places in the world and loads may differ."""
         return robot.body.mesh is self.robot.body.mesh and _signature(robot, things) == self.signature
 
     def scene(self) -> bytes:
@@ -88,7 +88,7 @@ class Picture:
         points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
         if self._stuck.any():
             points[self._stuck] = self._anchors.positions(nodes) + self._beside
-        loads = np.array([thing.load for thing in things if isinstance(thing, Polyline)], dtype=np.float32)
+        loads = np.array([thing.load for thing in things if isinstance(thing, Strand)], dtype=np.float32)
         arrays = {"nodes": _in_space(nodes[self._shown]), "points": _in_space(points), "loads": loads}
         if values is not None:
             arrays["values"] = values[self._shown].astype(np.float32)
@@ -121,7 +121,7 @@ def _points(thing: Thing) -> Points:
     """The points of a thing that are sent with every frame."""
     if isinstance(thing, Dot):
         return np.array([thing.at], dtype=float)
-    if isinstance(thing, Polyline):
+    if isinstance(thing, Strand):
         return np.array(thing.points, dtype=float)
     if isinstance(thing, Area):
         return np.array(thing.outline or (thing.at,), dtype=float)
@@ -136,7 +136,7 @@ def _stuck(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
         stuck = np.ones(len(points), dtype=bool)
         if isinstance(thing, Dot):
             stuck[:] = thing.stuck
-        elif isinstance(thing, Polyline):
+        elif isinstance(thing, Strand):
             stuck[: len(points) if thing.loose < 0 else thing.loose] = False
         flags.append(stuck)
         places.append(points)
@@ -160,7 +160,7 @@ def _style(thing: Thing) -> dict[str, Any]:
             "key": thing.key, "look": str(thing.look), "colour": thing.colour, "label": thing.label,
             "chosen": thing.chosen, "radius": thing.radius,
         }  # fmt: skip
-    if isinstance(thing, Polyline):
+    if isinstance(thing, Strand):
         return {"key": thing.key, "stroke": str(thing.stroke), "colour": thing.colour, "chosen": thing.chosen}
     if isinstance(thing, Area):
         return {
@@ -176,7 +176,7 @@ def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
     for thing in things:
         if isinstance(thing, Dot):
             marks.append((*_style(thing).values(), thing.at if thing.stuck else None))
-        elif isinstance(thing, Polyline):
+        elif isinstance(thing, Strand):
             stuck = thing.points[thing.loose :] if thing.loose >= 0 else len(thing.points)
             marks.append((*_style(thing).values(), thing.loose, stuck))
         elif isinstance(thing, Area):

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.drawing.palette import INK, winch_colours
 from hydrostat.robot import Cable, Mount, Point, Robot
-from hydrostat.studio.view.things import Dot, Look, Polyline, RobotShape, Stroke, Thing
+from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
 
 MARKER = "#2b2833"
 PIN = "#5f5a68"
@@ -76,7 +76,7 @@ def target_things(targets: Mapping[str, Point], places: Mapping[str, Point], *, 
     for name, target in targets.items():
         key = f"target:{name}"
         if name in places:
-            miss = Polyline(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1)
+            miss = Strand(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1)
             things.append(miss)
         things.append(
             Dot(key=key, at=target, look=Look.TARGET, colour=INK, label="", stuck=False, chosen=key == chosen)
@@ -88,12 +88,12 @@ def _cable(robot: Robot, index: int, cable: Cable, colour: str, load: float, cho
     """The run of a cable, its sheaths over it."""
     key, loose = f"cable:{index}", int(robot.winch(cable.winch).mount is Mount.WORLD)
     things: list[Thing] = [
-        Polyline(key=key, points=cable.points, stroke=Stroke.CABLE, colour=colour, loose=loose, load=load,
+        Strand(key=key, points=cable.points, stroke=Stroke.CABLE, colour=colour, loose=loose, load=load,
              chosen=key in chosen)
     ]  # fmt: skip
     for start, end in cable.sheathed:
         hidden = loose if start == 0 else 0
-        things.append(Polyline(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, colour=colour, loose=hidden))
+        things.append(Strand(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, colour=colour, loose=hidden))
     return things
 
 

@@ -1,4 +1,4 @@
-"""`RobotShape`, `Dot`, `Polyline`, `Ghost`, `Cloud`, `Area`: where the body is, and all that is shown beside it."""
+"""`RobotShape`, `Dot`, `Strand`, `Ghost`, `Cloud`, `Area`: where the body is, and all that is shown beside it."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -38,7 +38,7 @@ def rest_shape(robot: Robot) -> RobotShape:
 
 
 class Look(StrEnum):
-    """How a dot is drawn."""
+    """Sign that a dot is drawn as."""
 
     WINCH = "winch"
     MARKER = "marker"
@@ -50,7 +50,7 @@ class Look(StrEnum):
 
 
 class Stroke(StrEnum):
-    """How a line is drawn; a cable becomes thicker and takes the colour of its tension with its load."""
+    """Style of a line; a cable becomes thicker and takes the colour of its tension with its load."""
 
     CABLE = "cable"
     SHEATH = "sheath"
@@ -85,7 +85,7 @@ class Dot:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Polyline:
+class Strand:
     """A line through some points.
 
     Attributes:
@@ -160,4 +160,4 @@ class Area:
     chosen: bool = False
 
 
-Thing = Dot | Polyline | Ghost | Cloud | Area
+Thing = Dot | Strand | Ghost | Cloud | Area

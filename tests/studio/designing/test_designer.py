@@ -24,7 +24,7 @@ from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.things import Dot, Look, Polyline
+from hydrostat.studio.view.things import Dot, Look, Strand
 
 PATIENCE = 100.0
 FAST = RouteOptions(starts=1, exchanges=0, polish=2, trials=1, steps=1, hops=6)
@@ -117,7 +117,7 @@ def test_a_candidate_is_shown_in_its_pose_and_at_rest(done: Studio) -> None:
     assert designer.shape().errors == best.reaches[0].errors
     targets = [thing for thing in designer.things() if isinstance(thing, Dot) and thing.look is Look.TARGET]
     assert [dot.at for dot in targets] == list(best.robot.pose("up").targets.values())
-    cables = [thing for thing in designer.things() if isinstance(thing, Polyline) and thing.key.startswith("cable")]
+    cables = [thing for thing in designer.things() if isinstance(thing, Strand) and thing.key.startswith("cable")]
     assert [line.points for line in cables] == [cable.points for cable in best.robot.cables]
     designer.show(best.number)
     done.settle()
@@ -164,13 +164,13 @@ def test_stopped_it_returns_the_best_so_far(fresh: Studio, strip: Robot) -> None
     designer.design()
     with pytest.raises(InputError, match="Designing cables is still in progress"):
         designer.design()
-    assert [thing for thing in designer.things() if isinstance(thing, Polyline) and thing.key.startswith("cable")] == []
+    assert [thing for thing in designer.things() if isinstance(thing, Strand) and thing.key.startswith("cable")] == []
     fresh.until(lambda: designer.run is not None and len(designer.run.trail) > 0)
     assert designer.running
     fresh.settle()
     run = designer.run
     assert run is not None
-    cables = [thing for thing in designer.things() if isinstance(thing, Polyline) and thing.key.startswith("cable")]
+    cables = [thing for thing in designer.things() if isinstance(thing, Strand) and thing.key.startswith("cable")]
     assert len(cables) > 0
     assert len(run.best.cables) == run.trail[-1].cables
     fresh.session.go(StageName.POSE)

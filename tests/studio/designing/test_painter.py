@@ -15,7 +15,7 @@ from hydrostat.studio.records.wishes import Paint
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
-from hydrostat.studio.view.things import Area, Dot, Look, Polyline
+from hydrostat.studio.view.things import Area, Dot, Look, Strand
 
 
 @pytest.fixture
@@ -101,7 +101,7 @@ def test_a_line_round_nothing_is_refused(painter: Painter, document: Document) -
     with pytest.raises(InputError, match="goes round nothing"):
         stroke(painter, on_body(0.0, 0.0, shift=True), on_body(0.02, 0.0))
     assert painted(document) == ()
-    assert not [thing for thing in painter.things() if isinstance(thing, Polyline)]
+    assert not [thing for thing in painter.things() if isinstance(thing, Strand)]
 
 
 def test_clicks_set_corners_and_the_first_one_closes(painter: Painter, document: Document) -> None:

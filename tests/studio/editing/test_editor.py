@@ -18,7 +18,7 @@ from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
-from hydrostat.studio.view.things import Dot, Polyline
+from hydrostat.studio.view.things import Dot, Strand
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -125,7 +125,7 @@ def test_a_cable_is_laid_click_by_click(editor: Editor, document: Document, star
     for at in ((-0.04, 0.002), (-0.06, 0.01)):
         editor.click(on(at))
     assert document.robot is starfish
-    drawn = [thing for thing in editor.things() if isinstance(thing, Polyline)]
+    drawn = [thing for thing in editor.things() if isinstance(thing, Strand)]
     assert drawn[-1].points == ((-0.02, -0.008), (-0.04, 0.002), (-0.06, 0.01))
     if end == "done":
         editor.finish()
@@ -178,7 +178,7 @@ def test_twins_move_and_go_together(editor: Editor, document: Document, starfish
     assert len(left.points) == len(right.points) == len(starfish.cables[0].points) + 1
     assert np.allclose(np.array(left.points) * [-1, 1], right.points)
     editor.choose("cable:0")
-    assert {thing.key for thing in editor.things() if isinstance(thing, Polyline) and thing.chosen} == {
+    assert {thing.key for thing in editor.things() if isinstance(thing, Strand) and thing.chosen} == {
         "cable:0",
         "cable:1",
     }

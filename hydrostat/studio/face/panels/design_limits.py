@@ -9,7 +9,7 @@ from nicegui import ui
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.painter import COLOURS, WORDS
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 SHORT = {Paint.KEEP_OUT: "No cable here", Paint.WINCH_ZONES: "Winches only here", Paint.STILL: "Keep this still"}
@@ -19,7 +19,7 @@ SPACE = "Drag on the body from the middle of a ball outward."
 CHOSEN = "Drag it to move it, drag its handle to shape it. Delete removes it."
 
 
-def design_paint(page: Page) -> None:
+def design_paint(page: WindowPage) -> None:
     """Build the section."""
     designer, document = page.session.designer, page.session.document
     ui.label("Painted on the body").classes("studio-section")
@@ -58,12 +58,12 @@ def design_paint(page: Page) -> None:
     page.on(Topic.THINGS, show)
 
 
-def _take(page: Page, paint: Paint) -> None:
+def _take(page: WindowPage, paint: Paint) -> None:
     designer = page.session.designer
     page.act(designer.take, None if designer.painter.paint is paint else paint)
 
 
-def _zone(page: Page, index: int, paint: Paint, size: str, *, chosen: bool) -> None:
+def _zone(page: WindowPage, index: int, paint: Paint, size: str, *, chosen: bool) -> None:
     designer = page.session.designer
     row = ui.element("div").classes("studio-row design-zone" + (" design-zone-on" if chosen else ""))
     row.on("click", page.doing(designer.choose_zone, index))
@@ -77,7 +77,7 @@ def _zone(page: Page, index: int, paint: Paint, size: str, *, chosen: bool) -> N
 Show = Callable[[Wishes], Any]
 
 
-def design_limits(page: Page) -> None:
+def design_limits(page: WindowPage) -> None:
     """Build the sections, closed."""
     designer = page.session.designer
     shows: list[Show] = []
@@ -106,7 +106,7 @@ def _more(title: str) -> ui.expansion:
     return ui.expansion(title).classes("design-more").props('dense header-class="studio-section"')
 
 
-def _number(page: Page, words: str, unit: str, name: str) -> Show:
+def _number(page: WindowPage, words: str, unit: str, name: str) -> Show:
     """A box for a wish; empty for one that is left open."""
     designer = page.session.designer
     scale = 1e3 if unit == "mm" else 1.0
@@ -135,14 +135,14 @@ def _number(page: Page, words: str, unit: str, name: str) -> Show:
     return show
 
 
-def _switch(page: Page, words: str, name: str) -> Show:
+def _switch(page: WindowPage, words: str, name: str) -> Show:
     designer = page.session.designer
     switch = ui.switch(words).props(f'dense data-testid="wish-{name}"').style("font-size: 13px")
     switch.on_value_change(lambda event: page.act(lambda: designer.wish(**{name: bool(event.value)})))
     return lambda wishes: switch.set_value(getattr(wishes, name))
 
 
-def _mirror(page: Page) -> Show:
+def _mirror(page: WindowPage) -> Show:
     designer, robot = page.session.designer, page.session.document.robot
     choices = {"": "off", **{axis: axis for axis in "xyz"[: robot.body.mesh.dim]}}
     with ui.element("div").classes("studio-row"):
@@ -154,7 +154,7 @@ def _mirror(page: Page) -> Show:
     return lambda wishes: choice.set_value(wishes.mirror or "")
 
 
-def _own(page: Page, shows: list[Show]) -> None:
+def _own(page: WindowPage, shows: list[Show]) -> None:
     """What the robot has already: it can stay, or be improved."""
     designer, document = page.session.designer, page.session.document
     with _more("What the robot has") as more:

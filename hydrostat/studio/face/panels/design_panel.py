@@ -8,13 +8,13 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
 from hydrostat.studio.designing.design_work import Candidate, told_error
 from hydrostat.studio.designing.run import wished_poses
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
 
 
-def design_panel(page: Page) -> None:
+def design_panel(page: WindowPage) -> None:
     """Build the panel."""
     ui.label("Design").classes("studio-title")
     _poses(page)
@@ -27,7 +27,7 @@ def design_panel(page: Page) -> None:
         design_compare(page)
 
 
-def _poses(page: Page) -> None:
+def _poses(page: WindowPage) -> None:
     """The poses to reach, each to be left out or not."""
     document, designer = page.session.document, page.session.designer
     room = ui.column().classes("w-full gap-2")
@@ -58,7 +58,7 @@ def _poses(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _no_pose(page: Page) -> None:
+def _no_pose(page: WindowPage) -> None:
     with ui.element("div").classes("studio-card column"):
         ui.label("There is no pose to design for yet.").style("font-weight: 600")
         ui.label("Drag the body to where it should go, and store that as a pose.").classes("studio-hint")
@@ -66,7 +66,7 @@ def _no_pose(page: Page) -> None:
         go.props('outline no-caps data-testid="design-to-pose"').classes("w-full")
 
 
-def _counts(page: Page) -> None:
+def _counts(page: WindowPage) -> None:
     """Winches and cables, by steps."""
     designer = page.session.designer
     with ui.column().classes("w-full").style("gap: 4px"):
@@ -83,7 +83,7 @@ def _counts(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _stepper(page: Page, words: str, name: str, *, least: int) -> ui.label:
+def _stepper(page: WindowPage, words: str, name: str, *, least: int) -> ui.label:
     designer = page.session.designer
 
     def step(change: int) -> None:
@@ -102,7 +102,7 @@ def _stepper(page: Page, words: str, name: str, *, least: int) -> ui.label:
     return number
 
 
-def _go(page: Page) -> None:
+def _go(page: WindowPage) -> None:
     """The button that everything here is for."""
     designer, jobs, document = page.session.designer, page.session.jobs, page.session.document
     button = ui.button("Design", icon="auto_awesome", on_click=page.doing(designer.design)).classes("design-go")
@@ -116,7 +116,7 @@ def _go(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _progress(page: Page) -> None:
+def _progress(page: WindowPage) -> None:
     """The search while it runs: the best error so far, how it fell, and a button that ends it."""
     designer, jobs = page.session.designer, page.session.jobs
     with ui.element("div").classes("studio-card column") as card:
@@ -156,7 +156,7 @@ def _so_far(winches: int, cables: int) -> str:
     return f"with {counted(winches, 'winch')} and {counted(cables, 'cable')} so far"
 
 
-def design_compare(page: Page) -> None:
+def design_compare(page: WindowPage) -> None:
     """Build the strip below the view; it is not there while there is nothing to compare."""
     designer, document = page.session.designer, page.session.document
     room = ui.element("div").classes("w-full")
@@ -183,14 +183,14 @@ def design_compare(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _front(page: Page, candidates: tuple[Candidate, ...]) -> None:
+def _front(page: WindowPage, candidates: tuple[Candidate, ...]) -> None:
     designer = page.session.designer
     with ui.element("div").classes("design-front"):
         ui.label("What more cables gain").classes("studio-section").style("margin: 0 0 8px")
         ui.html(front_chart(candidates, designer.trail, designer.chosen), sanitize=False).classes("w-full")
 
 
-def _head(page: Page, own: tuple[int, ...]) -> None:
+def _head(page: WindowPage, own: tuple[int, ...]) -> None:
     """The poses of the chosen network, and what can be done with it."""
     designer = page.session.designer
     chosen = designer.candidate
@@ -209,7 +209,7 @@ def _head(page: Page, own: tuple[int, ...]) -> None:
         accept.set_enabled(chosen is not None and chosen.number not in own)
 
 
-def _pose_chip(page: Page, chosen: Candidate, pose: str | None, words: str) -> None:
+def _pose_chip(page: WindowPage, chosen: Candidate, pose: str | None, words: str) -> None:
     designer = page.session.designer
     now = designer.pose == pose
     chip = (
@@ -224,7 +224,7 @@ def _pose_chip(page: Page, chosen: Candidate, pose: str | None, words: str) -> N
         ui.label(words)
 
 
-def _cards(page: Page, candidates: tuple[Candidate, ...], own: tuple[int, ...]) -> None:
+def _cards(page: WindowPage, candidates: tuple[Candidate, ...], own: tuple[int, ...]) -> None:
     designer = page.session.designer
     with ui.element("div").classes("design-cards"):
         for one in candidates:

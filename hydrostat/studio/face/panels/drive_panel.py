@@ -7,7 +7,7 @@ from hydrostat.robot import Robot, Winch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import Knob
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.drive_strip import drive_strip, unfocused
 from hydrostat.studio.stage import StageName
 
@@ -20,7 +20,7 @@ MANY = 6
 ui.add_css("body.body--dark { --lift: 38% }", shared=True)  # colours of winches are made for paper: lighter on dark
 
 
-def drive_panel(page: Page) -> None:
+def drive_panel(page: WindowPage) -> None:
     """Build the panel, and the timeline below the view."""
     session = page.session
     if not session.document.robot.cables:
@@ -71,7 +71,7 @@ def drive_panel(page: Page) -> None:
 class _Card:
     """A winch: its knob, its box, the tension of its cables."""
 
-    def __init__(self, page: Page, winch: Winch, colour: str, size: int) -> None:
+    def __init__(self, page: WindowPage, winch: Winch, colour: str, size: int) -> None:
         self.name = winch.name
         self._page, self._typing = page, False
         driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
@@ -105,7 +105,7 @@ class _Card:
         self._box.on("blur", lambda: self._type(False))
 
     def show(self, command: float, place: float, tension: float, most: float) -> None:
-        """What the winch shall take in and has taken in [m], and what its cables bear [N], of so much."""
+        """Show what the winch shall take in and has taken in [m], and what its cables bear [N], of so much."""
         self._knob.show(1e3 * command, 1e3 * place)
         shown = round(1e3 * command, 1) + 0.0
         if not self._typing and self._box.value != shown:
@@ -131,7 +131,7 @@ class _Card:
             self._box.set_value(round(1e3 * driver.commands().get(self.name, 0.0), 1))
 
 
-def _motors(page: Page) -> None:
+def _motors(page: WindowPage) -> None:
     """How fast the simulated motors are."""
     driver = page.session.driver
     with ui.element("div").classes("studio-row").style("margin-top: 6px"):
@@ -144,7 +144,7 @@ def _motors(page: Page) -> None:
     )
 
 
-def _no_cables(page: Page) -> None:
+def _no_cables(page: WindowPage) -> None:
     """What to do first."""
     ui.label("Drive").classes("studio-title")
     with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px"):

@@ -10,7 +10,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.driving.film import FilmKind, film_kinds
 from hydrostat.studio.face.elements import TimelineView
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.session import Tone
 
 SPEEDS = {0.1: "0.1x", 0.25: "0.25x", 0.5: "0.5x", 1.0: "1x", 2.0: "2x", 4.0: "4x"}
@@ -27,7 +27,7 @@ LARGEST = 4_000_000
 """No table is larger [bytes]."""
 
 
-def drive_strip(page: Page) -> None:
+def drive_strip(page: WindowPage) -> None:
     """Build it."""
     with ui.element("div").classes("studio-row").style("padding: 6px 14px 0 12px; gap: 4px; height: 44px"):
         _player(page)
@@ -40,7 +40,7 @@ def drive_strip(page: Page) -> None:
     _timeline(page)
 
 
-def _player(page: Page) -> None:
+def _player(page: WindowPage) -> None:
     """Play, loop, time, length, speed."""
     driver = page.session.driver
     play = ui.button(icon="play_arrow", on_click=page.doing(driver.toggle)).props(
@@ -88,7 +88,7 @@ def _player(page: Page) -> None:
     page.on(Topic.ROBOT, show_length)
 
 
-def _keys(page: Page) -> None:
+def _keys(page: WindowPage) -> None:
     """Add, duplicate, delete; linear or smooth."""
     driver = page.session.driver
     add = ui.button("Add", icon="add", on_click=page.doing(driver.add_key)).props("unelevated dense no-caps")
@@ -113,7 +113,7 @@ def _keys(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _poses(page: Page) -> None:
+def _poses(page: WindowPage) -> None:
     """Keys from stored poses."""
     driver, document = page.session.driver, page.session.document
     button = _button("accessibility_new", "A keyframe from a stored pose", None)
@@ -142,7 +142,7 @@ def _poses(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _films(page: Page) -> None:
+def _films(page: WindowPage) -> None:
     """Record a film, see how far it is, take it home."""
     recorder = page.session.driver.recorder
     asked: list[Any] = []
@@ -189,7 +189,7 @@ def _films(page: Page) -> None:
     page.on(Topic.DRIVE, show)
 
 
-def _tables(page: Page) -> None:
+def _tables(page: WindowPage) -> None:
     """Contractions as a CSV."""
     session = page.session
     driver = session.driver
@@ -219,7 +219,7 @@ def _tables(page: Page) -> None:
         ui.menu_item("Import CSV", on_click=dialog.open)
 
 
-def _timeline(page: Page) -> None:
+def _timeline(page: WindowPage) -> None:
     """The keys in time."""
     driver, document = page.session.driver, page.session.document
     view = TimelineView().style("width: 100%; padding-bottom: 6px").mark("drive-timeline")
@@ -248,9 +248,7 @@ def _menu() -> ui.menu:
 
 
 def _button(icon: str, words: str, action: Callable[[], Any] | None) -> ui.button:
-    button = ui.button(icon=icon, on_click=action, color=None).props(f'flat round dense size=sm aria-label="{words}"')
-    button.classes("studio-tool").tooltip(words)
-    return unfocused(button)
+    return unfocused(icon_button(icon, words, action).classes("studio-tool"))
 
 
 def unfocused(part: Part) -> Part:

@@ -7,7 +7,7 @@ from hydrostat.robot import MATERIALS, Source
 from hydrostat.robot.gravity import DIRECTIONS, direction_of
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.findings import Findings, in_words
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.edit_part import EditNumber
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
@@ -16,7 +16,7 @@ OWN = "its own numbers"
 """What a material is called that is not of the table."""
 
 
-def body_card(page: Page) -> None:
+def body_card(page: WindowPage) -> None:
     """Build the card, folded at first."""
     fold = ui.expansion("Body").classes("w-full").props('dense header-class="q-px-none text-weight-bold"')
     with fold.mark("edit-body").style("flex-shrink: 0; font-size: 13px"), ui.column().classes("w-full gap-2"):
@@ -26,7 +26,7 @@ def body_card(page: Page) -> None:
         _outline(page)
 
 
-def _material(page: Page) -> None:
+def _material(page: WindowPage) -> None:
     editor, document = page.session.editor, page.session.document
     choice = ui.select({}, label="Material").props("dense outlined options-dense").classes("w-full")
     choice.mark("edit-material")
@@ -52,7 +52,7 @@ def _material(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _lengths(page: Page) -> None:
+def _lengths(page: WindowPage) -> None:
     """Element size and thickness, each where the body has one."""
     editor, document = page.session.editor, page.session.document
     boxes: dict[str, EditNumber] = {}
@@ -80,7 +80,7 @@ def _lengths(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _gravity(page: Page) -> None:
+def _gravity(page: WindowPage) -> None:
     editor, document = page.session.editor, page.session.document
     choice = ui.select({}, label="Gravity").props("dense outlined options-dense").classes("w-full")
     choice.mark("edit-gravity")
@@ -102,7 +102,7 @@ def _gravity(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _outline(page: Page) -> None:
+def _outline(page: WindowPage) -> None:
     """For a body that was drawn: its outline can be drawn anew."""
     starter, document = page.session.starter, page.session.document
 
@@ -121,7 +121,7 @@ def _outline(page: Page) -> None:
 GOOD = "#00795f"
 
 
-def check_card(page: Page) -> None:
+def check_card(page: WindowPage) -> None:
     """Build the card."""
     editor = page.session.editor
     ui.label("Check").classes("studio-section")

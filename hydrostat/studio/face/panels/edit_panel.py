@@ -7,7 +7,7 @@ from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.editor import KEYS, Tool
 from hydrostat.studio.editing.part import Kind, find_part, keys_of
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.edit_body import body_card, check_card
 from hydrostat.studio.face.panels.edit_part import EditNumber, chip, light, part_card
 
@@ -21,7 +21,7 @@ TOOLS = {
 """Icon, name and what to do with each tool."""
 
 
-def edit_panel(page: Page) -> None:
+def edit_panel(page: WindowPage) -> None:
     """Build the panel."""
     ui.label("Edit").classes("studio-title")
     _tools(page)
@@ -32,7 +32,7 @@ def edit_panel(page: Page) -> None:
     check_card(page)
 
 
-def _tools(page: Page) -> None:
+def _tools(page: WindowPage) -> None:
     """A row of tools, and what to do with the one in the hand."""
     editor = page.session.editor
     letters = {tool: letter.upper() for letter, tool in KEYS.items()}
@@ -62,7 +62,7 @@ def _tools(page: Page) -> None:
     page.on(Topic.THINGS, show)
 
 
-def _mirror(page: Page) -> None:
+def _mirror(page: WindowPage) -> None:
     """Which side is edited alike, and how deep things are put into a body in space."""
     editor, document = page.session.editor, page.session.document
     axes = "xyz"[: document.robot.body.mesh.dim]
@@ -86,7 +86,7 @@ def _mirror(page: Page) -> None:
         _depth(page)
 
 
-def _depth(page: Page) -> None:
+def _depth(page: WindowPage) -> None:
     editor = page.session.editor
 
     def take(value: float) -> None:
@@ -104,7 +104,7 @@ HEIGHT = "188px"
 ICONS = {Kind.PIN: "push_pin", Kind.WINCH: "album", Kind.CABLE: "timeline", Kind.MARKER: "my_location"}
 
 
-def parts_list(page: Page) -> None:
+def parts_list(page: WindowPage) -> None:
     """Build the list."""
     editor, document = page.session.editor, page.session.document
     with ui.element("div").classes("studio-row"):
@@ -142,7 +142,7 @@ def parts_list(page: Page) -> None:
     page.on(Topic.THINGS, show)
 
 
-def _part_row(page: Page, robot: Robot, key: str, words: str, number: str) -> ui.element:
+def _part_row(page: WindowPage, robot: Robot, key: str, words: str, number: str) -> ui.element:
     part = find_part(robot, key)
     kind = Kind.PIN if part is None else part.kind
     row = ui.element("div").classes("studio-row cursor-pointer").mark(f"part-{key}")

@@ -11,7 +11,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.change import sheathed_segments, sheaths
 from hydrostat.studio.editing.part import Kind, Part, find_part, name_of, place_of, title_of
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 
 
 def chip(words: str, press: Callable[[], Any]) -> ui.button:
@@ -71,7 +71,8 @@ class EditNumber:
                 self.show(before)
 
 
-Shows = list[Callable[[Robot, Part], None]]
+Show = Callable[[Robot, Part], None]
+Shows = list[Show]
 """What shows the numbers of the part as they are now."""
 
 PIN = (("radius", "Radius", "mm", 1e3),)
@@ -84,7 +85,7 @@ CABLE = (("stiffness", "Stiffness", "N/mm", 1e-3), ("slack", "Slack", "mm", 1e3)
 """Field, name, unit and how many of these one SI unit is."""
 
 
-def part_card(page: Page) -> None:
+def part_card(page: WindowPage) -> None:
     """Build the card; it is there only while something is chosen."""
     editor, document = page.session.editor, page.session.document
     card = ui.column().classes("studio-card").style("background: transparent; flex-shrink: 0")
@@ -110,7 +111,7 @@ def part_card(page: Page) -> None:
     page.on(Topic.THINGS, show)
 
 
-def _build(page: Page, key: str, part: Part) -> Shows:
+def _build(page: WindowPage, key: str, part: Part) -> Shows:
     """The rows for a part."""
     editor = page.session.editor
     with ui.element("div").classes("studio-row"):
@@ -138,7 +139,7 @@ def _title(key: str) -> str:
     return (kind if kind in ("winch", "marker") else title_of(key)).capitalize()
 
 
-def _name(page: Page, key: str) -> Callable[[Robot, Part], None]:
+def _name(page: WindowPage, key: str) -> Show:
     document = page.session.document
     box = (
         ui.input("Name", value=name_of(document.robot, key))
@@ -162,7 +163,7 @@ def _name(page: Page, key: str) -> Callable[[Robot, Part], None]:
     return show
 
 
-def _place(page: Page, key: str) -> Callable[[Robot, Part], None]:
+def _place(page: WindowPage, key: str) -> Show:
     """One box for each coordinate."""
     document, boxes = page.session.document, []
 
@@ -182,7 +183,7 @@ def _place(page: Page, key: str) -> Callable[[Robot, Part], None]:
     return show
 
 
-def _numbers(page: Page, key: str, fields: tuple[tuple[str, str, str, float], ...]) -> Shows:
+def _numbers(page: WindowPage, key: str, fields: tuple[tuple[str, str, str, float], ...]) -> Shows:
     """A box for each number of a part, two in a row."""
     shows: Shows = []
     with ui.element("div").classes("w-full").style("display: grid; grid-template-columns: 1fr 1fr; gap: 8px"):
@@ -191,7 +192,7 @@ def _numbers(page: Page, key: str, fields: tuple[tuple[str, str, str, float], ..
     return shows
 
 
-def _number(page: Page, key: str, field: str, label: str, unit: str, scale: float) -> Callable[[Robot, Part], None]:
+def _number(page: WindowPage, key: str, field: str, label: str, unit: str, scale: float) -> Show:
     editor, document = page.session.editor, page.session.document
 
     def take(value: float) -> None:
@@ -208,8 +209,8 @@ def _number(page: Page, key: str, field: str, label: str, unit: str, scale: floa
     return show
 
 
-def _mount(page: Page, key: str) -> Callable[[Robot, Part], None]:
-    """Whether a winch sits in the body."""
+def _mount(page: WindowPage, key: str) -> Show:
+    """Tell whether a winch sits in the body."""
     switch = ui.switch("Fixed beside the body").props("dense").style("font-size: 13px").mark("edit-mount")
     switch.tooltip("The winch stays where it is in space while the body moves")
     shown = [False]
@@ -228,7 +229,7 @@ def _mount(page: Page, key: str) -> Callable[[Robot, Part], None]:
     return show
 
 
-def _sheath(page: Page, key: str, part: Part) -> Callable[[Robot, Part], None]:
+def _sheath(page: WindowPage, key: str, part: Part) -> Show:
     """Which segments run in a sheath, as chips in the order of the cable."""
     cable = page.session.document.robot.cables[part.index]
     buttons: list[ui.button] = []

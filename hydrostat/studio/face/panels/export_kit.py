@@ -11,7 +11,7 @@ from hydrostat.fabrication import MOTORS, KitOptions, Method, MouldKind, Paper
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.exporting.download import Download
 from hydrostat.studio.exporting.kit_work import KitMade
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.units import counted
 
 METHODS = {"": "Auto", Method.PLUSH.value: "Plush", Method.FOAM.value: "Foam"}
@@ -21,7 +21,7 @@ PAPERS = {Paper.A4.value: "A4", Paper.LETTER.value: "Letter"}
 MOULDS = {MouldKind.PRINTED.value: "Printed", MouldKind.SILICONE.value: "Silicone"}
 
 
-def kit_choices(page: Page) -> None:
+def kit_choices(page: WindowPage) -> None:
     """Method, motor and paper; the rest behind a door."""
     exporter = page.session.exporter
     given: dict[str, Any] = {}
@@ -68,8 +68,8 @@ def _more_choices() -> dict[str, Any]:
     return given
 
 
-def kit_result(page: Page) -> None:
-    """Why there is no kit, or what is in it."""
+def kit_result(page: WindowPage) -> None:
+    """Show why there is no kit, or what is in it."""
     exporter = page.session.exporter
     kit = exporter.kit
     if kit is None:
@@ -91,7 +91,7 @@ def kit_result(page: Page) -> None:
     _checks(kit)
 
 
-def _refused(page: Page, kit: KitMade) -> None:
+def _refused(page: WindowPage, kit: KitMade) -> None:
     refused = ui.label("It cannot be built well as it is").classes("studio-section").props('data-testid="kit-refused"')
     for reason in kit.refused:
         _line(reason, "error_outline", "export-bad")

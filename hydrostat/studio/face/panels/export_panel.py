@@ -7,14 +7,14 @@ from nicegui import ui
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.exporting.download import file_name
 from hydrostat.studio.exporting.exporter import Export
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.export_kit import download_button, kit_choices, kit_result, picture, send, show_large
 from hydrostat.studio.stage import StageName
 
 OUTDATED = "The robot has changed since; make it again."
 
 
-def export_panel(page: Page) -> None:
+def export_panel(page: WindowPage) -> None:
     """Build the panel."""
     ui.label("Take it home").classes("studio-title")
     ui.label("Nothing is written to your disk until you download it.").classes("studio-hint")
@@ -24,7 +24,7 @@ def export_panel(page: Page) -> None:
     _robot_card(page)
 
 
-def _kit_card(page: Page) -> None:
+def _kit_card(page: WindowPage) -> None:
     exporter = page.session.exporter
     with _card("Kit", "All files to build it: patterns or moulds, parts to print, lists, and a sheet to follow."):
         bare = ui.column().classes("w-full gap-2")
@@ -45,7 +45,7 @@ def _kit_card(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _report_card(page: Page) -> None:
+def _report_card(page: WindowPage) -> None:
     exporter = page.session.exporter
     words = "One page of the robot, its network and what it reaches in each pose, with errors and tensions."
     with _card("Report", words):
@@ -58,7 +58,7 @@ def _report_card(page: Page) -> None:
         _result(page, Export.REPORT, lambda: exporter.report, result)
 
 
-def _pictures_card(page: Page) -> None:
+def _pictures_card(page: WindowPage) -> None:
     exporter, document = page.session.exporter, page.session.document
     with _card("Pictures", "Rest, network and poses as PNG, flat robots as SVG too."):
         with ui.element("div").classes("studio-row"):
@@ -81,7 +81,7 @@ def _pictures_card(page: Page) -> None:
     page.on(Topic.ROBOT, show)
 
 
-def _pictures(page: Page) -> None:
+def _pictures(page: WindowPage) -> None:
     exporter = page.session.exporter
     with ui.element("div").classes("export-grid"):
         for drawn in exporter.pictures:
@@ -90,7 +90,7 @@ def _pictures(page: Page) -> None:
     download_button(exporter.pictures_zip())
 
 
-def _robot_card(page: Page) -> None:
+def _robot_card(page: WindowPage) -> None:
     exporter = page.session.exporter
     with _card("Robot", "The folder with robot.toml and the file of the body, as hydrostat opens it."):
 
@@ -104,7 +104,7 @@ def _robot_card(page: Page) -> None:
 
 
 def _maker(
-    page: Page, export: Export, words: str, icon: str, make: Callable[[], None], find: Callable[[], object]
+    page: WindowPage, export: Export, words: str, icon: str, make: Callable[[], None], find: Callable[[], object]
 ) -> None:
     """The button that begins the work, quiet once there is a result, and while it runs how far it is."""
     exporter, jobs = page.session.exporter, page.session.jobs
@@ -137,7 +137,7 @@ def _maker(
     page.on(Topic.ROBOT, show)
 
 
-def _result(page: Page, export: Export, find: Callable[[], object], build: Callable[[], None]) -> None:
+def _result(page: WindowPage, export: Export, find: Callable[[], object], build: Callable[[], None]) -> None:
     """What was made, drawn anew when it is another."""
     exporter = page.session.exporter
     room = ui.column().classes("export-room w-full gap-2").props(f'data-testid="result-{export}"')
@@ -160,7 +160,7 @@ def _result(page: Page, export: Export, find: Callable[[], object], build: Calla
     page.on(Topic.ROBOT, show)
 
 
-def _save_view(page: Page) -> None:
+def _save_view(page: WindowPage) -> None:
     """The view as it is on this screen, as a file; it goes straight from the screen to the disk."""
     document = page.session.document
     if document.is_open:

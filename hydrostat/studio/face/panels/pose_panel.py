@@ -5,7 +5,7 @@ from nicegui import ui
 from hydrostat.drawing.palette import ERROR
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.pose_poses import poses_card, reach_card
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.view.robot_things import Bar
@@ -18,7 +18,7 @@ HINTS = {
 }
 
 
-def pose_panel(page: Page) -> None:
+def pose_panel(page: WindowPage) -> None:
     """Build the panel."""
     poser = page.session.poser
     with ui.element("div").classes("studio-row"):
@@ -55,7 +55,7 @@ NEAR = 5e-4
 """A marker so near to its target is there [m]."""
 
 
-def held_card(page: Page) -> None:
+def held_card(page: WindowPage) -> None:
     """Build the list."""
     poser = page.session.poser
     with ui.element("div").classes("studio-card"):
@@ -97,7 +97,7 @@ def held_card(page: Page) -> None:
     page.on(Topic.SHAPE, show)
 
 
-def _held_row(page: Page, name: str, chosen: bool) -> ui.label:
+def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
     """One point: a click chooses it, the cross lets it go."""
     poser = page.session.poser
     with ui.element("div").classes("studio-row").style("min-height: 30px"):
@@ -111,10 +111,7 @@ def _held_row(page: Page, name: str, chosen: bool) -> ui.label:
         label.on("click", page.doing(poser.choose, name))
         ui.space()
         figure = ui.label().classes("studio-figure").mark(f"pose-error-{name}")
-        clear = ui.button(icon="close", on_click=page.doing(poser.clear, name), color=None)
-        clear.props("flat round dense size=sm").style("color: var(--muted)")
-        clear.props["aria-label"] = f"Let go of {name}"
-        clear.tooltip("Let go")
+        icon_button("close", f"Let go of {name}", page.doing(poser.clear, name)).style("color: var(--muted)")
     return figure
 
 
@@ -122,7 +119,7 @@ FULL = 0.999
 """A bar this full is at its limit."""
 
 
-def bars_card(page: Page) -> None:
+def bars_card(page: WindowPage) -> None:
     """Build the bars; with muscles there are none."""
     poser, document = page.session.poser, page.session.document
     with ui.column().classes("w-full").style("gap: 6px") as room:
@@ -179,7 +176,7 @@ class _BarRow:
         self._shown: tuple[int, int] | None = None
 
     def show(self, bar: Bar) -> None:
-        """Only what has changed is sent."""
+        """Show what the winch does; only what has changed is sent."""
         state = (round(1e4 * bar.contraction), round(10 * bar.tension))
         if state == self._shown:
             return

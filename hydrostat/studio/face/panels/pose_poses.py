@@ -3,12 +3,12 @@
 from nicegui import ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.records.work import fresh_name
 
 
-def poses_card(page: Page) -> None:
+def poses_card(page: WindowPage) -> None:
     """Build the list."""
     poser, document = page.session.poser, page.session.document
     ui.label("Poses").classes("studio-section")
@@ -19,7 +19,6 @@ def poses_card(page: Page) -> None:
             name.classes("flex-1").mark("pose-name")
             button = ui.button("Store", icon="bookmark_add").props("unelevated no-caps")
             button.tooltip("Keep what is held as a pose").mark("pose-store")
-    drawn: list[object] = []
 
     def store() -> None:
         given = name.value or fresh_name("pose", document.robot.poses)
@@ -31,45 +30,36 @@ def poses_card(page: Page) -> None:
             name.set_value("")
 
     def draw() -> None:
-        state = tuple(document.robot.poses)
-        if drawn == [state]:
-            return
-        drawn[:] = [state]
-        rows.clear()
-        with rows:
-            if not state:
-                ui.label("None yet: hold some points, then store them.").classes("studio-hint")
-            for own in state:
-                _pose_row(page, own)
+        if not document.robot.poses:
+            ui.label("None yet: hold some points, then store them.").classes("studio-hint")
+        for own in document.robot.poses:
+            _pose_row(page, own)
 
     def ready() -> None:
         button.set_enabled(bool(poser.held))
 
     button.on_click(store)
     name.on("keydown.enter", store)
-    page.on(Topic.ROBOT, draw)
+    page.on_new((Topic.ROBOT,), lambda: tuple(document.robot.poses), rows, draw)
     page.on(Topic.THINGS, ready)
     page.on(Topic.SHAPE, ready)
 
 
-def _pose_row(page: Page, name: str) -> None:
+def _pose_row(page: WindowPage, name: str) -> None:
     """One pose: a click shows it."""
     poser = page.session.poser
     with ui.element("div").classes("studio-row").style("min-height: 32px; gap: 2px"):
         show = ui.button(name, icon="accessibility_new", on_click=page.doing(poser.show_pose, name), color=None)
         show.props("flat dense no-caps align=left").classes("flex-1").style("min-width: 0; color: var(--ink)")
         show.tooltip("Go there").mark(f"pose-show-{name}")
-        rename = ui.button(icon="edit", on_click=lambda: _ask_name(page, name), color=None)
-        rename.props("flat round dense size=sm").style("color: var(--muted)")
-        rename.props["aria-label"] = f"Rename {name}"
-        rename.tooltip("Rename")
-        delete = ui.button(icon="delete_outline", on_click=page.doing(poser.delete_pose, name), color=None)
-        delete.props("flat round dense size=sm").style("color: var(--muted)")
-        delete.props["aria-label"] = f"Delete {name}"
-        delete.tooltip("Delete")
+        for icon, words, action in (
+            ("edit", "Rename", lambda: _ask_name(page, name)),
+            ("delete_outline", "Delete", page.doing(poser.delete_pose, name)),
+        ):
+            icon_button(icon, f"{words} {name}", action).style("color: var(--muted)")
 
 
-def _ask_name(page: Page, old: str) -> None:
+def _ask_name(page: WindowPage, old: str) -> None:
     """Ask for another name of a pose."""
     with page.panel, ui.dialog(value=True) as dialog, ui.card().classes("q-pa-md").style("min-width: 300px"):
         ui.label(f"Rename {old}").classes("studio-title")
@@ -87,7 +77,7 @@ def _ask_name(page: Page, old: str) -> None:
     dialog.on("hide", dialog.delete)
 
 
-def reach_card(page: Page) -> None:
+def reach_card(page: WindowPage) -> None:
     """Build the choice of a marker and what begins and ends the search."""
     poser, document = page.session.poser, page.session.document
     with ui.column().classes("w-full").style("gap: 6px") as room:
@@ -98,8 +88,7 @@ def reach_card(page: Page) -> None:
             start = ui.button("Show", icon="scatter_plot").props("unelevated no-caps").mark("pose-reach")
             start.tooltip("All that this marker can reach with its winches")
             stop = ui.button("Stop", icon="stop", on_click=page.doing(poser.reach.stop)).props("unelevated no-caps")
-            clear = ui.button(icon="close", on_click=page.doing(poser.reach.clear), color=None)
-            clear.props('flat round dense size=sm aria-label="Hide the cloud"').tooltip("Hide")
+            clear = icon_button("close", "Hide the cloud", page.doing(poser.reach.clear))
         words = ui.label().classes("studio-hint studio-figure")
     start.on_click(lambda: page.act(poser.reach.start, marker.value or ""))
 

@@ -8,16 +8,18 @@ from nicegui import ui
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import MATERIALS
 from hydrostat.studio.face.dialogs import may_leave
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.draft import BodyDraft, material_words, young_words
 from hydrostat.studio.starting.sketch import Sketch
+
+LEVELS = ("Coarse", "Medium", "Fine")
 
 FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}
 """Nodes of a coarse, a medium and a fine body, flat or not."""
 
 
-def draft_view(page: Page) -> Callable[[], None]:
+def draft_view(page: WindowPage) -> Callable[[], None]:
     """Build it; returns what shows it anew."""
     starter = page.session.starter
     with ui.row().classes("items-center no-wrap w-full gap-3"):
@@ -30,7 +32,7 @@ def draft_view(page: Page) -> Callable[[], None]:
             show_state = _state(page)
             show_pictures = _pictures()
         with ui.element("div").classes("start-card"):
-            show_fields = _fields(page)
+            fields = _Fields(page)
 
     def refresh() -> None:
         draft = starter.draft
@@ -38,12 +40,12 @@ def draft_view(page: Page) -> Callable[[], None]:
         show_state()
         show_pictures(starter.sketch)
         if draft is not None:
-            show_fields(draft, starter.sketch)
+            fields.show(draft, starter.sketch)
 
     return refresh
 
 
-def _state(page: Page) -> Callable[[], None]:
+def _state(page: WindowPage) -> Callable[[], None]:
     """How far it is, or why it cannot be."""
     starter, jobs = page.session.starter, page.session.jobs
     with ui.element("div").classes("start-card") as busy, ui.row().classes("items-center w-full no-wrap"):
@@ -112,92 +114,94 @@ def _line(words: str) -> None:
         ui.label(words)
 
 
-def _fields(page: Page) -> Callable[[BodyDraft, Sketch | None], None]:
+class _Fields:
     """Numbers and material, and the button that makes the robot."""
-    starter = page.session.starter
 
-    def ask(**changes: Any) -> None:
-        try:
-            starter.revise(**changes)
-            wrong.set_text("")
-        except HydrostatError as error:
-            wrong.set_text(str(error))
-        make.set_enabled(not wrong.text and starter.is_current and not starter.meshing)
+    def __init__(self, page: WindowPage) -> None:
+        self._page, self._starter = page, page.session.starter
+        spread = "no-caps spread unelevated"
+        materials = {key: f"{key}, {young_words(found)}" for key, found in MATERIALS.items()}
+        with ui.element("div").classes("start-fields"):
+            self._name = ui.input("Name").props("outlined dense debounce=500")
+            self._size = _Length("Longest side", lambda value: self._ask(size=value), "size")
+            self._kind = ui.toggle({"flat": "Flat", "round": "Blown up"}).props(spread).classes("w-full")
+            self._thick = _Length("Thickness", self._thicken, "thickness")
+            self._fine = ui.toggle(list(LEVELS)).props(spread).classes("w-full")
+            self._element = _Length(
+                "Element size", lambda value: self._ask(element_size=value, nodes=None), "element-size"
+            )
+            self._material = ui.select(materials, label="Material").props('outlined dense data-testid="material"')
+            self._words = ui.label().classes("start-small")
+            self._wrong = ui.label().classes("start-problem").props('data-testid="wrong-number"')
+            self._wrong.bind_visibility_from(self._wrong, "text", bool)
+            self._make = ui.button("Make robot", icon="check", on_click=self._begin)
+            self._make.props('unelevated no-caps size=md data-testid="make-robot"')
+        self._name.on_value_change(lambda event: self._ask(name=str(event.value or "")))
+        self._kind.on_value_change(lambda event: self._choose(str(event.value)))
+        self._fine.on("update:model-value", lambda: self._refine(str(self._fine.value)))
+        self._material.on_value_change(lambda event: self._ask(material=str(event.value)))
 
-    with ui.element("div").classes("start-fields"):
-        name = ui.input("Name", on_change=lambda event: ask(name=str(event.value or ""))).props(
-            "outlined dense debounce=500"
-        )
-        size = _Length("Longest side", lambda value: ask(size=value), "size")
-        kind = ui.toggle({"flat": "Flat", "round": "Blown up"}).props("no-caps spread unelevated").classes("w-full")
-        thick = _Length("Thickness", lambda value: ask(**{_thick_key(starter.draft): value}), "thickness")
-        fine = ui.toggle(["Coarse", "Medium", "Fine"]).props("no-caps spread unelevated").classes("w-full")
-        element = _Length("Element size", lambda value: ask(element_size=value, nodes=None), "element-size")
-        options = {key: f"{key}, {young_words(found)}" for key, found in MATERIALS.items()}
-        material = (
-            ui.select(options, label="Material", with_input=False)
-            .props("outlined dense")
-            .props('data-testid="material"')
-        )
-        words = ui.label().classes("start-small")
-        wrong = ui.label().classes("start-problem").props('data-testid="wrong-number"')
-        wrong.bind_visibility_from(wrong, "text", bool)
-        make = (
-            ui.button("Make robot", icon="check").props("unelevated no-caps size=md").props('data-testid="make-robot"')
-        )
-
-    def choose(kind_name: str) -> None:
-        draft = starter.draft
-        if draft is None or kind_name == ("flat" if draft.inflate is None else "round"):
-            return
-        thickness = 0.04 if starter.sketch is None else 0.25 * starter.sketch.robot.body.mesh.size
-        ask(inflate=None if kind_name == "flat" else round(thickness, 3), thickness=None, element_size=None, nodes=None)
-
-    def refine(level: str) -> None:
-        draft = starter.draft
-        if draft is not None and level:
-            flat = draft.is_drawing and draft.inflate is None
-            ask(nodes=FINENESS[flat][("Coarse", "Medium", "Fine").index(level)], element_size=None)
-
-    async def begin() -> None:
-        if await may_leave(page):
-            serial = page.session.document.serial
-            page.act(starter.make)
-            if page.session.document.serial != serial:
-                page.go(StageName.POSE)
-
-    kind.on_value_change(lambda event: choose(str(event.value)))
-    fine.on("update:model-value", lambda: refine(str(fine.value)))
-    material.on_value_change(lambda event: ask(material=str(event.value)))
-    make.on_click(begin)
-
-    def refresh(draft: BodyDraft, sketch: Sketch | None) -> None:
-        flat = draft.is_drawing and draft.inflate is None
-        _quietly(name, draft.name)
-        kind.set_visibility(draft.is_drawing)
-        _quietly(kind, "flat" if flat else "round")
-        thick.set_visibility(draft.is_drawing)
-        _quietly(material, draft.material)
-        words.set_text(material_words(MATERIALS[draft.material]))
-        make.set_enabled(not wrong.text and starter.is_current and not starter.meshing)
-        fine.set_value(_level(draft, flat))
+    def show(self, draft: BodyDraft, sketch: Sketch | None) -> None:
+        """Show what is asked for, and where nothing is, what came of it."""
+        flat = _is_flat(draft)
+        _quietly(self._name, draft.name)
+        self._kind.set_visibility(draft.is_drawing)
+        _quietly(self._kind, "flat" if flat else "round")
+        self._thick.set_visibility(draft.is_drawing)
+        _quietly(self._material, draft.material)
+        self._words.set_text(material_words(MATERIALS[draft.material]))
+        self._enable()
+        self._fine.set_value(_level(draft, flat))
         body = None if sketch is None else sketch.robot.body
-        size.show(draft.size or (None if body is None else body.mesh.size))
-        thick.show((draft.thickness if flat else draft.inflate) or (None if body is None else body.thickness))
-        element.show(draft.element_size or (None if body is None else body.element_size))
+        self._size.show(draft.size or (None if body is None else body.mesh.size))
+        self._thick.show((draft.thickness if flat else draft.inflate) or (None if body is None else body.thickness))
+        self._element.show(draft.element_size or (None if body is None else body.element_size))
 
-    return refresh
+    def _ask(self, **changes: Any) -> None:
+        try:
+            self._starter.revise(**changes)
+            self._wrong.set_text("")
+        except HydrostatError as error:
+            self._wrong.set_text(str(error))
+        self._enable()
+
+    def _enable(self) -> None:
+        ready = self._starter.is_current and not self._starter.meshing
+        self._make.set_enabled(not self._wrong.text and ready)
+
+    def _thicken(self, value: float) -> None:
+        draft = self._starter.draft
+        self._ask(**{"inflate" if draft is not None and draft.inflate is not None else "thickness": value})
+
+    def _choose(self, kind: str) -> None:
+        draft, sketch = self._starter.draft, self._starter.sketch
+        if draft is not None and kind != ("flat" if draft.inflate is None else "round"):
+            thickness = 0.04 if sketch is None else 0.25 * sketch.robot.body.mesh.size
+            inflate = None if kind == "flat" else round(thickness, 3)
+            self._ask(inflate=inflate, thickness=None, element_size=None, nodes=None)
+
+    def _refine(self, level: str) -> None:
+        draft = self._starter.draft
+        if draft is not None and level in LEVELS:
+            self._ask(nodes=FINENESS[_is_flat(draft)][LEVELS.index(level)], element_size=None)
+
+    async def _begin(self) -> None:
+        if await may_leave(self._page):
+            serial = self._page.session.document.serial
+            self._page.act(self._starter.make)
+            if self._page.session.document.serial != serial:
+                self._page.go(StageName.POSE)
+
+
+def _is_flat(draft: BodyDraft) -> bool:
+    return draft.is_drawing and draft.inflate is None
 
 
 def _level(draft: BodyDraft, flat: bool) -> str | None:
     """Which fineness was asked for."""
     if draft.element_size is not None or (draft.nodes is not None and draft.nodes not in FINENESS[flat]):
         return None
-    return ("Coarse", "Medium", "Fine")[1 if draft.nodes is None else FINENESS[flat].index(draft.nodes)]
-
-
-def _thick_key(draft: BodyDraft | None) -> str:
-    return "inflate" if draft is not None and draft.inflate is not None else "thickness"
+    return LEVELS[1 if draft.nodes is None else FINENESS[flat].index(draft.nodes)]
 
 
 def _quietly(control: Any, value: Any) -> None:

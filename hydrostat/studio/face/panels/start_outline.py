@@ -6,13 +6,14 @@ from typing import Any
 
 from nicegui import ui
 
+from hydrostat.studio.face.dialogs import ask
 from hydrostat.studio.face.elements import OutlineEditor
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.outlining import Reshaped, beginnings
 
 
-def outline_view(page: Page) -> Callable[[], None]:
+def outline_view(page: WindowPage) -> Callable[[], None]:
     """Build it; returns what shows it anew."""
     starter = page.session.starter
     outlining = starter.outlining
@@ -77,32 +78,22 @@ def _tools(editor: OutlineEditor, *, new: bool) -> None:
     if new:
         for name, loops in beginnings().items():
             ui.button(name, on_click=partial(editor.show, loops)).props("flat no-caps dense padding='4px 10px'")
-    _tool("undo", "Undo (Ctrl Z)", editor.undo)
-    _tool("redo", "Do again", editor.redo)
-    _tool("add_circle_outline", "Another loop: a hole, if inside", editor.add_loop)
-    _tool("delete_outline", "Remove the chosen corner (Delete)", editor.remove_corner)
-    _tool("fit_screen", "Fit", editor.fit)
+    for icon, words, action in (
+        ("undo", "Undo (Ctrl Z)", editor.undo),
+        ("redo", "Do again", editor.redo),
+        ("add_circle_outline", "Another loop: a hole, if inside", editor.add_loop),
+        ("delete_outline", "Remove the chosen corner (Delete)", editor.remove_corner),
+        ("fit_screen", "Fit", editor.fit),
+    ):
+        icon_button(icon, words, action, small=False, colour="primary")
     ui.switch("Mirror", on_change=lambda event: editor.set_mirror(bool(event.value))).props(
         'data-testid="outline-mirror"'
     )
     ui.switch("Snap", value=True, on_change=lambda event: editor.set_snap(bool(event.value)))
 
 
-def _tool(icon: str, words: str, action: Callable[[], None]) -> None:
-    ui.button(icon=icon, on_click=lambda: action()).props(f'flat round dense aria-label="{words}"').tooltip(words)
-
-
-async def _agreed(page: Page, found: Reshaped) -> bool:
+async def _agreed(page: WindowPage, found: Reshaped) -> bool:
     """Ask whether what lies outside may go; True if nothing does."""
-    if not found.dropped:
-        return True
-    with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
-        ui.label("Some parts lie outside the new outline").classes("studio-title")
-        ui.label(f"They would be removed: {', '.join(found.dropped)}.").classes("studio-hint")
-        with ui.row().classes("w-full justify-end"):
-            ui.button("Go on drawing", on_click=lambda: dialog.submit(False)).props("flat no-caps")
-            remove = ui.button("Remove them", on_click=lambda: dialog.submit(True)).props("unelevated no-caps")
-            remove.props('data-testid="outline-agree"')
-    answer = bool(await dialog)
-    dialog.delete()
-    return answer
+    words = f"They would be removed: {', '.join(found.dropped)}."
+    title = "Some parts lie outside the new outline"
+    return not found.dropped or await ask(page, title, words, "Go on drawing", "Remove them", name="outline")

@@ -9,8 +9,8 @@ from nicegui import events, run, ui
 
 from hydrostat.errors import HydrostatError
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.dialogs import may_leave
-from hydrostat.studio.face.page import Page
+from hydrostat.studio.face.dialogs import ask, may_leave
+from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.start_draft import draft_view
 from hydrostat.studio.face.panels.start_outline import outline_view
 from hydrostat.studio.stage import StageName
@@ -26,7 +26,7 @@ MOST_LEFT = 4
 """So many works that a crash left are offered at once, the newest."""
 
 
-def shelf_view(page: Page) -> Callable[[], None]:
+def shelf_view(page: WindowPage) -> Callable[[], None]:
     """Build it."""
     starter = page.session.starter
     for left in starter.autosave.left()[:MOST_LEFT]:
@@ -49,7 +49,7 @@ def shelf_view(page: Page) -> Callable[[], None]:
     return lambda: None
 
 
-async def open_with(page: Page, button: ui.element, action: Callable[[], None]) -> None:
+async def open_with(page: WindowPage, button: ui.element, action: Callable[[], None]) -> None:
     """Open a robot, show that it takes a moment, and go on to posing."""
     if not await may_leave(page):
         return
@@ -69,7 +69,7 @@ def _rest(card: ui.element) -> bool:
     return True
 
 
-def _left(page: Page, left: Left) -> None:
+def _left(page: WindowPage, left: Left) -> None:
     autosave = page.session.starter.autosave
     with ui.element("div").classes("start-left") as row:
         ui.icon("history").classes("text-xl")
@@ -81,26 +81,15 @@ def _left(page: Page, left: Left) -> None:
         restore.on_click(lambda: open_with(page, row, partial(autosave.restore, left)))
 
         async def forget() -> None:
-            if await _sure(left):
+            title = f"Forget the work of {left.words}?"
+            if await ask(page, title, "It cannot be brought back.", "Keep", "Forget", name="forget", negative=True):
                 await page.act_slowly(autosave.forget, left)
                 row.delete()
 
         ui.button("Forget", on_click=forget).props("flat no-caps dense padding='4px 10px'")
 
 
-async def _sure(left: Left) -> bool:
-    with ui.dialog() as dialog, ui.card().classes("q-pa-md"):
-        ui.label(f"Forget the work of {left.words}?").classes("studio-title")
-        ui.label("It cannot be brought back.").classes("studio-hint")
-        with ui.row().classes("w-full justify-end"):
-            ui.button("Keep", on_click=lambda: dialog.submit(False)).props("flat no-caps")
-            ui.button("Forget", on_click=lambda: dialog.submit(True)).props("unelevated no-caps color=negative")
-    answer = bool(await dialog)
-    dialog.delete()
-    return answer
-
-
-def _drop(page: Page) -> None:
+def _drop(page: WindowPage) -> None:
     with (
         ui.element("div")
         .classes("start-card start-drop")
@@ -141,7 +130,7 @@ def _drop(page: Page) -> None:
     card.on("keydown.enter", js_handler=pick)
 
 
-def _draw(page: Page) -> None:
+def _draw(page: WindowPage) -> None:
     starter, document = page.session.starter, page.session.document
     with ui.element("div").classes("start-card"):
         _head("draw", "Draw an outline")
@@ -154,7 +143,7 @@ def _draw(page: Page) -> None:
             edit.props("outline no-caps").props('data-testid="outline-edit"')
 
 
-def _folder(page: Page) -> None:
+def _folder(page: WindowPage) -> None:
     with ui.element("div").classes("start-card") as card:
         _head("folder_open", "Open a folder")
         ui.label("With robot.toml in it, such as one made by hydrostat new.").classes("start-small")
@@ -174,7 +163,7 @@ def _folder(page: Page) -> None:
         ui.button("Open", on_click=go).props("unelevated no-caps").props('data-testid="folder-open"')
 
 
-def _chip(page: Page, card: Card) -> None:
+def _chip(page: WindowPage, card: Card) -> None:
     with ui.element("button").classes("start-chip") as chip:
         ui.label(card.name).classes("start-robot-name")
         ui.label(card.words or str(card.folder)).classes("start-small")
@@ -182,7 +171,7 @@ def _chip(page: Page, card: Card) -> None:
     chip.on("click", lambda: open_with(page, chip, lambda: page.session.open_folder(str(card.folder))))
 
 
-def _robot(page: Page, card: Card) -> None:
+def _robot(page: WindowPage, card: Card) -> None:
     shown = card.name.replace("_", " ")
     with (
         ui.element("button")
@@ -211,7 +200,7 @@ VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}
 """Each builds itself and returns what shows it anew."""
 
 
-def start_panel(page: Page) -> None:
+def start_panel(page: WindowPage) -> None:
     """Build the whole page: robots to choose, or what is being made of a file, or an outline that is drawn."""
     starter = page.session.starter
     with page.whole:
