@@ -72,7 +72,7 @@ def new(
     count = len(made.body.mesh.nodes)
     if nodes is not None and abs(count / nodes - 1) > 0.1:
         lines.append(f"nodes: {nodes} were asked for, {count} come nearest, as thin places need finer elements")
-    _tell(made, name, [line.replace(str(folder), str(name)) for line in lines])
+    _print_made(made, name, [line.replace(str(folder), str(name)) for line in lines])
 
 
 @dataclass(frozen=True)
@@ -246,7 +246,7 @@ def _draw(folder: Path) -> "Robot":
     return made
 
 
-def _tell(made: "Robot", name: Path, lines: list[str]) -> None:
+def _print_made(made: "Robot", name: Path, lines: list[str]) -> None:
     """Say what there is now, and what to do next."""
     from hydrostat.robot import find_risks
 

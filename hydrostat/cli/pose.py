@@ -64,8 +64,8 @@ def pose(
         seconds = time.process_time() - began
         folder: Path = out / title if len(targets) > 1 else out
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)
-        _tell(loaded, reached, title, seconds)
-        _warn(simulation, reached)
+        _print_reached(loaded, reached, title, seconds)
+        _note_other_pose(simulation, reached)
         print(f"  wrote {folder}")
         stuck |= reached.reason not in (InverseReason.REACHED, InverseReason.OPTIMAL)
     if stuck:
@@ -124,7 +124,7 @@ def _write(
     save_png(draw_reached(simulation.robot, reached, title=head, outline=outline), folder / "pose.png")
 
 
-def _tell(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -> None:
+def _print_reached(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -> None:
     """Print what was reached, and what keeps it from more."""
     print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.reason} ({1e3 * seconds:.0f} ms)")
     text = ", ".join(f"{winch} {1e3 * value:.1f} mm" for winch, value in _taken(loaded, reached).items())
@@ -135,7 +135,7 @@ def _tell(loaded: "Robot", reached: "ReachedPose", title: str, seconds: float) -
         print(f"  optimality: {reached.optimality:.1g} (0 at an optimum within these limits)")
 
 
-def _warn(simulation: "Simulation", reached: "ReachedPose") -> None:
+def _note_other_pose(simulation: "Simulation", reached: "ReachedPose") -> None:
     """Say it if the contractions alone do not decide the pose (E20): at once from rest they may lead to another."""
     from hydrostat.simulation.solved_pose import largest_distance
 

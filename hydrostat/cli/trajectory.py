@@ -67,7 +67,7 @@ def trajectory(
     kind = member(PathKind, path, what="--path")
     check_width(width)
     loaded = read_robot(robot)
-    names = _names(loaded, poses)
+    names = _keyframe_names(loaded, poses)
     simulation = prepared(loaded)
     began = time.process_time()
     with progress_bar() as tell:
@@ -91,7 +91,7 @@ def trajectory(
         raise typer.Exit(1)
 
 
-def _names(robot: Any, poses: str | None) -> list[str]:
+def _keyframe_names(robot: Any, poses: str | None) -> list[str]:
     """Names of the keyframes.
 
     Raises:
