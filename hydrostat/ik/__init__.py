@@ -3,13 +3,12 @@
 from hydrostat.ik.limits import Limits
 from hydrostat.ik.objectives.centre_goal import CentreGoal
 from hydrostat.ik.objectives.closeness import Closeness, ClosenessKind
-from hydrostat.ik.objectives.drawn_pose import drawn_pose
 from hydrostat.ik.objectives.effort import Effort, EffortKind
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term
 from hydrostat.ik.objectives.point_goal import PointGoal
 from hydrostat.ik.objectives.postures import moves_at, posture_at
-from hydrostat.ik.objectives.shape_goal import ShapeGoal
+from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.search import InverseOptions
 from hydrostat.ik.solve_ik import Targets, solve_ik

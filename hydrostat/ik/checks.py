@@ -20,8 +20,8 @@ def numbers(given: object) -> Float[np.ndarray, "..."] | None:
     return found.astype(float) if found.dtype.kind in "iuf" else None
 
 
-def told(given: object) -> str:
-    """What is given, for an error of one line."""
+def describe(given: object) -> str:
+    """Show what is given in an error of one line: a number, a short text, or its kind."""
     found = numbers(given)
     if found is not None and found.ndim == 0:
         return f"{found:g}"
@@ -40,7 +40,7 @@ def not_negative(what: str, given: object) -> float:
     """
     found = numbers(given)
     if found is None or found.ndim or not 0 <= found < np.inf:
-        raise InputError(f"{what} must be 0 or more, not {told(given)}")
+        raise InputError(f"{what} must be 0 or more, not {describe(given)}")
     return float(found)
 
 
@@ -52,7 +52,7 @@ def above_zero(what: str, given: object, *, unit: str = "") -> float:
     """
     found = numbers(given)
     if found is None or found.ndim or not found > 0:
-        raise InputError(f"{what} must be a number above 0{unit and ' '}{unit}, not {told(given)}")
+        raise InputError(f"{what} must be a number above 0{unit and ' '}{unit}, not {describe(given)}")
     return float(found)
 
 
@@ -63,7 +63,7 @@ def by_name(what: str, given: object, example: str) -> Mapping[str, Any]:
         InputError: it is anything else.
     """
     if not isinstance(given, Mapping):
-        raise InputError(f"{what} must be given by name, such as {example}, not {told(given)}")
+        raise InputError(f"{what} must be given by name, such as {example}, not {describe(given)}")
     return given
 
 
@@ -81,7 +81,7 @@ def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"
     """
     found = numbers(given)
     if found is None or found.ndim != 1:
-        raise InputError(f"{what} must be {mesh.dim} coordinates [m], not {told(given)}")
+        raise InputError(f"{what} must be {mesh.dim} coordinates [m], not {describe(given)}")
     if len(found) != mesh.dim:
         raise InputError(f"{what} has {len(found)} coordinates, the body {mesh.dim} dimensions")
     if not np.isfinite(found).all():

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.ik.checks import above_zero, by_name, numbers, told
+from hydrostat.ik.checks import above_zero, by_name, describe, numbers
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
@@ -75,9 +75,9 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
             0, a rate without an interval or the other way round, a winch named twice among equal ones.
     """
     if not isinstance(simulation, Simulation):
-        raise InputError(f"a pose is found by a Simulation(robot), not by {told(simulation)}")
+        raise InputError(f"a pose is found by a Simulation(robot), not by {describe(simulation)}")
     if not isinstance(limits, Limits):
-        raise InputError(f"limits must be Limits(...), such as Limits(tension=5.0), not {told(limits)}")
+        raise InputError(f"limits must be Limits(...), such as Limits(tension=5.0), not {describe(limits)}")
     robot = simulation.robot
     channels = _groups(robot, limits.equal)
     count = channels.max(initial=-1) + 1
@@ -91,7 +91,7 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
             raise InputError("a limit on the rate needs an interval above 0 s, the time since the start")
         reach = reach * above_zero("interval of limits", limits.interval, unit="s")
     elif limits.interval is not None:
-        raise InputError(f"an interval of {told(limits.interval)} s limits nothing without a rate; give a rate too")
+        raise InputError(f"an interval of {describe(limits.interval)} s limits nothing without a rate; give a rate too")
     lows = np.array([low[channels == channel].max() for channel in range(count)])
     highs = np.array([high[channels == channel].min() for channel in range(count)])
     found = Bounds(
@@ -116,10 +116,10 @@ def _groups(robot: Robot, equal: Sequence[Sequence[str]]) -> np.ndarray:
     order = dict(group)
     seen: set[str] = set()
     if isinstance(equal, str) or not isinstance(equal, Sequence):
-        raise InputError(f"equal must be groups of winches, such as {_GROUPS}, not {told(equal)}")
+        raise InputError(f"equal must be groups of winches, such as {_GROUPS}, not {describe(equal)}")
     for names in equal:
         if isinstance(names, str) or not isinstance(names, Sequence):
-            raise InputError(f"equal must be groups of winches, such as {_GROUPS}, not of {told(names)}")
+            raise InputError(f"equal must be groups of winches, such as {_GROUPS}, not of {describe(names)}")
         for name in names:
             robot.winch(name)
             if names.count(name) > 1:
@@ -139,7 +139,7 @@ def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vec
         ends = numbers(limits)
         if ends is None or ends.shape != (2,) or not (np.isfinite(ends).all() and ends[0] <= ends[1]):
             raise InputError(
-                f'contraction of winch "{name}" must lie between two rising numbers [m], not {told(limits)}'
+                f'contraction of winch "{name}" must lie between two rising numbers [m], not {describe(limits)}'
             )
         ranges[name] = (ends[0], ends[1])
     values = np.array(list(ranges.values()), dtype=float).reshape(-1, 2)

@@ -9,9 +9,8 @@ from scipy.optimize import least_squares
 
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.outline import Outline
-from hydrostat.ik.objectives.drawn_pose import drawn_pose
 from hydrostat.ik.objectives.postures import moves_at, posture_at
-from hydrostat.ik.objectives.shape_goal import ShapeGoal
+from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
 from hydrostat.robot import Pin, Robot
 from hydrostat.robot.body import outline_body
 from hydrostat.simulation import Simulation

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.ik.checks import not_negative, told
+from hydrostat.ik.checks import describe, not_negative
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -46,7 +46,7 @@ class Closeness(Objective):
         weight = not_negative("weight of a closeness", self.weight)
         if not isinstance(self.pose, SolvedPose):
             hint = ", give its .pose" if isinstance(getattr(self.pose, "pose", None), SolvedPose) else ""
-            raise InputError(f"the pose to stay close to must be a SolvedPose, not {told(self.pose)}{hint}")
+            raise InputError(f"the pose to stay close to must be a SolvedPose, not {describe(self.pose)}{hint}")
         mesh, winches = simulation.robot.body.mesh, simulation.robot.winches
         if self.pose.nodes.shape != mesh.nodes.shape or len(self.pose.contractions) != len(winches):
             raise InputError("the pose to stay close to is one of another robot")

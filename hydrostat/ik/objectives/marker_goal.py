@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors
-from hydrostat.ik.checks import by_name, not_negative, place, told
+from hydrostat.ik.checks import by_name, describe, not_negative, place
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.robot import Point, Pose, Robot
 from hydrostat.simulation import Simulation
@@ -126,4 +126,4 @@ def _held(name: str, free: object, dim: int) -> list[bool]:
 
 
 def _quoted(given: object) -> str:
-    return f'"{given}"' if isinstance(given, str) else told(given)
+    return f'"{given}"' if isinstance(given, str) else describe(given)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.ik.checks import told
+from hydrostat.ik.checks import describe
 from hydrostat.simulation import Simulation
 
 Rows = Float[np.ndarray, " rows"]
@@ -86,10 +86,10 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
         InputError: no list, or something in it that is no objective.
     """
     if isinstance(given, str) or not isinstance(given, Sequence):
-        raise InputError(f"objectives must be a list, such as [Effort()], not {told(given)}")
+        raise InputError(f"objectives must be a list, such as [Effort()], not {describe(given)}")
     for wish in given:
         if isinstance(wish, type):
             raise InputError(f"an objective is wanted, not its class; write {wish.__name__}(...)")
         if not isinstance(wish, Objective):
-            raise InputError(f"an objective must be one such as MarkerGoal(...) or Effort(), not {told(wish)}")
+            raise InputError(f"an objective must be one such as MarkerGoal(...) or Effort(), not {describe(wish)}")
     return tuple(given)

@@ -1,19 +1,22 @@
-"""`ShapeGoal`: the body's boundary on a whole drawn outline, or on a surface."""
+"""`ShapeGoal`: the body's boundary on a drawn outline, or on a surface; `drawn_pose`: such an outline from a file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from numbers import Integral
+from pathlib import Path
 
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry.files.outline_file import read_drawing, read_outline
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Curve, Outline
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
 from hydrostat.geometry.surface import Surface
-from hydrostat.ik.checks import not_negative, told
+from hydrostat.ik.checks import describe, not_negative
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.robot import Robot, Source
 from hydrostat.simulation import Simulation
 
 
@@ -53,7 +56,7 @@ class ShapeGoal(Objective):
         weight = not_negative("weight of a shape", self.weight)
         if self.samples is not None and not (isinstance(self.samples, Integral) and _FEWEST <= self.samples <= _MOST):
             raise InputError(
-                f"samples of a shape must be a whole number from {_FEWEST} to {_MOST}, not {told(self.samples)}"
+                f"samples of a shape must be a whole number from {_FEWEST} to {_MOST}, not {describe(self.samples)}"
             )
         name, shell = self._shell(mesh)
         _check(name, shell, mesh)
@@ -73,14 +76,14 @@ class ShapeGoal(Objective):
                 raise InputError("an outline is a goal for flat bodies; this one is in space, give a surface")
             if not isinstance(self.outline, Outline):
                 raise InputError(
-                    f"outline must be an Outline [m], not {told(self.outline)}; drawn_pose(robot, file) reads one"
+                    f"outline must be an Outline [m], not {describe(self.outline)}; drawn_pose(robot, file) reads one"
                 )
             return "outline", outline_shell(self.outline)
         assert self.surface is not None
         if mesh.dim != 3:
             raise InputError("a surface is a goal for bodies in space; this one is flat, give an outline")
         if not isinstance(self.surface, Surface):
-            raise InputError(f"surface must be a Surface(vertices, triangles) [m], not {told(self.surface)}")
+            raise InputError(f"surface must be a Surface(vertices, triangles) [m], not {describe(self.surface)}")
         return "surface", Shell(self.surface.vertices, self.surface.triangles)
 
 
@@ -175,3 +178,30 @@ def _check(name: str, shell: Shell, mesh: Mesh) -> None:
         raise InputError(f"the {name} has {np.sum(shell.measures == 0)} triangles without area; heal it first")
     if not shell.closed:
         raise InputError(f"the {name} is not closed; heal it first")
+
+
+def drawn_pose(robot: Robot, drawing: Path | str) -> Outline:
+    """The outline of a pose in the coordinates of the robot, for `ShapeGoal`.
+
+    Copy the drawing or picture of the body, and bend what is on it; the page must stay as it is. Read by itself, a
+    drawing would be put into the middle of its own bounding box, and the pose would no longer be where it was drawn.
+    Another page is noticed by the page and unit of an SVG drawing, the unit of a DXF drawing, the pixels of a picture;
+    DXF has no page, so where its program counts from another corner, the pose is shifted without a word.
+
+    Args:
+        robot: a flat one, whose body was drawn.
+        drawing: file of the same kind as the body's: SVG, DXF, PNG or JPG.
+
+    Raises:
+        InputError: the body was not drawn, or the file cannot be read.
+        OutlineError: no pose can be made of the drawing, or it has another page.
+    """
+    body, file = robot.body, Path(drawing)
+    if body.source is not Source.OUTLINE:
+        raise InputError(f"{file.name}: a pose can be drawn over a drawing only, the body is of a {body.source} file")
+    try:
+        content = file.read_bytes()
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from error
+    page = read_drawing(body.content, name=body.file, size=body.size).page
+    return read_outline(content, name=file.name, page=page)

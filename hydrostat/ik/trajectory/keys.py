@@ -7,6 +7,7 @@ from numbers import Real
 import numpy as np
 
 from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.ik.checks import describe
 from hydrostat.ik.limits import Limits
 from hydrostat.ik.objectives.effort import Effort, EffortKind
 from hydrostat.ik.objectives.objective import Objective
@@ -70,7 +71,7 @@ def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
             some only, or times that do not rise from above 0.
     """
     if not isinstance(given, Sequence) or isinstance(given, str):
-        raise InputError(f"keyframes must be a list of targets, not {_told(given)}")
+        raise InputError(f"keyframes must be a list of targets, not {describe(given)}")
     keyframes = [_as_keyframe(number, key) for number, key in enumerate(given, 1)]
     if not keyframes:
         raise InputError("a trajectory needs at least one keyframe")
@@ -91,26 +92,20 @@ def _as_keyframe(number: int, given: Key) -> Keyframe:
     key = given
     if isinstance(key, tuple):
         if len(key) != 2:
-            raise InputError(f"keyframe {number} must be (time [s], target) or a target, not {_told(given)}")
+            raise InputError(f"keyframe {number} must be (time [s], target) or a target, not {describe(given)}")
         key = Keyframe(target=key[1], time=key[0])
     elif not isinstance(key, Keyframe):
         key = Keyframe(target=key)
     if not isinstance(key.target, SolvedPose | Pose | Mapping):
         raise InputError(
             f"keyframe {number} needs a target, which is a pose, a solved pose, or places by marker such as "
-            f'{{"tip": (0.1, 0.02)}}, not {_told(key.target)}'
+            f'{{"tip": (0.1, 0.02)}}, not {describe(key.target)}'
         )
     if not isinstance(key.target, SolvedPose) and not as_pose(key.target):
         raise InputError(f"keyframe {number} has no target; name a marker and its place")
     if key.time is not None and not (isinstance(key.time, Real) and np.isfinite(key.time)):
-        raise InputError(f"the time of keyframe {number} must be a finite number [s], not {_told(key.time)}")
+        raise InputError(f"the time of keyframe {number} must be a finite number [s], not {describe(key.time)}")
     return key
-
-
-def _told(given: object) -> str:
-    """What is given, for an error of one line."""
-    words = repr(given)
-    return words if len(words) <= _LONGEST and "\n" not in words else f"a {type(given).__name__}"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -204,9 +199,6 @@ class KeySearch:
             poses.append(last)
         return (*poses, end)
 
-
-_LONGEST = 60
-"""Longest text of what is given that an error repeats."""
 
 _TAUT = Effort(of=EffortKind.SLACK, weight=0.0)
 """Slack cables are kept just short of taut, so that they join without a jump of their contraction."""
