@@ -10,7 +10,7 @@ from hydrostat.ik.objectives.point_goal import PointGoal
 from hydrostat.ik.objectives.postures import moves_at, posture_at
 from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search.search import InverseOptions
+from hydrostat.ik.search.problem import InverseOptions
 from hydrostat.ik.solve_ik import Targets, solve_ik
 from hydrostat.ik.tracker import Tracker
 from hydrostat.ik.trajectory.keys import Key, Keyframe

@@ -4,16 +4,16 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import islice
 
 from hydrostat.errors import InputError
-from hydrostat.ik.answer import answer
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.effort import keeps_taut
 from hydrostat.ik.objectives.marker_goal import MarkerGoal, named_targets
 from hydrostat.ik.objectives.objective import Objective, checked_objectives
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search.descend import Descent, descend
-from hydrostat.ik.search.least_effort import least_effort
+from hydrostat.ik.search.answer import reached_pose
+from hydrostat.ik.search.descend import Descent, descend, least_effort
+from hydrostat.ik.search.inverse_search import InverseSearch
+from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
 from hydrostat.ik.search.restarts import restarts
-from hydrostat.ik.search.search import InverseOptions, Search, State
 from hydrostat.robot import Point, Pose
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -57,14 +57,15 @@ def solve_ik(
         allowed = allowed.near(allowed.channel((start or simulation.rest).contractions))
     terms = [wish.on(simulation) for wish in wishes(target, objectives)]
     ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
-    search = Search(simulation, terms, allowed, options or InverseOptions(), ready=ready)
+    problem = InverseProblem(simulation, terms, allowed, options or InverseOptions(), ready=ready)
+    search = InverseSearch(problem)
     begun = search.begin(start)
     seek = descend
-    if search.options.unique and search.redundant(begun):
+    if problem.options.unique and problem.redundant(begun):
         seek = least_effort
         begun = begun if start is None or given.rate is not None else search.begin(None)
     found = _best(search, seek(search, begun), seek)
-    return answer(search, found, target)
+    return reached_pose(search, found, target)
 
 
 def as_pose(targets: Targets | None) -> Pose | None:
@@ -86,17 +87,17 @@ def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objecti
     return found
 
 
-def _best(search: Search, found: Descent, seek: Callable[[Search, State], Descent]) -> Descent:
+def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, InverseState], Descent]) -> Descent:
     """The best of several beginnings; the first that reaches its goal."""
     if found.reason is InverseReason.REACHED or not found.state.errors:
         return found
     spent = found.iterations
     best = [found.state]
-    for begun in islice(restarts(search, lambda: best[-1]), search.options.restarts):
+    for begun in islice(restarts(search, lambda: best[-1]), search.problem.options.restarts):
         other = seek(search, begun)
         spent += other.iterations
-        lower = search.objective(other.state, found.weight) < search.objective(found.state, found.weight)
-        if (other.allowed and not found.allowed) or (other.allowed >= found.allowed and lower):
+        new, old = (search.problem.objective(one.state, found.weight) for one in (other, found))
+        if (other.allowed and not found.allowed) or (other.allowed >= found.allowed and new < old):
             found = other
             best.append(other.state)
         if found.reason is InverseReason.REACHED:

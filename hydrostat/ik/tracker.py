@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrostat.errors import InputError
-from hydrostat.ik.answer import answer
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
+from hydrostat.ik.search.answer import reached_pose
 from hydrostat.ik.search.descend import Descent
-from hydrostat.ik.search.search import InverseOptions, Search, State
+from hydrostat.ik.search.inverse_search import InverseSearch
+from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
+from hydrostat.ik.search.trust_region import EXCESS, StepRules, ends, try_step
 from hydrostat.ik.solve_ik import Targets, as_pose, wishes
 from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose
@@ -64,54 +66,46 @@ class Tracker:
         target = as_pose(targets)
         search = self._search(target, seconds, objectives)
         state = search.begin(self.pose) if self._state is None else search.renewed(self._state)
-        weight = search.weight(state)
-        reason = InverseReason.ITERATION_LIMIT
-        if _reached(search, state):
-            reason = InverseReason.REACHED
-        else:
-            shorter = min(self._radius / self._options.largest_step, 1.0)
-            least = self._options.progress * search.objective(state, weight) * shorter
-            for _ in range(_TRIES):
-                step = search.step(state, weight, self._radius)
-                if step.promise <= least and state.excess <= _EXCESS:
-                    reason = InverseReason.OPTIMAL
-                    self._radius = self._options.largest_step
-                    break
-                trial = search.follow(state, step.values)
-                if trial is not None and self._accepts(search, state, trial, weight):
-                    self._radius = min(2.0 * self._radius, self._options.largest_step)
-                    state = trial
-                    break
-                self._radius = max(0.25 * self._radius, _SMALLEST)
-            else:
-                reason = InverseReason.NO_EQUILIBRIUM
+        weight, reason = search.problem.weight(state), InverseReason.REACHED
+        if not _reached(search.problem, state):
+            state, reason = self._step(search, state, weight)
         self._state = state
-        if _reached(search, state):
+        if _reached(search.problem, state):
             reason = InverseReason.REACHED
-        elif state.excess > _FAR:
+        elif state.excess > _RULES.far:
             reason = InverseReason.TOO_TIGHT
         found = Descent(state=state, reason=reason, iterations=1, weight=weight)
-        reached = answer(search, found, target)
+        reached = reached_pose(search, found, target)
         self.pose = reached.pose
         return reached
 
-    @staticmethod
-    def _accepts(search: Search, state: State, trial: State, weight: float) -> bool:
-        """Whether a trial is better, or mends a tension that is too large."""
-        if state.excess > _EXCESS:
-            return trial.excess < state.excess
-        return trial.excess <= _FAR and search.objective(trial, weight) < search.objective(state, weight)
+    def _step(self, search: InverseSearch, state: InverseState, weight: float) -> tuple[InverseState, InverseReason]:
+        """The state after the first step that is accepted, and what to say of it."""
+        problem, largest = search.problem, self._options.largest_step
+        least = self._options.progress * problem.objective(state, weight)
+        first = self._radius
+        for _ in range(_TRIES):
+            step = problem.step(state, weight, self._radius)
+            if ends(problem, state, step, least, first):
+                self._radius = largest
+                return state, InverseReason.OPTIMAL
+            tried = try_step(problem, state, step, weight, search.follow, _RULES)
+            if tried.accepted and tried.trial is not None:
+                self._radius = min(2.0 * self._radius, largest)
+                return tried.trial, InverseReason.ITERATION_LIMIT
+            self._radius = max(0.25 * self._radius, _SMALLEST)
+        return state, InverseReason.NO_EQUILIBRIUM
 
-    def _search(self, target: Pose | None, seconds: float, objectives: Sequence[Objective]) -> Search:
+    def _search(self, target: Pose | None, seconds: float, objectives: Sequence[Objective]) -> InverseSearch:
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)
         allowed = allowed.near(allowed.channel(self.pose.contractions))
         terms = [wish.on(self._simulation) for wish in wishes(target, [*self._objectives, *objectives])]
-        return Search(self._simulation, terms, allowed, self._options, ready=True)
+        return InverseSearch(InverseProblem(self._simulation, terms, allowed, self._options, ready=True))
 
 
-def _reached(search: Search, state: State) -> bool:
-    return state.error <= search.reached and state.excess <= _EXCESS
+def _reached(problem: InverseProblem, state: InverseState) -> bool:
+    return state.error <= problem.reached and state.excess <= EXCESS
 
 
 _SMALLEST = 1e-4
@@ -120,8 +114,5 @@ _SMALLEST = 1e-4
 _TRIES = 3
 """Steps tried in one update before the robot stays where it is."""
 
-_EXCESS = 1e-6
-"""A tension may exceed its limit by this share."""
-
-_FAR = 1e-3
-"""On the way it may do so by this one, until the next update mends it."""
+_RULES = StepRules(mends=1.0, far=1e-3)
+"""When an update takes a step; what exceeds a limit, the next one mends."""

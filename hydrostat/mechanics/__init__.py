@@ -1,7 +1,7 @@
 """Physics on plain arrays: energies, their assembly, Newton. It knows no robot."""
 
 from hydrostat.mechanics.assembly import Assembly
-from hydrostat.mechanics.cable import CableEnergy
+from hydrostat.mechanics.cable import CableEnergy, CableSegments
 from hydrostat.mechanics.chain_law import ChainLaw
 from hydrostat.mechanics.energy import Energy, nearest_semidefinite
 from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
@@ -20,6 +20,7 @@ __all__ = [
     "Analysis",
     "Assembly",
     "CableEnergy",
+    "CableSegments",
     "ChainLaw",
     "Energy",
     "Factorisation",

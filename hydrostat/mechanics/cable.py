@@ -1,6 +1,7 @@
 """`CableEnergy`: all cables of a robot, taut or slack."""
 
 import math
+from dataclasses import dataclass
 from typing import no_type_check
 
 import numpy as np
@@ -11,6 +12,23 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.kernel import INNER, KERNEL
 from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CableSegments:
+    """Straight runs between the points of cables: d = sum of weights x nodes + offset.
+
+    Attributes:
+        stencils: nodes of each segment, (terms, corners).
+        weights: signed: those of its end less those of its start, (terms, corners).
+        offsets: what points fixed in the world add to each span [m], (terms, dim).
+        cables: which cable a segment belongs to, rising, (terms,).
+    """
+
+    stencils: Stencils
+    weights: Float[np.ndarray, "terms corners"]
+    offsets: Points
+    cables: Int[np.ndarray, " terms"]
 
 
 class CableEnergy(Energy):
@@ -28,11 +46,8 @@ class CableEnergy(Energy):
     def __init__(
         self,
         nodes: Nodes,
+        segments: CableSegments,
         *,
-        stencils: Stencils,
-        weights: Float[np.ndarray, "terms corners"],
-        offsets: Points,
-        cables: Int[np.ndarray, " terms"],
         law: TensionLaw,
         winches: Int[np.ndarray, " cables"],
         slack: Vector,
@@ -42,22 +57,20 @@ class CableEnergy(Energy):
 
         Args:
             nodes: rest positions [m].
-            stencils: nodes of each segment.
-            weights: signed: those of its end less those of its start.
-            offsets: what points fixed in the world add to each span [m].
-            cables: which cable a segment belongs to.
+            segments: those that are not sheathed.
             law: tension against elongation, of each cable.
             winches: whose contraction each cable follows.
             slack: of each cable, taken in before it begins to be taut [m].
             ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
         """
-        self.stencils = np.ascontiguousarray(stencils)
-        self.weights, self.offsets = np.ascontiguousarray(weights), np.ascontiguousarray(offsets)
-        self.cables, self.winches = cables, winches
-        self.controls = winches[cables]
+        self.stencils, self.weights, self.offsets = (
+            np.ascontiguousarray(part) for part in (segments.stencils, segments.weights, segments.offsets)
+        )
+        self.cables, self.winches = segments.cables, winches
+        self.controls = winches[self.cables]
         self.law, self.slack = law, slack
         self.ratios = np.ones(len(winches)) if ratios is None else ratios
-        self.roundings = np.zeros(len(cables))
+        self.roundings = np.zeros(len(self.cables))
         self.roundings = np.maximum(_ROUNDING * self._spans(nodes)[1], np.finfo(float).tiny ** 0.5)
         self.rest_lengths = self.lengths(nodes)
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics.cable import CableEnergy
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.mechanics.cable import CableEnergy, CableSegments
 from hydrostat.mechanics.chain_law import ChainLaw
-from hydrostat.mechanics.energy import Blocks, Compliance, Coupling, Energy, HessianBlocks, Small, Stencils
+from hydrostat.mechanics.energy import Blocks, Compliance, Coupling, Energy, HessianBlocks, Small
 from hydrostat.mechanics.tension_law import TensionLaw
 from hydrostat.mechanics.turns import Turns
 
@@ -34,11 +34,8 @@ class FrictionCableEnergy(Energy):
     def __init__(
         self,
         nodes: Nodes,
+        segments: CableSegments,
         *,
-        stencils: Stencils,
-        weights: Float[np.ndarray, "terms corners"],
-        offsets: Points,
-        cables: Int[np.ndarray, " terms"],
         law: TensionLaw,
         winches: Int[np.ndarray, " cables"],
         slack: Vector,
@@ -50,10 +47,7 @@ class FrictionCableEnergy(Energy):
 
         Args:
             nodes: rest positions [m].
-            stencils: nodes of each segment.
-            weights: signed: those of its end less those of its start.
-            offsets: what points fixed in the world add to each segment [m].
-            cables: which cable a segment belongs to, rising.
+            segments: those that are not sheathed.
             law: tension against elongation, of each cable.
             winches: whose contraction each cable follows.
             slack: of each cable, taken in before it begins to be taut [m]; at the winch.
@@ -61,16 +55,14 @@ class FrictionCableEnergy(Energy):
             turns: where they turn; their points are the segments after them.
             ratios: what each cable takes in when its winch takes in 1 m; 1 if left out.
         """
+        cables = segments.cables
         first = np.append(True, np.diff(cables) != 0)[: len(cables)]
         heads = first | (friction[cables] > 0)
         spans = np.cumsum(heads) - 1
         owners, firsts = cables[heads], first[heads]
         self._spans = CableEnergy(
             nodes,
-            stencils=stencils,
-            weights=weights,
-            offsets=offsets,
-            cables=spans,
+            replace(segments, cables=spans),
             law=law,
             winches=winches[owners],
             slack=np.where(firsts, slack[owners], 0.0),

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.mechanics import CableEnergy, FrictionCableEnergy, TensionLaw, Turns
+from hydrostat.mechanics import CableEnergy, CableSegments, FrictionCableEnergy, TensionLaw, Turns
 from hydrostat.robot import Robot
 from hydrostat.simulation.route_points import RoutePoints
 
@@ -29,10 +29,7 @@ def _bare_segments(robot: Robot, points: RoutePoints) -> dict[str, Any]:
     cables = robot.cables
     stencils, weights, offsets = points.segments(points.starts)
     return {
-        "stencils": stencils,
-        "weights": weights,
-        "offsets": offsets,
-        "cables": points.cables,
+        "segments": CableSegments(stencils=stencils, weights=weights, offsets=offsets, cables=points.cables),
         "law": TensionLaw(
             stiffness=np.array([cable.stiffness for cable in cables]),
             smoothing=np.array([cable.smoothing for cable in cables]),

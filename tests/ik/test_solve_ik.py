@@ -12,7 +12,8 @@ from hydrostat.errors import InputError
 from hydrostat.ik import InverseOptions, InverseReason, ReachedPose, solve_ik
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.search.search import Search
+from hydrostat.ik.search.inverse_search import InverseSearch
+from hydrostat.ik.search.problem import InverseProblem
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Marker, Pose, Robot, load_robot
 from hydrostat.simulation import Simulation
@@ -34,9 +35,9 @@ def targets(simulation: Simulation, contractions: list[float]) -> dict[str, tupl
     return {name: tuple(place.tolist()) for name, place in pose.markers.items()}
 
 
-def marker_search(simulation: Simulation, goals: dict[str, tuple[float, ...]]) -> Search:
+def marker_search(simulation: Simulation, goals: dict[str, tuple[float, ...]]) -> InverseSearch:
     terms = [MarkerGoal(targets=goals).on(simulation)]
-    return Search(simulation, terms, bounds(simulation, Limits()), InverseOptions())
+    return InverseSearch(InverseProblem(simulation, terms, bounds(simulation, Limits()), InverseOptions()))
 
 
 def size(simulation: Simulation) -> float:
@@ -82,10 +83,10 @@ def test_the_gradient_of_the_objective(contractions: list[float]) -> None:
     start = simulation.solve(given)
 
     def objective(contractions: np.ndarray) -> float:
-        return search.objective(search.begin(simulation.solve(contractions, start=start)), 0.0)
+        return search.problem.objective(search.begin(simulation.solve(contractions, start=start)), 0.0)
 
     here = search.begin(start)
-    gradient = search.slopes(here).T @ here.residual
+    gradient = search.problem.slopes(here).T @ here.residual
     found = [(objective(given + d) - objective(given - d)) / (2 * step) for d in step * np.eye(2)]
     assert gradient == pytest.approx(found, rel=1e-5, abs=1e-7 * np.abs(gradient).max())
 

@@ -9,8 +9,9 @@ from builders import strip_robot
 from hydrostat.ik import Effort, EffortKind, InverseOptions, Limits, MarkerGoal, solve_ik
 from hydrostat.ik.limits import bounds
 from hydrostat.ik.objectives.postures import moves_at, posture_at, posture_of
+from hydrostat.ik.search.inverse_search import InverseSearch
 from hydrostat.ik.search.linear_model import channels, slopes
-from hydrostat.ik.search.search import Search, _full_tension
+from hydrostat.ik.search.problem import InverseProblem, _full_tension
 from hydrostat.robot import Cable, Robot, Winch
 from hydrostat.simulation import Simulation
 from hydrostat.testing import check_objective
@@ -100,7 +101,8 @@ def test_a_shaft_that_hardly_pulls_is_let_go() -> None:
     simulation = Simulation(robot)
     pose = simulation.solve(np.array([0.01665, 0.028]))
     goal = MarkerGoal(targets={"tip": tuple(pose.markers["tip"])}).on(simulation)
-    search = Search(simulation, [goal], bounds(simulation, Limits()), InverseOptions(tolerance=1e-3))
+    options = InverseOptions(tolerance=1e-3)
+    search = InverseSearch(InverseProblem(simulation, [goal], bounds(simulation, Limits()), options))
     state = search.begin(pose)
     assert 0 < state.posture.tensions[0] < 1e-3 * state.posture.tensions[2]
     tidied = search.tidied(state)

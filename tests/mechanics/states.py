@@ -8,7 +8,16 @@ from builders import box_mesh, strip_mesh
 
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.mechanics import CableEnergy, Energy, FibreEnergy, NeoHookean, PinEnergy, TensionLaw, WeightEnergy
+from hydrostat.mechanics import (
+    CableEnergy,
+    CableSegments,
+    Energy,
+    FibreEnergy,
+    NeoHookean,
+    PinEnergy,
+    TensionLaw,
+    WeightEnergy,
+)
 
 SIZE = {2: (0.1, 0.05), 3: (0.1, 0.05, 0.05)}
 CONTROLS = 3
@@ -76,10 +85,12 @@ def cable(
     ends = np.add(bare, 1)
     energy = CableEnergy(
         mesh.nodes,
-        stencils=np.concatenate([anchors.stencils[bare], anchors.stencils[ends]], axis=1),
-        weights=np.concatenate([-weights[bare], weights[ends]], axis=1),
-        offsets=offsets[ends] - offsets[bare],
-        cables=np.zeros(len(bare), dtype=np.int64),
+        segments=CableSegments(
+            stencils=np.concatenate([anchors.stencils[bare], anchors.stencils[ends]], axis=1),
+            weights=np.concatenate([-weights[bare], weights[ends]], axis=1),
+            offsets=offsets[ends] - offsets[bare],
+            cables=np.zeros(len(bare), dtype=np.int64),
+        ),
         law=LAW,
         winches=np.array([1]),
         slack=np.array([0.002]),
@@ -96,10 +107,12 @@ def cables(dim: int, random: np.random.Generator) -> State:
     ends = [locate(mesh, random.uniform(0.1, 0.9, (len(owners), dim)) * SIZE[dim]) for _ in range(2)]
     law = TensionLaw(stiffness=np.array([4e3, 1e3, 2e3, 8e3]), smoothing=np.array([0.5e-3, 2e-3, 1e-3, 0.1e-3]))
     arguments = {
-        "stencils": np.concatenate([ends[0].stencils, ends[1].stencils], axis=1),
-        "weights": np.concatenate([-ends[0].weights, ends[1].weights], axis=1),
-        "offsets": np.zeros((len(owners), dim)),
-        "cables": owners,
+        "segments": CableSegments(
+            stencils=np.concatenate([ends[0].stencils, ends[1].stencils], axis=1),
+            weights=np.concatenate([-ends[0].weights, ends[1].weights], axis=1),
+            offsets=np.zeros((len(owners), dim)),
+            cables=owners,
+        ),
         "law": law,
         "winches": np.array([0, 2, 1, 1]),
         "ratios": np.array([0.7, 1.6, 1.0, 2.3]),

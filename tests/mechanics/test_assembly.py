@@ -23,10 +23,12 @@ def energies(dim: int, seed: int) -> tuple[Assembly, np.ndarray, np.ndarray]:
         parts.append(
             CableEnergy(
                 mesh.nodes,
-                stencils=stencils,
-                weights=random.dirichlet(np.ones(5), 2) - random.dirichlet(np.ones(5), 2),
-                offsets=np.zeros((2, dim)),
-                cables=np.array([0, 0]),
+                segments=CableSegments(
+                    stencils=stencils,
+                    weights=random.dirichlet(np.ones(5), 2) - random.dirichlet(np.ones(5), 2),
+                    offsets=np.zeros((2, dim)),
+                    cables=np.array([0, 0]),
+                ),
                 law=LAW,
                 winches=np.array([control]),
                 slack=np.zeros(1),

@@ -7,7 +7,7 @@ import pytest
 from states import SIZE, State, deform, rough_mesh
 
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import CableEnergy, ChainLaw, FrictionCableEnergy, TensionLaw, Turns
+from hydrostat.mechanics import CableEnergy, CableSegments, ChainLaw, FrictionCableEnergy, TensionLaw, Turns
 from hydrostat.testing import check_energy
 from hydrostat.testing.differences import central_differences
 
@@ -105,8 +105,10 @@ def rubbing(
     bare, before, after = [0, 1, 3], [0, 1, 2], [1, 2, 3]
     energy = FrictionCableEnergy(
         mesh.nodes,
-        **{name: np.concatenate([rough[bare], smooth]) for name, (rough, smooth) in parts.items()},
-        cables=np.repeat([0, 1], [3, 4]),
+        segments=CableSegments(
+            **{name: np.concatenate([rough[bare], smooth]) for name, (rough, smooth) in parts.items()},
+            cables=np.repeat([0, 1], [3, 4]),
+        ),
         law=LAW,
         winches=np.array([1, 0]),
         slack=np.array([0.002, 0.001]),
@@ -158,10 +160,9 @@ def test_without_limits_it_is_a_cable_without_friction(dim: int) -> None:
     spans = energy._spans
     plain = CableEnergy(
         rough_mesh(dim, np.random.default_rng(dim)).nodes,
-        stencils=energy.stencils,
-        weights=spans.weights,
-        offsets=spans.offsets,
-        cables=np.repeat([0, 1], [3, 4]),
+        segments=CableSegments(
+            stencils=energy.stencils, weights=spans.weights, offsets=spans.offsets, cables=np.repeat([0, 1], [3, 4])
+        ),
         law=LAW,
         winches=np.array([1, 0]),
         slack=np.array([0.002, 0.001]),
@@ -209,10 +210,9 @@ def arc() -> tuple[FrictionCableEnergy, np.ndarray]:
     pairs = [np.stack([part[:-1], part[1:]]) for part in (stencils, weights, offsets)]
     energy = FrictionCableEnergy(
         nodes,
-        stencils=stencils,
-        weights=weights,
-        offsets=offsets,
-        cables=np.zeros(SEGMENTS, dtype=np.int64),
+        segments=CableSegments(
+            stencils=stencils, weights=weights, offsets=offsets, cables=np.zeros(SEGMENTS, dtype=np.int64)
+        ),
         law=TensionLaw(stiffness=np.array([4e3]), smoothing=np.array([0.1e-3])),
         winches=np.array([0]),
         slack=np.zeros(1),

@@ -10,6 +10,7 @@ from builders import strip_mesh
 from hydrostat.mechanics import (
     Assembly,
     CableEnergy,
+    CableSegments,
     NeoHookean,
     NewtonOptions,
     NewtonResult,
@@ -54,10 +55,12 @@ def strip(pin: type[PinEnergy] = PinEnergy) -> Assembly:
             ),
             CableEnergy(
                 MESH.nodes,
-                stencils=np.column_stack([upper[:-1], upper[1:]]),
-                weights=np.tile([-1.0, 1.0], (len(upper) - 1, 1)),
-                offsets=np.zeros((len(upper) - 1, 2)),
-                cables=np.zeros(len(upper) - 1, dtype=np.int64),
+                CableSegments(
+                    stencils=np.column_stack([upper[:-1], upper[1:]]),
+                    weights=np.tile([-1.0, 1.0], (len(upper) - 1, 1)),
+                    offsets=np.zeros((len(upper) - 1, 2)),
+                    cables=np.zeros(len(upper) - 1, dtype=np.int64),
+                ),
                 law=TensionLaw(stiffness=np.array([4e3]), smoothing=np.array([0.5e-3])),
                 winches=np.array([0]),
                 slack=np.zeros(1),

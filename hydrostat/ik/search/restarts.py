@@ -6,12 +6,13 @@ from itertools import count
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.search.search import Search, State
+from hydrostat.ik.search.inverse_search import InverseSearch
+from hydrostat.ik.search.problem import InverseState
 
 SEED = 0
 
 
-def restarts(search: Search, best: Callable[[], State]) -> Iterator[State]:
+def restarts(search: InverseSearch, best: Callable[[], InverseState]) -> Iterator[InverseState]:
     """States to begin from: each the pose that leads at once from rest to other contractions.
 
     A body with several poses at the same contractions ends on the branch that its way leads to (E20), and the errors of
@@ -39,9 +40,9 @@ def restarts(search: Search, best: Callable[[], State]) -> Iterator[State]:
             return
 
 
-def _contractions(search: Search, state: State, number: int, draw: np.random.Generator) -> Vector:
+def _contractions(search: InverseSearch, state: InverseState, number: int, draw: np.random.Generator) -> Vector:
     """In turn: one concerned channel alone, some near the best, some anywhere."""
-    bounds = search.bounds
+    bounds = search.problem.bounds
     moved = np.flatnonzero(_concerned(search, state))
     kind, turn = number % 3, number // 3
     values = state.values.copy()
@@ -57,15 +58,15 @@ def _contractions(search: Search, state: State, number: int, draw: np.random.Gen
     return np.clip(values, bounds.low, bounds.high)
 
 
-def _concerned(search: Search, state: State) -> np.ndarray:
+def _concerned(search: InverseSearch, state: InverseState) -> np.ndarray:
     """Which channels act mostly on what is missed."""
-    slopes = search.slopes(state) ** 2
+    slopes = search.problem.slopes(state) ** 2
     missed = state.residual**2 / max(float(np.max(state.residual**2, initial=0.0)), np.finfo(float).tiny)
     share = (missed @ slopes) / np.maximum(slopes.sum(axis=0), np.finfo(float).tiny)
     return share >= _CONCERNED * share.max(initial=0.0)
 
 
-def _same(first: State, second: State) -> bool:
+def _same(first: InverseState, second: InverseState) -> bool:
     nodes = second.result.nodes
     return bool(np.abs(first.result.nodes - nodes).max() < _APART * np.ptp(nodes, axis=0).max())
 

@@ -12,7 +12,7 @@ from hydrostat.ik.limits import Limits
 from hydrostat.ik.objectives.effort import Effort, EffortKind
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search.search import InverseOptions
+from hydrostat.ik.search.problem import InverseOptions
 from hydrostat.ik.solve_ik import Targets, as_pose, solve_ik
 from hydrostat.ik.trajectory.poses import follow
 from hydrostat.robot import Pose

@@ -10,7 +10,7 @@ from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
-from hydrostat.ik.search.search import InverseOptions
+from hydrostat.ik.search.problem import InverseOptions
 from hydrostat.ik.trajectory.course import Course
 from hydrostat.ik.trajectory.given import check_given, check_robot
 from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes

@@ -1,17 +1,17 @@
-"""`answer`: what a search found, in the words of its user."""
+"""`reached_pose`: what a search found, in the words of its user."""
 
 import numpy as np
 
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.descend import Descent
-from hydrostat.ik.search.search import Search
+from hydrostat.ik.search.inverse_search import InverseSearch
 from hydrostat.robot import Pose
 
 
-def answer(search: Search, found: Descent, target: Pose | None) -> ReachedPose:
-    """What was found, with how near it is to an optimum and the limits that hold."""
-    state = found.state
-    pose = search.simulation.posed(search.bounds.spread @ state.values, state.result)
+def reached_pose(search: InverseSearch, found: Descent, target: Pose | None) -> ReachedPose:
+    """Pose that was found, with how near it is to an optimum and the limits that hold."""
+    state, problem = found.state, search.problem
+    pose = problem.simulation.posed(problem.bounds.spread @ state.values, state.result)
     return ReachedPose(
         target=target,
         pose=pose,
@@ -19,14 +19,14 @@ def answer(search: Search, found: Descent, target: Pose | None) -> ReachedPose:
         reason=found.reason,
         iterations=found.iterations,
         solves=search.solves,
-        optimality=search.slope(state, found.weight),
-        held=() if found.reason is InverseReason.REACHED else held(search, found),
+        optimality=problem.slope(state, found.weight),
+        held=() if found.reason is InverseReason.REACHED else limits_that_hold(search, found),
     )
 
 
-def held(search: Search, found: Descent) -> tuple[str, ...]:
-    """The limits that hold, in words: winches at their ends, cables at their largest tension."""
-    state, bounds, robot = found.state, search.bounds, search.simulation.robot
+def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
+    """Limits that hold, in words: winches at their ends, cables at their largest tension."""
+    state, bounds, robot = found.state, search.problem.bounds, search.problem.simulation.robot
     words = []
     hair = _HAIR * bounds.span
     for channel, value in enumerate(state.values):

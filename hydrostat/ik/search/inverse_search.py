@@ -1,0 +1,148 @@
+"""`InverseSearch`: from state to state of an inverse problem, with equilibria only as sharp as they must be."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import NotConvergedError
+from hydrostat.ik.search.linear_model import channels
+from hydrostat.ik.search.problem import InverseProblem, InverseState
+from hydrostat.mechanics import NewtonResult
+from hydrostat.simulation import SolvedPose
+
+
+class InverseSearch:
+    """Equilibria on the way to the solution of a problem.
+
+    Attributes:
+        problem: what is sought.
+        solves: equilibria approached so far.
+    """
+
+    def __init__(self, problem: InverseProblem) -> None:
+        """Nothing has been solved yet."""
+        self.problem, self.solves = problem, 0
+
+    def begin(self, start: SolvedPose | None) -> InverseState:
+        """The state of a pose, of rest if it is left out, within the limits.
+
+        Raises:
+            NotConvergedError: no equilibrium is found there.
+        """
+        pose = start or self.problem.simulation.rest
+        self.problem.simulation.check_start(pose)
+        values = self.problem.bounds.channel(pose.contractions)
+        given = self._result(pose)
+        if (self.problem.bounds.spread @ values == pose.contractions).all() and given.stable:
+            found = self.problem.state(values, given)
+            if found.sharp:
+                return self.problem.idle(found)
+        found = self._relaxed(values, given)
+        if found is not None:
+            return found
+        solved = self.problem.simulation.solve(self.problem.bounds.spread @ values, start=pose, strict=False)
+        if not _sound(solved.result):
+            raise NotConvergedError(
+                f"inverse kinematics finds no stable equilibrium to begin from: {solved.result.reason}; give a start",
+                solved.result,
+            )
+        return self.problem.state(values, self._result(solved))
+
+    def jump(self, values: Vector) -> InverseState | None:
+        """The state to which contractions of the channels [m] lead at once from rest; None if that is none."""
+        self.solves += 1
+        return self._relaxed(values, self._result(self.problem.simulation.rest))
+
+    def approach(self, state: InverseState, values: Vector) -> InverseState | None:
+        """The state at other contractions, near enough to equilibrium to go on; None if no stable one is found."""
+        self.solves += 1
+        contractions = self.problem.bounds.spread @ values
+        result = state.result
+        far = (np.abs(values - state.values) > _FAR * self.problem.bounds.span).any()
+        for _ in range(_RELAXATIONS):
+            before = result.nodes
+            iterations, tolerance = (_ITERATIONS, _LOOSE) if far else (1, None)
+            result = self.problem.simulation.relax(
+                before, contractions, result.stiffness, iterations=iterations, tolerance=tolerance
+            )
+            if not result.stable:
+                return None if far else self._relaxed(values, state.result)
+            found = self.problem.state(values, result)
+            left = np.abs(found.posture.nodes - result.nodes).max()
+            if found.sharp or left <= _LEFT * np.abs(result.nodes - before).max():
+                return self.problem.idle(found)
+            far = False
+        return self._relaxed(values, state.result)
+
+    def follow(self, state: InverseState, values: Vector) -> InverseState | None:
+        """The state at other contractions, at equilibrium; None if Newton alone does not find it."""
+        self.solves += 1
+        return self._relaxed(values, state.result)
+
+    def renewed(self, state: InverseState) -> InverseState:
+        """A state of another search of the same robot, in the eyes of this one."""
+        return self.problem.idle(self.problem.state(state.values, state.result))
+
+    def sharpened(self, state: InverseState) -> InverseState | None:
+        """The same contractions at equilibrium."""
+        if state.sharp:
+            return state
+        self.solves += 1
+        contractions = self.problem.bounds.spread @ state.values
+        result = self.problem.simulation.relax(state.result.nodes, contractions, state.result.stiffness, exact=True)
+        return self.problem.state(state.values, result) if _sound(result) else None
+
+    def tidied(self, state: InverseState) -> InverseState:
+        """The state with channels that hardly pull let go, if the goals stay reached."""
+        cables, posture = self.problem.simulation.cables, state.posture
+        places = channels(cables, posture, state.values, self.problem.bounds)
+        pulls = posture.tensions[places.first]
+        hardly = (places.gaps == 0) & (pulls < _HARDLY * posture.tensions.max(initial=0.0))
+        if not hardly.any():
+            return state
+        pulled = (posture.elongations / cables.ratios)[places.first]
+        values = state.values - np.where(hardly, pulled + places.beyond, 0.0)
+        found = self.follow(state, np.maximum(values, self.problem.bounds.low))
+        if found is not None and found.error > self.problem.reached:
+            step = self.problem.step(found, self.problem.weight(found), self.problem.options.largest_step)
+            found = self.follow(found, step.values)
+        kept = found is not None and found.error <= self.problem.reached and found.excess <= state.excess
+        return found if found is not None and kept else state
+
+    def _result(self, pose: SolvedPose) -> NewtonResult:
+        """What this simulation makes of a pose: another one may have found it."""
+        stiffness = self.problem.simulation.stiffness(pose)
+        residual = float(np.abs(self.problem.simulation.forces(pose.nodes, pose.contractions)).max())
+        return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
+
+    def _relaxed(self, values: Vector, start: NewtonResult) -> InverseState | None:
+        """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
+        result = self.problem.simulation.relax(
+            start.nodes, self.problem.bounds.spread @ values, start.stiffness, iterations=_ITERATIONS
+        )
+        return self.problem.idle(self.problem.state(values, result)) if _sound(result) else None
+
+
+_RELAXATIONS = 6
+"""Steps of Newton towards an equilibrium before stronger means are used."""
+
+_ITERATIONS = 30
+"""Steps of Newton before an equilibrium is given up."""
+
+_FAR = 0.02
+"""A step of more than this share of a channel's range is far: it takes more than one step of Newton."""
+
+_LOOSE = 0.1
+"""Force left over after these, as a share of the largest tension."""
+
+_LEFT = 0.2
+"""An equilibrium is near enough when what is left is this share of the last step of Newton."""
+
+_HARDLY = 1e-3
+"""A channel whose tautest cable pulls less than this share of the largest tension may as well be slack."""
+
+
+def _sound(result: NewtonResult) -> bool:
+    """Whether it is a stable equilibrium."""
+    return result.converged and result.stable

@@ -1,0 +1,261 @@
+"""`InverseProblem`: what inverse kinematics sees of a state, and the step that its linear model promises."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
+from hydrostat.ik.limits import Bounds
+from hydrostat.ik.objectives.objective import Moves, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.postures import follows, posture_of
+from hydrostat.ik.search.least_squares import least_squares
+from hydrostat.ik.search.linear_model import LinearModel, channels, slopes
+from hydrostat.mechanics import NewtonResult
+from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True)
+class InverseOptions:
+    """How inverse kinematics searches (M7).
+
+    Attributes:
+        effort: marker error, as a fraction of the body's size, that the tension at full travel of a winch is worth: a
+            small regulariser against cables that pull in vain (E18). It falls with the error, so it hides no target.
+        tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
+        progress: the search ends where the linearised problem promises to lower the objective by less than this
+            fraction.
+        iterations: most steps from one beginning.
+        largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
+        unique: where the goals leave a choice, take the contractions that pull least, whatever the start.
+        restarts: how often to begin elsewhere while a goal is not reached; none where time matters more.
+    """
+
+    effort: float = 1e-3
+    tolerance: float = 1e-6
+    progress: float = 1e-10
+    iterations: int = 100
+    largest_step: float = 0.3
+    unique: bool = True
+    restarts: int = 3
+
+    def __post_init__(self) -> None:
+        for name, least in (("effort", 0.0), ("tolerance", 0.0), ("progress", 0.0), ("iterations", 0), ("restarts", 0)):
+            value = getattr(self, name)
+            whole = name in ("iterations", "restarts")
+            if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)) or not value >= least:
+                kind = "a whole number" if whole else "a number"
+                raise InputError(f"{name} of inverse kinematics must be {kind} of {least:g} or more, not {value!r}")
+        step = self.largest_step
+        if isinstance(step, bool) or not isinstance(step, (int, float)) or not 0 < step <= 1:
+            raise InputError(f"largest_step of inverse kinematics must be a share above 0, at most 1, not {step!r}")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class InverseState:
+    """Where a search is.
+
+    Attributes:
+        values: contraction of each channel [m].
+        result: nodes near equilibrium, and the Hessian there.
+        posture: where these nodes come to rest, to first order where they do not rest yet.
+        residual: of all terms there [m].
+        errors: what is left of each goal [m].
+        excess: by how much the largest tension exceeds its limit, as a share of it.
+        sharp: whether the nodes rest.
+    """
+
+    values: Vector
+    result: NewtonResult
+    posture: Posture
+    residual: Rows
+    errors: Mapping[str, float]
+    excess: float
+    sharp: bool
+
+    @property
+    def error(self) -> float:
+        """The largest error that is left of a goal [m]; infinite without goals."""
+        return max(self.errors.values(), default=np.inf)
+
+
+class ModelStep(NamedTuple):
+    """Where a step leads, by how much it should lower the objective [m^2], and the model that says so."""
+
+    values: Vector
+    promise: float
+    model: LinearModel
+
+
+class InverseProblem:
+    """One problem of inverse kinematics: a robot, terms, limits. States are seen, linearised and judged here.
+
+    Attributes:
+        reached: error [m] at which a goal counts as reached.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        terms: Sequence[Term],
+        bounds: Bounds,
+        options: InverseOptions,
+        *,
+        ready: bool = False,
+    ) -> None:
+        """What is sought.
+
+        Args:
+            simulation: the robot's physics.
+            terms: what should become small.
+            bounds: what the channels may do.
+            options: tolerances and limits of the search.
+            ready: keep slack cables just short of taut, so that they can join at once.
+
+        Raises:
+            InputError: a robot without cables, or one whose cables have friction.
+        """
+        robot = simulation.robot
+        if not robot.cables:
+            raise InputError(
+                "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
+            )
+        if simulation.friction is not None:
+            raise InputError(
+                "cables with friction end in another pose for every way there, so no contractions belong to a pose; "
+                "set friction = 0 to find some, then simulate them with friction"
+            )
+        self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
+        size = robot.body.mesh.size
+        self.reached = options.tolerance * size
+        self._worth = np.full(len(robot.cables), size / _full_tension(simulation))
+        self._size = size
+        self._ready = ready
+
+    def state(self, values: Vector, result: NewtonResult) -> InverseState:
+        """State of nodes near equilibrium: what the terms see where these come to rest, to first order."""
+        contractions = self.bounds.spread @ values
+        sharp = result.residual <= self.simulation.allowed(result.nodes, contractions)
+        nodes = result.nodes if sharp else self._resting(result, contractions)
+        posture = posture_of(self.simulation, nodes, contractions)
+        errors: dict[str, float] = {}
+        for term in self.terms:
+            errors.update(term.errors(posture))
+        limited = np.isfinite(self.bounds.tension)
+        excess = posture.tensions[limited] / self.bounds.tension[limited] - 1.0
+        return InverseState(
+            values=values,
+            result=result,
+            posture=posture,
+            residual=np.concatenate([np.zeros(0), *(term.residual(posture) for term in self.terms)]),
+            errors=errors,
+            excess=max(float(excess.max(initial=0.0)), 0.0),
+            sharp=sharp,
+        )
+
+    def idle(self, state: InverseState) -> InverseState:
+        """State whose slack channels went where terms want them, or else towards rest or taut; no node moves."""
+        gaps = channels(self.simulation.cables, state.posture, state.values, self.bounds).gaps
+        slack = (gaps > 0) & np.isfinite(gaps)
+        if not slack.any():
+            return state
+        edge = state.values + np.where(slack, gaps, 0.0)
+        wanted = np.clip(edge if self._ready else np.minimum(edge, 0.0), self.bounds.low, self.bounds.high)
+        values = np.where(slack, np.minimum(wanted, edge), state.values)
+        direct = self._direct(state.posture)[:, slack] * self.bounds.span[slack]
+        if direct.any():
+            matrix = np.vstack([direct, _LEAST_WEIGHT * np.eye(direct.shape[1])])
+            right = np.concatenate([-state.residual, np.zeros(direct.shape[1])])
+            up = (np.minimum(edge, self.bounds.high) - state.values)[slack] / self.bounds.span[slack]
+            down = (state.values - self.bounds.low)[slack] / self.bounds.span[slack]
+            eye = np.eye(direct.shape[1])
+            step = least_squares(matrix, right, np.vstack([eye, -eye]), np.concatenate([up, down]))
+            if step is not None:
+                values[slack] = state.values[slack] + self.bounds.span[slack] * np.clip(step, -down, up)
+        return state if (values == state.values).all() else self.state(values, state.result)
+
+    def step(self, state: InverseState, weight: float, radius: float, curvature: np.ndarray | None = None) -> ModelStep:
+        """Where to go from a state: contractions of the channels [m], and what that promises."""
+        model = self._model(state)
+        step, promise = model.best(weight * self._worth, radius, curvature)
+        return ModelStep(model.applied(step), promise, model)
+
+    def slope(self, state: InverseState, weight: float) -> float:
+        """The steepest fall of the residual's length along a channel that may go that way [m/m]."""
+        return self._model(state).slope(weight * self._worth)
+
+    def redundant(self, state: InverseState) -> bool:
+        """Whether some change of the contractions moves nothing that counts."""
+        model = self._model(state)
+        moves = (model.matrix * model.range)[:, model.active]
+        if not moves.size:
+            return False
+        values = np.linalg.svd(moves, compute_uv=False)
+        return moves.shape[0] < moves.shape[1] or bool(values[-1] < _IDLE * values[0])
+
+    def slopes(self, state: InverseState) -> Slopes:
+        """D residual / d contractions of the channels; slack ones as if they had just become taut."""
+        return self._model(state).matrix
+
+    def objective(self, state: InverseState, weight: float) -> float:
+        """Half the squares of residual and effort [m^2]."""
+        effort = weight * self._worth * state.posture.tensions
+        return 0.5 * float(state.residual @ state.residual + effort @ effort)
+
+    def weight(self, state: InverseState) -> float:
+        """Of the effort: a share of the error, for then it fades as fast as the search converges."""
+        error = float(np.sqrt(state.residual @ state.residual)) / self._size
+        return max(min(self.options.effort, _SHARE * error), _LEAST_WEIGHT)
+
+    def _model(self, state: InverseState) -> LinearModel:
+        assert state.result.stiffness is not None
+        places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
+        moves = slopes(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
+        matrix = self._rows(state.posture, moves)
+        loose = places.gaps > _EDGE * self.bounds.span
+        if loose.any():  # a slack channel that follows a step stays where it is
+            matrix[:, loose] -= self._direct(state.posture)[:, loose]
+        tensions = moves.tensions @ self.bounds.spread
+        return LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
+
+    def _rows(self, posture: Posture, moves: Moves) -> Slopes:
+        rows = [np.zeros((0, len(self.bounds.channels))), *(term.slopes(posture, moves) for term in self.terms)]
+        return np.vstack(rows) @ self.bounds.spread
+
+    def _direct(self, posture: Posture) -> Slopes:
+        """Slopes of terms that look at contractions or slack, while no cable pulls more."""
+        own = follows(self.simulation)
+        still = Moves(
+            nodes=np.zeros((*posture.nodes.shape, own.shape[1])), elongations=own, tensions=np.zeros_like(own)
+        )
+        return self._rows(posture, still)
+
+    def _resting(self, result: NewtonResult, contractions: Vector) -> Nodes:
+        """Where the nodes would come to rest, were the forces linear."""
+        if result.stiffness is None or result.stiffness.singular:
+            return result.nodes
+        gradient = self.simulation.forces(result.nodes, contractions)
+        return result.nodes - result.stiffness.solve(gradient).reshape(result.nodes.shape)
+
+
+_EDGE = 1e-9
+"""A channel this near to taut, in shares of its range, is at the edge of it."""
+
+_IDLE = 1e-3
+"""A change that moves less than this share of what the best one moves counts as none."""
+
+_SHARE = 0.1
+"""Weight of the effort, as a share of the error in sizes of the body."""
+
+_LEAST_WEIGHT = 1e-8
+"""Of the effort; enough to keep the linearised problem well posed."""
+
+
+def _full_tension(simulation: Simulation) -> float:
+    """What the hardest cable would pull at the full travel of its winch, were the body linear [N]."""
+    robot, cables = simulation.robot, simulation.cables
+    travel = cables.taken(np.array([winch.travel for winch in robot.winches]))
+    compliance = simulation.stiffness(simulation.rest).compliance.diagonal()
+    return float((travel / (1.0 / cables.law.stiffness + compliance)).max())
