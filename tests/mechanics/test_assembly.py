@@ -5,7 +5,15 @@ import pytest
 from states import CONTROLS, LAW, deform, rough_mesh
 
 from hydrostat.geometry.anchors import locate
-from hydrostat.mechanics import Assembly, CableEnergy, CableSegments, NeoHookean, PinEnergy, WeightEnergy, nearest_semidefinite
+from hydrostat.mechanics import (
+    Assembly,
+    CableEnergy,
+    CableSegments,
+    NeoHookean,
+    PinEnergy,
+    WeightEnergy,
+    nearest_semidefinite,
+)
 
 
 def energies(dim: int, seed: int) -> tuple[Assembly, np.ndarray, np.ndarray]:
