@@ -11,7 +11,7 @@ import pytest
 from builders import strip_robot
 
 import hydrostat as hs
-from hydrostat.cli.pose import _warn
+from hydrostat.cli.pose import _note_other_pose
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.plot.skin import FlatSkin
 
@@ -103,8 +103,8 @@ def test_a_pose_on_another_branch_is_told(capsys: pytest.CaptureFixture[str]) ->
     """A pose that is not the one to which its contractions lead from rest; and one that is."""
     simulation = hs.Simulation(strip_robot())
     reached = hs.solve_ik(simulation, {"tip": (0.18, 0.05)})
-    _warn(simulation, reached)
+    _note_other_pose(simulation, reached)
     assert capsys.readouterr().out == ""
     elsewhere = replace(reached.pose, nodes=reached.pose.nodes + np.array([0.0, 0.003]))
-    _warn(simulation, replace(reached, pose=elsewhere))
+    _note_other_pose(simulation, replace(reached, pose=elsewhere))
     assert "another pose, up to 3.0 mm away" in capsys.readouterr().out
