@@ -17,7 +17,7 @@ from hydrostat.fabrication.moulds.mould import Mould, make_mould
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Panel, PatternPart, Polyline, Shape
+from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Shape
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.printed import Printed
@@ -30,6 +30,7 @@ __all__ = [
     "Demand",
     "Kit",
     "KitOptions",
+    "LaserLine",
     "Layer",
     "Method",
     "Motor",
@@ -42,7 +43,6 @@ __all__ = [
     "Pattern",
     "PatternOptions",
     "PatternPart",
-    "Polyline",
     "Printed",
     "Shape",
     "UnbuildableError",

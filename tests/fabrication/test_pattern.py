@@ -6,7 +6,7 @@ import shapely
 from plush_robots import HOLED, SQUARE, crossed, disc_path, drawn_body, plush_robot
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Circle, Corner, Layer, Panel, PatternOptions, PatternPart, Polyline, plush_pattern
+from hydrostat.fabrication import Circle, Corner, LaserLine, Layer, Panel, PatternOptions, PatternPart, plush_pattern
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import MATERIALS, Body, Cable, Mount, Pin, Robot, Source
 
@@ -15,7 +15,7 @@ def drawn(panel: Panel, part: PatternPart) -> list:
     return [shape for shape in panel.shapes if shape.part is part]
 
 
-def area(line: Polyline) -> float:
+def area(line: LaserLine) -> float:
     return shapely.Polygon(line.points).area
 
 

@@ -15,7 +15,7 @@ from hydrostat.fabrication.patches.skin_holes import SHARED, SkinHole
 from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.marks import dashed
 from hydrostat.fabrication.patterns.opening import Opening
-from hydrostat.fabrication.patterns.shape import Circle, Layer, Panel, PatternPart, Place, Polyline, Shape, trace
+from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Place, Shape, trace
 from hydrostat.fabrication.patterns.skin import Skin, skin_of
 from hydrostat.fabrication.patterns.stitches import Side
 
@@ -89,7 +89,7 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
     if not hole.in_seam:
         return (Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, centre=place, radius=options.pinhole / 2),)
     return tuple(
-        Polyline(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
+        LaserLine(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
         for dx, dy in ((_CROSS, _CROSS), (_CROSS, -_CROSS))
     )
 

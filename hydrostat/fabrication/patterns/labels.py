@@ -11,7 +11,7 @@ from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.marks import place
 from hydrostat.fabrication.patterns.opening import Opening
-from hydrostat.fabrication.patterns.shape import Layer, PatternPart, Place, Polyline, Shape
+from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place, Shape
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.robot import Robot
 
@@ -80,7 +80,7 @@ class FreeSpace:
         self._taken.extend(box)
         self._texts.extend(box)
 
-    def take_line(self, line: Polyline) -> None:
+    def take_line(self, line: LaserLine) -> None:
         """Keep what is placed later off a line to a label."""
         self._taken.append(line.geometry)
 
@@ -286,15 +286,15 @@ def _to_label(at: Place, middle: Place, lettering: Lettering) -> np.ndarray:
     return np.sign(offset) * np.maximum(np.abs(offset) - half, 0.0)
 
 
-def _leader(at: Place, way: np.ndarray, gap: float) -> Polyline:
+def _leader(at: Place, way: np.ndarray, gap: float) -> LaserLine:
     """A thin line from a place, a gap off, almost to its label."""
     length = np.linalg.norm(way)
     ends = [np.add(at, way * (distance / length)) for distance in (gap - 1.5, length - 1.0)]
     points = tuple((float(x), float(y)) for x, y in ends)
-    return Polyline(layer=Layer.MARK, part=PatternPart.LEADER, points=points)
+    return LaserLine(layer=Layer.MARK, part=PatternPart.LEADER, points=points)
 
 
-def _arrow(middle: Place, length: float) -> tuple[Polyline, ...]:
+def _arrow(middle: Place, length: float) -> tuple[LaserLine, ...]:
     """A line with a head at both ends."""
     x, y = middle
     low, high = y - length / 2, y + length / 2
@@ -303,4 +303,4 @@ def _arrow(middle: Place, length: float) -> tuple[Polyline, ...]:
         ((x - 2, high - 4), (x, high), (x + 2, high - 4)),
         ((x - 2, low + 4), (x, low), (x + 2, low + 4)),
     )
-    return tuple(Polyline(layer=Layer.MARK, part=PatternPart.GRAIN, points=points) for points in strokes)
+    return tuple(LaserLine(layer=Layer.MARK, part=PatternPart.GRAIN, points=points) for points in strokes)

@@ -4,7 +4,7 @@ import unicodedata
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from hydrostat.fabrication.patterns.shape import Layer, PatternPart, Place, Polyline
+from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place
 
 _SPACE = 3.0
 _BETWEEN = 2.0
@@ -27,11 +27,11 @@ class Lettering:
         """Width from the first stroke to the last [mm]."""
         return self._scale * max((x for stroke in self._strokes for x, _ in stroke), default=0.0)
 
-    def lines(self, middle: Place) -> tuple[Polyline, ...]:
+    def lines(self, middle: Place) -> tuple[LaserLine, ...]:
         """The strokes, with the text's middle at a place [mm]."""
         left, bottom = middle[0] - self.width / 2, middle[1] - self.height / 2
         return tuple(
-            Polyline(
+            LaserLine(
                 layer=Layer.MARK,
                 part=PatternPart.TEXT,
                 points=tuple((left + self._scale * x, bottom + self._scale * y) for x, y in stroke),

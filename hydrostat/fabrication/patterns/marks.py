@@ -9,7 +9,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import substring
 
 from hydrostat.fabrication.patterns.pinholes import Pinhole
-from hydrostat.fabrication.patterns.shape import Circle, Layer, PatternPart, Place, Polyline, Shape, trace
+from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, PatternPart, Place, Shape, trace
 from hydrostat.fabrication.patterns.skin import Notch, Skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, runs_of
 from hydrostat.robot import Robot
@@ -82,7 +82,7 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
         x, y = place(marker.at)
         for dx, dy in ((2.0, 0.0), (0.0, 2.0)):
             marks.append(
-                Polyline(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
+                LaserLine(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
             )
     return tuple(marks)
 

@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import Pinhole
-from hydrostat.fabrication.patterns.shape import Layer, PatternPart, Place, Polyline, Shape, trace
+from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place, Shape, trace
 from hydrostat.robot import Robot
 
 ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
@@ -39,7 +39,7 @@ class Opening:
     zipper: int
 
     @property
-    def mark(self) -> Polyline:
+    def mark(self) -> LaserLine:
         """The slit for the laser."""
         return trace(self.slit, Layer.CUT, PatternPart.OPENING)[0]
 

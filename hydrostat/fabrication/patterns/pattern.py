@@ -10,7 +10,7 @@ from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, seam_marks, winch_marks
 from hydrostat.fabrication.patterns.opening import Opening, find_opening
 from hydrostat.fabrication.patterns.pinholes import find_pinholes, pinhole_problems
-from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart, Place, Polyline, Shape, trace
+from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, PatternPart, Place, Shape, trace
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
 from hydrostat.fabrication.patterns.skin import Notch, Skin, find_notches, flat_skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, cable_stitches
@@ -170,7 +170,7 @@ _GAP = 10.0
 
 def cut_sheet(name: str, rings: Iterable[tuple[Place, ...]]) -> Pattern:
     """A plate with its holes [mm], above the bar of 100 mm."""
-    lines = tuple(Polyline(layer=Layer.CUT, part=PatternPart.EDGE, points=ring, closed=True) for ring in rings)
+    lines = tuple(LaserLine(layer=Layer.CUT, part=PatternPart.EDGE, points=ring, closed=True) for ring in rings)
     sheet = lay_out((Panel(name="plate", origin=(0.0, 0.0), mirrored=False, shapes=lines),), (), _GAP)
     ruler = tuple(line for line in sheet.ruler if line.part is PatternPart.RULER)
     return Pattern(name=name, panels=sheet.panels, shapes=ruler, width=sheet.width, height=sheet.height)

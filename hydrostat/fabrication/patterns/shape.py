@@ -1,4 +1,4 @@
-"""`Polyline` and `Circle`: what a laser follows, each on a `Layer`; `Panel`: a piece of cloth with its shapes."""
+"""`LaserLine` and `Circle`: what a laser follows, each on a `Layer`; `Panel`: a piece of cloth with its shapes."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -44,7 +44,7 @@ class PatternPart(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Polyline:
+class LaserLine:
     """A polyline.
 
     Attributes:
@@ -103,23 +103,23 @@ class Circle:
         return shapely.Point(self.centre).buffer(self.radius).exterior
 
 
-Shape = Polyline | Circle
+Shape = LaserLine | Circle
 """Anything on a sheet."""
 
 
-def trace(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> tuple[Polyline, ...]:
+def trace(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> tuple[LaserLine, ...]:
     """The lines of a geometry [mm]: rings of polygons closed, lines open, points left out."""
     return tuple(_lines(geometry, layer, part))
 
 
-def _lines(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> Iterable[Polyline]:
+def _lines(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> Iterable[LaserLine]:
     if isinstance(geometry, shapely.Polygon):
         for ring in (geometry.exterior, *geometry.interiors):
             yield from _lines(ring, layer, part)
     elif isinstance(geometry, shapely.LineString) and not geometry.is_empty:
         closed = geometry.is_ring
         points = tuple((x, y) for x, y in geometry.coords)
-        yield Polyline(layer=layer, part=part, points=points[:-1] if closed else points, closed=closed)
+        yield LaserLine(layer=layer, part=part, points=points[:-1] if closed else points, closed=closed)
     else:
         for piece in getattr(geometry, "geoms", ()):
             yield from _lines(piece, layer, part)

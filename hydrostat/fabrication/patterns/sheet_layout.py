@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from hydrostat.fabrication.patterns.lettering import Lettering
-from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart, Place, Polyline
+from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, PatternPart, Place
 
 _RULER = 100.0
 """Length of the bar that shows whether the sheet was cut at its true scale [mm]."""
@@ -28,7 +28,7 @@ class Sheet:
     """
 
     panels: tuple[Panel, ...]
-    ruler: tuple[Polyline, ...]
+    ruler: tuple[LaserLine, ...]
     width: float
     height: float
 
@@ -83,16 +83,16 @@ def _bounds(panel: Panel) -> _PanelBox:
     return _PanelBox(panel, bounds[:2], bounds[2:] - bounds[:2])
 
 
-def _ruler() -> tuple[Polyline, ...]:
+def _ruler() -> tuple[LaserLine, ...]:
     """A bar of 100 mm from (0, 0) to the right, a stroke every 10 mm."""
     strokes: list[tuple[Place, ...]] = [((0.0, 0.0), (_RULER, 0.0))]
     strokes += [((x, 0.0), (x, 4.0 if x % 50 == 0 else 2.0)) for x in np.arange(0.0, _RULER + 1, 10.0).tolist()]
-    bar = tuple(Polyline(layer=Layer.MARK, part=PatternPart.RULER, points=points) for points in strokes)
+    bar = tuple(LaserLine(layer=Layer.MARK, part=PatternPart.RULER, points=points) for points in strokes)
     text = Lettering(f"{_RULER:g} mm", 4.0)
     return (*bar, *text.lines((_RULER + 4 + text.width / 2, 2.0)))
 
 
-def _key(width: float) -> tuple[Polyline, ...]:
+def _key(width: float) -> tuple[LaserLine, ...]:
     """What the lines of cables are, right of the bar, as far as the sheet is wide enough."""
     dashes = tuple(((start, 0.0), (start + 2.0, 0.0)) for start in (0.0, 3.3, 6.7, 10.0))
     samples: tuple[tuple[str, PatternPart, tuple[tuple[Place, ...], ...]], ...] = (
@@ -100,13 +100,13 @@ def _key(width: float) -> tuple[Polyline, ...]:
         ("cable inside", PatternPart.CABLE, dashes),
         ("sheath inside", PatternPart.SHEATH, (((0.0, 1.5), (12.0, 1.5)), ((0.0, -1.5), (12.0, -1.5)))),
     )
-    lines: list[Polyline] = []
+    lines: list[LaserLine] = []
     left = _RULER + 40.0
     for text, part, strokes in samples:
         letters = Lettering(text, 3.0)
         if left + 15 + letters.width > width:
             break
-        lines += [Polyline(layer=Layer.MARK, part=part, points=stroke).moved(left, 2.0) for stroke in strokes]
+        lines += [LaserLine(layer=Layer.MARK, part=part, points=stroke).moved(left, 2.0) for stroke in strokes]
         lines += letters.lines((left + 15 + letters.width / 2, 2.0))
         left += 25 + letters.width
     return tuple(lines)

@@ -15,7 +15,7 @@ from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from pypdf import PdfReader, PdfWriter, Transformation
 from scipy import ndimage
 
-from hydrostat.fabrication import Circle, Layer, Pattern, PatternPart, Polyline, plush_pattern
+from hydrostat.fabrication import Circle, LaserLine, Layer, Pattern, PatternPart, plush_pattern
 from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.sheets.tile_grid import Tile, tile_grid
 from hydrostat.fabrication.sheets.tiles import tiled_pdf
@@ -221,13 +221,13 @@ def lost(sheet: Pattern, tiles: tuple[Tile, ...]) -> float:
 def test_a_page_with_nothing_of_its_own_is_saved():
     """Oracle: by hand: a ring in the 10 mm that two tiles share, as far to the right as it fits on the first."""
     ring = Circle(layer=Layer.CUT, part=PatternPart.EDGE, centre=(185.0, 100.0), radius=4.0)
-    bar = Polyline(layer=Layer.MARK, part=PatternPart.RULER, points=((1.0, 1.0), (101.0, 1.0)))
+    bar = LaserLine(layer=Layer.MARK, part=PatternPart.RULER, points=((1.0, 1.0), (101.0, 1.0)))
     sheet = Pattern(name="ring", panels=(), shapes=(ring, bar), width=370.0, height=200.0)
     assert [tile.name for tile in tile_grid(sheet, Paper.A4).printed] == ["A1"]
 
 
 def test_a_line_across_tiles_is_on_each_of_them(pattern):
     """Oracle: a line from corner to corner of a sheet of three columns."""
-    line = Polyline(layer=Layer.CUT, part=PatternPart.EDGE, points=((1.0, 100.0), (499.0, 100.0)))
+    line = LaserLine(layer=Layer.CUT, part=PatternPart.EDGE, points=((1.0, 100.0), (499.0, 100.0)))
     grid = tile_grid(replace(pattern, panels=(), shapes=(line,), width=500.0, height=200.0), Paper.A4)
     assert [tile.name for tile in grid.printed] == ["A1", "B1", "C1"]
