@@ -17,7 +17,6 @@ PARTS = {
     "symbolic": "analysis of the pattern",
     "stiffness": "factorisation",
     "warp": "arcs",
-    "settle": "cables",
     "cable": "cables",
     "friction": "cables",
     "chain_law": "cables",
