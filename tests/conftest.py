@@ -36,8 +36,21 @@ def unchecked() -> Iterator[None]:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """A flag for tests that compare with reference files."""
+    """Flags: one for tests that compare with reference files, one for the hour's work."""
     parser.addoption("--refresh-references", action="store_true", help="write the reference files anew")
+    parser.addoption("--quick", action="store_true", help="each test with its first case only, and none that is slow")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """With --quick, keep the first case of each test that is not marked as slow."""
+    if not config.getoption("--quick"):
+        return
+    kept: dict[str, pytest.Item] = {}
+    for item in items:
+        if item.get_closest_marker("slow") is None:
+            kept.setdefault(item.nodeid.split("[")[0], item)
+    config.hook.pytest_deselected(items=[item for item in items if kept.get(item.nodeid.split("[")[0]) is not item])
+    items[:] = kept.values()
 
 
 def _kit(name: str) -> "Kit":
