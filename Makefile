@@ -6,12 +6,13 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo studio test check lint lint-js fix bench pictures clean
+.PHONY: help demo studio test quick check lint lint-js fix bench pictures clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
 	@echo "make studio    open the studio in the browser"
 	@echo "make test      run all tests"
+	@echo "make quick     each test with its first case, without the slow ones: a minute or two"
 	@echo "make check     lint, types, import layers, tests"
 	@echo "make fix       format and repair what ruff can repair"
 	@echo "make bench     timings and studies; prints tables"
@@ -25,6 +26,9 @@ studio: $(VENV)/studio.installed
 
 test: $(VENV)/test.installed
 	$(BIN)/python -m pytest -n 2 --dist worksteal -q
+
+quick: $(VENV)/test.installed
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q --quick
 
 check: lint test
 

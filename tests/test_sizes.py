@@ -14,28 +14,26 @@ FILE, FUNCTION, PARAMETERS = 400, 60, 8
 
 LARGE_FILES = {
     "hydrostat/mechanics/supernodal.py": "the kernels of one factorisation",
-    "hydrostat/simulation/simulation.py": "in work",
+    "hydrostat/simulation/simulation.py": "a few lines",
+    "hydrostat/testing/check_energy.py": "one conformance suite, read from top to bottom",
 }
 LARGE_FUNCTIONS = {
-    "hydrostat/cli/design.py:design": "an option a line",
-    "hydrostat/cli/fabricate.py:fabricate": "an option a line",
-    "hydrostat/cli/trajectory.py:trajectory": "an option a line",
-    "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "in work",
-    "hydrostat/studio/face/panels/start_draft.py:_fields": "in work",
+    "hydrostat/cli/design.py:design": "an option of the command line takes three lines",
+    "hydrostat/cli/fabricate.py:fabricate": "an option of the command line takes three lines",
+    "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "its signature is long",
 }
 MANY_PARAMETERS = {
     "hydrostat/cli/design.py:design": "a parameter is an option of the command line",
     "hydrostat/cli/fabricate.py:fabricate": "a parameter is an option of the command line",
     "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
     "hydrostat/cli/trajectory.py:trajectory": "a parameter is an option of the command line",
-    "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "in work",
-    "hydrostat/mechanics/cable.py:CableEnergy.__init__": "in work",
-    "hydrostat/mechanics/friction.py:FrictionCableEnergy.__init__": "in work",
-    "hydrostat/mechanics/newton.py:minimise": "in work",
+    "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "what `solve_ik` takes, and what is of time",
+    "hydrostat/mechanics/cable.py:CableEnergy.__init__": "a column of the rig each",
+    "hydrostat/mechanics/friction.py:FrictionCableEnergy.__init__": "a column of the rig each",
 }
 """What may be larger, with the reason."""
 
-ROOMS_IN_WORK = ("cli", "ik", "mechanics", "simulation", "studio")
+ROOMS_IN_WORK = ("cli", "fabrication", "ik", "mechanics", "simulation", "studio")
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -170,19 +168,17 @@ def test_parameters_are_few(texts: dict[str, str]) -> None:
 
 
 def test_a_class_name_stands_once(texts: dict[str, str]) -> None:
-    in_work = {"Page", "Posture", "Table", "Way"}
-    in_work |= {"_Descent", "_Grid", "_State"}
-    assert set(twice(texts)) <= in_work
+    assert set(twice(texts)) <= {"Pattern"}
 
 
 def test_first_lines_stand_alone(texts: dict[str, str]) -> None:
-    assert [told for told in fragments(texts) if told.split("/")[1] not in ROOMS_IN_WORK] == []
+    assert [told for told in fragments(texts) if told.split("/")[1] not in {"ik", "mechanics"}] == []
 
 
 def test_only_mechanics_asks_what_an_energy_is(texts: dict[str, str]) -> None:
     known = energies(texts)
     assert len(known) > 8
-    assert [place for place in asks_for_energies(texts, known) if place.split("/")[1] not in ROOMS_IN_WORK] == []
+    assert asks_for_energies(texts, known) == []
 
 
 def test_the_checks_can_fail() -> None:
