@@ -28,8 +28,6 @@ MANY_PARAMETERS = {
     "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
     "hydrostat/cli/trajectory.py:trajectory": "a parameter is an option of the command line",
     "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "what `solve_ik` takes, and what is of time",
-    "hydrostat/mechanics/cable.py:CableEnergy.__init__": "a column of the rig each",
-    "hydrostat/mechanics/friction.py:FrictionCableEnergy.__init__": "a column of the rig each",
 }
 """What may be larger, with the reason."""
 
