@@ -8,6 +8,7 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
+from hydrostat.closed_set import member
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
@@ -106,12 +107,13 @@ class Session:
         """The stage that is shown."""
         return self.stages[self.stage]
 
-    def go(self, name: StageName) -> None:
+    def go(self, name: StageName | str) -> None:
         """Show another stage.
 
         Raises:
-            InputError: it needs a robot, and none is open.
+            InputError: there is none of this name, or it needs a robot, and none is open.
         """
+        name = member(StageName, name, what="stage")
         if name is not StageName.START:
             _ = self.document.work
         with self._lock:
@@ -216,9 +218,13 @@ class Session:
         """What the colours of the body mean; None for plain felt."""
         return scale(self.document.robot, self.colouring) if self.document.is_open else None
 
-    def colour_by(self, colouring: Colouring) -> None:
-        """Choose what the colours of the body mean."""
-        self.colouring = colouring
+    def colour_by(self, colouring: Colouring | str) -> None:
+        """Choose what the colours of the body mean.
+
+        Raises:
+            InputError: there is no colouring of this name.
+        """
+        self.colouring = member(Colouring, colouring, what="colouring")
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.bell import Topic
@@ -107,9 +108,13 @@ class Editor(Stage):
         self._chosen = key
         self._ring()
 
-    def take(self, tool: Tool) -> None:
-        """Take another tool; a cable that was begun is dropped."""
-        self.tool, self.draft = tool, None
+    def take(self, tool: Tool | str) -> None:
+        """Take another tool; a cable that was begun is dropped.
+
+        Raises:
+            InputError: there is no tool of this name.
+        """
+        self.tool, self.draft = member(Tool, tool, what="tool"), None
         self._ring()
 
     def mirror_about(self, axis: str) -> None:

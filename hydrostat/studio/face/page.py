@@ -43,19 +43,20 @@ class WindowPage:
         self.bottom: ui.column
         self.whole: ui.column
 
-    def on(self, topic: Topic, refresh: Refresh, *, lasting: bool = False) -> None:
+    def on(self, topics: Topic | Sequence[Topic], refresh: Refresh, *, lasting: bool = False) -> None:
         """Call something after a topic rang, and once now.
 
         Args:
-            topic: that matters.
+            topics: that matter, one or several.
             refresh: redraws what depends on it.
             lasting: also when another stage is shown.
         """
-        (self._lasting if lasting else self._passing)[topic].append(refresh)
+        for topic in (topics,) if isinstance(topics, Topic) else topics:
+            (self._lasting if lasting else self._passing)[topic].append(refresh)
         refresh()
 
     def on_new(
-        self, topics: Sequence[Topic], state: Callable[[], object], room: ui.element, build: Callable[[], Any]
+        self, topics: Topic | Sequence[Topic], state: Callable[[], object], room: ui.element, build: Callable[[], Any]
     ) -> None:
         """Fill a room, and fill it anew after one of some topics rang where what it shows is another by then.
 
@@ -75,8 +76,7 @@ class WindowPage:
                 with room:
                     build()
 
-        for topic in topics:
-            self.on(topic, show)
+        self.on(topics, show)
 
     def act(self, action: Callable[..., Any], *arguments: Any) -> Any:
         """Do something with the session; what was wrong is told to the person of this window. None if it was."""

@@ -76,7 +76,7 @@ def _colour_menu(page: WindowPage) -> None:
     session = page.session
     with ui.menu(), ui.column().classes("q-pa-md gap-2"):
         choice = ui.radio(COLOURINGS, value=session.colouring)
-        choice.on_value_change(lambda event: session.colour_by(Colouring(event.value)))
+        choice.on_value_change(lambda event: page.act(session.colour_by, event.value))
     page.on(Topic.THINGS, lambda: choice.set_value(session.colouring), lasting=True)
 
 

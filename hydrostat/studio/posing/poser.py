@@ -6,6 +6,7 @@ from threading import RLock
 
 import numpy as np
 
+from hydrostat.closed_set import member
 from hydrostat.drawing.palette import GHOST
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import locate
@@ -187,12 +188,13 @@ class Poser(Stage):
         self._chosen = self._fit().known(name)
         self._document.bell.ring(Topic.THINGS)
 
-    def set_mode(self, mode: Mode) -> None:
+    def set_mode(self, mode: Mode | str) -> None:
         """Let muscles or cables move the body; what is held stays held.
 
         Raises:
-            InputError: the robot has no cables.
+            InputError: there is no mode of this name, or the robot has no cables.
         """
+        mode = member(Mode, mode, what="mode")
         with self._lock:
             now = self._fit()
             if mode is now.wish.mode:

@@ -7,6 +7,7 @@ from hydrostat.design import Constraints, DesignRequest, Zone
 from hydrostat.design.constraints import RANGES
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
 from hydrostat.errors import InputError
+from hydrostat.units import quote
 
 
 class Paint(StrEnum):
@@ -39,7 +40,7 @@ class Wishes:
         kept_cables: names of the robot's own cables that stay, and their winches with them.
 
     Raises:
-        InputError: a number out of its range.
+        InputError: a number out of its range, or a mirror that is no axis.
     """
 
     winches: int = int(DesignRequest.winches)
@@ -59,6 +60,8 @@ class Wishes:
     kept_cables: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if self.mirror not in (None, "x", "y", "z"):
+            raise InputError(f"mirror must be x, y, z or nothing, not {quote(self.mirror)}")
         if self.winches != 0 and not COUNTS["winches"].holds(self.winches):
             raise InputError(f"winches must be {COUNTS['winches']}, or 0 for as few as will do, not {self.winches}")
         for name, allowed in _COUNTED.items():

@@ -203,7 +203,7 @@ def test_a_dirty_scan_is_mended_and_becomes_a_robot(studio: Studio, window: Open
         page = window(address)
         page.locator("input[type=file]").first.set_input_files(str(file))
         page.get_by_text(re.compile("hole", re.IGNORECASE)).first.wait_for()
-        page.get_by_role("button", name=re.compile("make.*robot|begin", re.IGNORECASE)).first.click(timeout=120_000)
+        page.get_by_role("button", name=re.compile("make.*robot|begin", re.IGNORECASE)).first.click()
         wait_for_view(page)
         assert page.evaluate("__app.scenes") >= 1
         quiet(page)

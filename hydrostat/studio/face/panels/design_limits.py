@@ -36,7 +36,6 @@ def design_paint(page: WindowPage) -> None:
             buttons[paint] = button
     hint = ui.label().classes("studio-hint")
     zones = ui.column().classes("w-full").style("gap: 2px")
-    drawn: list[object] = []
 
     def show() -> None:
         painter = designer.painter
@@ -45,17 +44,14 @@ def design_paint(page: WindowPage) -> None:
         flat = document.robot.body.mesh.dim == 2
         hint.set_text((FLAT if flat else SPACE) if painter.paint else CHOSEN if painter.chosen is not None else "")
         hint.set_visibility(bool(hint.text))
-        state = (tuple(designer.wishes.zones), painter.chosen)
-        if drawn == [state]:
-            return
-        drawn[:] = [state]
-        zones.clear()
-        with zones:
-            for index, (paint, zone) in enumerate(designer.wishes.zones):
-                size = f", {2e3 * zone.radius:.0f} mm" if zone.radius is not None else ""
-                _zone(page, index, paint, size, chosen=index == painter.chosen)
+
+    def build() -> None:
+        for index, (paint, zone) in enumerate(designer.wishes.zones):
+            size = f", {2e3 * zone.radius:.0f} mm" if zone.radius is not None else ""
+            _zone(page, index, paint, size, chosen=index == designer.painter.chosen)
 
     page.on(Topic.THINGS, show)
+    page.on_new(Topic.THINGS, lambda: (tuple(designer.wishes.zones), designer.painter.chosen), zones, build)
 
 
 def _take(page: WindowPage, paint: Paint) -> None:

@@ -31,31 +31,30 @@ def _poses(page: WindowPage) -> None:
     """The poses to reach, each to be left out or not."""
     document, designer = page.session.document, page.session.designer
     room = ui.column().classes("w-full gap-2")
-    drawn: list[object] = []
 
-    def show() -> None:
+    def state() -> tuple[object, ...]:
+        return tuple(document.robot.poses), wanted()
+
+    def wanted() -> frozenset[str]:
         robot = document.robot
-        wanted = {pose.name for pose in wished_poses(robot, designer.wishes)} if robot.poses else set()
-        state = (tuple(robot.poses), frozenset(wanted))
-        if drawn == [state]:
-            return
-        drawn[:] = [state]
-        room.clear()
-        with room:
-            if not robot.poses:
-                _no_pose(page)
-                return
-            ui.label("Poses to reach").classes("studio-section").style("margin-top: 0")
-            with ui.element("div").classes("row").style("gap: 6px"):
-                for name in robot.poses:
-                    chip = ui.element("div").classes("design-pose" + (" design-pose-on" if name in wanted else ""))
-                    chip.props(f'role="checkbox" tabindex="0" aria-checked="{str(name in wanted).lower()}"')
-                    chip.on("click", page.doing(designer.wish_pose, name, name not in wanted))
-                    chip.on("keydown.enter", page.doing(designer.wish_pose, name, name not in wanted))
-                    with chip:
-                        ui.label(name)
+        return frozenset(pose.name for pose in wished_poses(robot, designer.wishes)) if robot.poses else frozenset()
 
-    page.on(Topic.ROBOT, show)
+    def build() -> None:
+        names, on = document.robot.poses, wanted()
+        if not names:
+            _no_pose(page)
+            return
+        ui.label("Poses to reach").classes("studio-section").style("margin-top: 0")
+        with ui.element("div").classes("row").style("gap: 6px"):
+            for name in names:
+                chip = ui.element("div").classes("design-pose" + (" design-pose-on" if name in on else ""))
+                chip.props(f'role="checkbox" tabindex="0" aria-checked="{str(name in on).lower()}"')
+                for event in ("click", "keydown.enter"):
+                    chip.on(event, page.doing(designer.wish_pose, name, name not in on))
+                with chip:
+                    ui.label(name)
+
+    page.on_new(Topic.ROBOT, state, room, build)
 
 
 def _no_pose(page: WindowPage) -> None:
@@ -112,8 +111,7 @@ def _go(page: WindowPage) -> None:
         button.set_visibility(not designer.running)
         button.set_enabled(bool(document.robot.poses) and not jobs.running)
 
-    page.on(Topic.JOB, show)
-    page.on(Topic.ROBOT, show)
+    page.on((Topic.JOB, Topic.ROBOT), show)
 
 
 def _progress(page: WindowPage) -> None:
@@ -160,27 +158,25 @@ def design_compare(page: WindowPage) -> None:
     """Build the strip below the view; it is not there while there is nothing to compare."""
     designer, document = page.session.designer, page.session.document
     room = ui.element("div").classes("w-full")
-    drawn: list[object] = []
 
-    def show() -> None:
+    def own() -> tuple[int, ...]:
+        cables = document.robot.cables
+        return tuple(one.number for one in designer.candidates if one.robot.cables == cables)
+
+    def build() -> None:
         candidates = designer.candidates
-        robot = document.robot
-        own = tuple(one.number for one in candidates if one.robot.cables == robot.cables)
-        state = (tuple(one.number for one in candidates), designer.chosen, designer.pose, own)
-        if drawn == [state]:
-            return
-        drawn[:] = [state]
-        room.clear()
         room.set_visibility(bool(candidates))
         if candidates:
-            with room, ui.element("div").classes("design-strip"):
+            with ui.element("div").classes("design-strip"):
                 _front(page, candidates)
                 with ui.element("div").classes("design-shelf"):
-                    _head(page, own)
-                    _cards(page, candidates, own)
+                    _head(page, own())
+                    _cards(page, candidates, own())
 
-    page.on(Topic.JOB, show)
-    page.on(Topic.ROBOT, show)
+    def state() -> tuple[object, ...]:
+        return tuple(one.number for one in designer.candidates), designer.chosen, designer.pose, own()
+
+    page.on_new((Topic.JOB, Topic.ROBOT), state, room, build)
 
 
 def _front(page: WindowPage, candidates: tuple[Candidate, ...]) -> None:

@@ -109,8 +109,7 @@ def _keys(page: WindowPage) -> None:
         if smooth.value != driver.keyframes.timeline.smooth:
             smooth.set_value(driver.keyframes.timeline.smooth)
 
-    page.on(Topic.DRIVE, show)
-    page.on(Topic.ROBOT, show)
+    page.on((Topic.DRIVE, Topic.ROBOT), show)
 
 
 def _poses(page: WindowPage) -> None:
@@ -185,8 +184,7 @@ def _films(page: WindowPage) -> None:
             elif state is not None and state.error:
                 page.tell(state.error, Tone.BAD)
 
-    page.on(Topic.JOB, show)
-    page.on(Topic.DRIVE, show)
+    page.on((Topic.JOB, Topic.DRIVE), show)
 
 
 def _tables(page: WindowPage) -> None:
@@ -238,8 +236,7 @@ def _timeline(page: WindowPage) -> None:
         view.show_keys(document.robot, driver.keyframes.timeline, driver.keyframes.chosen)
         view.show_player(driver.player)
 
-    page.on(Topic.ROBOT, show)
-    page.on(Topic.DRIVE, show)
+    page.on((Topic.ROBOT, Topic.DRIVE), show)
 
 
 def _menu() -> ui.menu:

@@ -145,8 +145,7 @@ def check_card(page: WindowPage) -> None:
             else:
                 _tell_findings(findings, [in_words(risk) for risk in findings.risks])
 
-    page.on(Topic.JOB, show)
-    page.on(Topic.ROBOT, show)
+    page.on((Topic.JOB, Topic.ROBOT), show)
 
 
 def _tell_findings(findings: Findings, risks: list[str]) -> None:

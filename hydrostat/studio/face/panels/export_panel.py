@@ -133,8 +133,7 @@ def _maker(
             bar.set_value(state.done / state.total if known else 0.0)
             bar.props(**{"remove" if known else "add": "indeterminate"})
 
-    page.on(Topic.JOB, show)
-    page.on(Topic.ROBOT, show)
+    page.on((Topic.JOB, Topic.ROBOT), show)
 
 
 def _result(page: WindowPage, export: Export, find: Callable[[], object], build: Callable[[], None]) -> None:
@@ -156,8 +155,7 @@ def _result(page: WindowPage, export: Export, find: Callable[[], object], build:
             elif exporter.outdated(export) and exporter.busy is not export:
                 ui.label(OUTDATED).classes("studio-hint").props(f'data-testid="outdated-{export}"')
 
-    page.on(Topic.JOB, show)
-    page.on(Topic.ROBOT, show)
+    page.on((Topic.JOB, Topic.ROBOT), show)
 
 
 def _save_view(page: WindowPage) -> None:

@@ -63,20 +63,12 @@ def held_card(page: WindowPage) -> None:
         rows = ui.column().classes("w-full").style("gap: 2px")
         notes = ui.label().classes("studio-hint").style("white-space: pre-line; margin-top: 6px").mark("pose-notes")
     figures: dict[str, ui.label] = {}
-    drawn: list[object] = []
 
-    def draw() -> None:
-        state = (tuple(poser.held), poser.chosen)
-        if drawn == [state]:
-            return
-        drawn[:] = [state]
-        rows.clear()
+    def build() -> None:
         figures.clear()
         empty.set_visibility(not poser.held)
-        with rows:
-            for name in poser.held:
-                figures[name] = _held_row(page, name, poser.chosen == name)
-        show()
+        for name in poser.held:
+            figures[name] = _held_row(page, name, poser.chosen == name)
 
     def show() -> None:
         shape = poser.shape()
@@ -92,9 +84,8 @@ def held_card(page: WindowPage) -> None:
             notes.set_text(words)
         notes.set_visibility(bool(words))
 
-    page.on(Topic.THINGS, draw)
-    page.on(Topic.SHAPE, draw)
-    page.on(Topic.SHAPE, show)
+    page.on_new((Topic.THINGS, Topic.SHAPE), lambda: (tuple(poser.held), poser.chosen), rows, build)
+    page.on((Topic.THINGS, Topic.SHAPE), show)
 
 
 def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
@@ -151,8 +142,7 @@ def bars_card(page: WindowPage) -> None:
             limit.set_text(f"limit {found[0].limit:g} N")
 
     page.on(Topic.ROBOT, draw)
-    page.on(Topic.THINGS, show)
-    page.on(Topic.SHAPE, show)
+    page.on((Topic.THINGS, Topic.SHAPE), show)
 
 
 class _BarRow:

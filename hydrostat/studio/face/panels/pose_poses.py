@@ -40,7 +40,7 @@ def poses_card(page: WindowPage) -> None:
 
     button.on_click(store)
     name.on("keydown.enter", store)
-    page.on_new((Topic.ROBOT,), lambda: tuple(document.robot.poses), rows, draw)
+    page.on_new(Topic.ROBOT, lambda: tuple(document.robot.poses), rows, draw)
     page.on(Topic.THINGS, ready)
     page.on(Topic.SHAPE, ready)
 
@@ -109,5 +109,4 @@ def reach_card(page: WindowPage) -> None:
         words.set_text(f"{reach.count} places of {reach.marker}" + (" so far" if reach.running else ""))
 
     page.on(Topic.ROBOT, draw)
-    page.on(Topic.THINGS, show)
-    page.on(Topic.JOB, show)
+    page.on((Topic.THINGS, Topic.JOB), show)

@@ -175,7 +175,7 @@ class _Fields:
 
     def _choose(self, kind: str) -> None:
         draft, sketch = self._starter.draft, self._starter.sketch
-        if draft is not None and kind != ("flat" if draft.inflate is None else "round"):
+        if draft is not None and draft.is_drawing and kind != ("flat" if draft.inflate is None else "round"):
             thickness = 0.04 if sketch is None else 0.25 * sketch.robot.body.mesh.size
             inflate = None if kind == "flat" else round(thickness, 3)
             self._ask(inflate=inflate, thickness=None, element_size=None, nodes=None)

@@ -75,6 +75,19 @@ def test_an_outline_is_drawn_and_becomes_a_draft() -> None:
     at_desk(None, act)
 
 
+def test_a_surface_is_meshed_once_as_it_came() -> None:
+    async def act(desk: Desk) -> None:
+        starter = desk.session.starter
+        starter.bring("ball.stl", b"solid ball\nendsolid\n")
+        await desk.follow()
+        assert desk.one("make-robot").enabled is False
+        assert starter.draft is not None
+        assert starter.draft.inflate is None  # only a drawing can be blown up
+        assert len(desk.begun) == 1
+
+    at_desk(None, act)
+
+
 def test_saving_asks_where_and_help_lists_all_keys(starfish: Robot, tmp_path: Path) -> None:
     async def act(desk: Desk) -> None:
         words = desk.words
