@@ -17,7 +17,7 @@ from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.robot import Marker, Mount, Pin, Pose, Robot, Winch, robot_hash
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import BodyPhysics, Simulation
 
 UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
 DOWN = Pose(name="down", targets={"tip": (0.185, -0.05)})
@@ -325,3 +325,20 @@ def test_options_out_of_range(unchecked: None, wrong: dict[str, object], words: 
     with pytest.raises(InputError) as caught:
         RouteOptions(**wrong)  # type: ignore[arg-type]
     assert str(caught.value) == words
+
+
+@pytest.mark.parametrize("asked", [{}, {"winches": "auto"}, {"method": "trees", "options": TreeOptions(trials=2)}])
+def test_a_design_builds_its_body_once(asked: dict[str, Any], unchecked: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: how often its energies are made, over all networks that are solved."""
+    made: list[Robot] = []
+    begin = BodyPhysics.__init__
+
+    def counted(self: BodyPhysics, robot: Robot) -> None:
+        made.append(robot)
+        begin(self, robot)
+
+    monkeypatch.setattr(BodyPhysics, "__init__", counted)
+    given: dict[str, Any] = {"winches": 1, "cables": 2, "options": SMALL} | asked
+    network = design_cables(bare(), [UP], **given)
+    assert len(made) == 1
+    assert network.tried > 1

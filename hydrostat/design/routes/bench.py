@@ -12,7 +12,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.errors import NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import BodyPhysics, Simulation, SolvedPose
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +47,14 @@ class Bench:
         source: the robot that is designed for.
         targets: poses to reach.
         constraints: limits on tensions and contractions.
+        body: physics of the body, which all layouts share; each has its own if left out.
         solves: layouts tried.
     """
 
     source: Robot
     targets: Sequence[Pose]
     constraints: Constraints
+    body: BodyPhysics | None = None
     solves: int = field(default=0)
 
     @cached_property
@@ -85,7 +87,7 @@ class Bench:
             iterations: most steps of inverse kinematics for each pose.
         """
         self.solves += 1
-        simulation = Simulation(layout.robot())
+        simulation = Simulation(layout.robot(), body=self.body)
         options = InverseOptions(restarts=0, unique=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
         limits = Limits(tension=self.constraints.tension_limit)
         found = []
@@ -100,7 +102,7 @@ class Bench:
     def held(self, layout: Layout, contractions: Sequence[Vector], before: Trial) -> Trial | None:
         """The layout at given contractions of each pose [m]; None where Newton does not find an equilibrium at once."""
         self.solves += 1
-        simulation = Simulation(layout.robot())
+        simulation = Simulation(layout.robot(), body=self.body)
         found = []
         for pulled, pose in zip(contractions, before.poses, strict=True):
             result = simulation.relax(pose.nodes, pulled, iterations=15)

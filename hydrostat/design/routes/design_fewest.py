@@ -9,6 +9,7 @@ from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.design_routes import RouteSearch
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
+from hydrostat.simulation import BodyPhysics
 
 
 def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
@@ -28,16 +29,15 @@ def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, w
     tolerance = _SHARE * size if options.tolerance is None else options.tolerance
     sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
     found: list[Network] = []
-    better = Better(watch)
+    body, better = BodyPhysics(robot), Better(watch)
     front: dict[Size, Alternative] = {}
     interrupted = False
     least = _fewest(robot, request)
     largest = min(cables, int(COUNTS["winches"].most))
     for winches in range(least, largest + 1):
         most = min(cables, winches * constraints.cables_per_winch)
-        search = RouteSearch(
-            robot, replace(request, winches=winches, cables=most, options=sought), progress, watch=better
-        )
+        asked = replace(request, winches=winches, cables=most, options=sought)
+        search = RouteSearch(robot, asked, body, progress, watch=better)
         try:
             found.append(search.run())
         except KeyboardInterrupt:

@@ -20,7 +20,7 @@ from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import BodyPhysics, Simulation
 
 
 def design_routes(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
@@ -37,7 +37,7 @@ def design_routes(robot: Robot, request: DesignRequest, *, progress: Progress, w
         InputError: a body too thin for the constraints.
         HydrostatError: no network can be built.
     """
-    return RouteSearch(robot, request, progress, watch).run()
+    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch).run()
 
 
 class RouteSearch:
@@ -49,11 +49,13 @@ class RouteSearch:
         sizes: the best network of each size, by its numbers of winches and cables.
     """
 
-    def __init__(self, robot: Robot, request: DesignRequest, progress: Progress, watch: Watch = unseen) -> None:
+    def __init__(
+        self, robot: Robot, request: DesignRequest, body: BodyPhysics, progress: Progress, watch: Watch = unseen
+    ) -> None:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
         self.winches, self.cables = int(request.winches), request.cables
         self.constraints, self.options = request.constraints, request.route_options
-        self.bench = Bench(robot, request.poses, request.constraints)
+        self.bench = Bench(robot, request.poses, request.constraints, body)
         self.stages: list[DesignStage] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
@@ -205,7 +207,7 @@ class RouteSearch:
         robot = trial.layout.robot(digits=_DIGITS)
         if violations(robot, self.constraints, self.region):
             return None
-        simulation = Simulation(robot)
+        simulation = Simulation(robot, body=self.bench.body)
         limits = Limits(tension=self.constraints.tension_limit)
         try:
             reached = [
@@ -218,7 +220,7 @@ class RouteSearch:
     def _certificate(self, network: Alternative) -> Certificate | None:
         layout = layout_of(network.robot, self.constraints)
         poses = [reached.pose for reached in network.reached]
-        return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot), poses))
+        return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot, body=self.bench.body), poses))
 
 
 _DIGITS = 5

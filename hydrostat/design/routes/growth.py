@@ -38,7 +38,7 @@ class Growth:
         """The trial of a layout as it is, even one without cables."""
         if layout.routes:
             return self.bench.reached(layout, None)
-        simulation = Simulation(layout.robot())
+        simulation = Simulation(layout.robot(), body=self.bench.body)
         return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
 
     def seeds(self, trial: Trial, *, winches: int, cables: int) -> list[Trial]:

@@ -22,6 +22,7 @@ from hydrostat.design.trees.judge import judge, prune
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Cable, Pose, Robot, Winch
+from hydrostat.simulation import BodyPhysics
 
 
 def design_trees(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
@@ -68,7 +69,7 @@ class _TreeDesign:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
         self.constraints, self.options = request.constraints, request.tree_options
         self.winches, self.cables = int(request.winches), request.cables
-        self.mesh = robot.body.mesh
+        self.body, self.mesh = BodyPhysics(robot), robot.body.mesh
         self.region = body_region(robot.body, self.constraints.clearance)
         self.spacing = float(self.mesh.edge_lengths.mean())
 
@@ -86,12 +87,18 @@ class _TreeDesign:
             [robot for _, robot in built],
             self.request.poses,
             tension=self.constraints.tension,
+            body=self.body,
             progress=self.progress,
             watch=self.watch,
         )
         plan, designed = built[best]
         designed, reached = prune(
-            designed, self.request.poses, reached, tension=self.constraints.tension, loss=self.options.loss
+            designed,
+            self.request.poses,
+            reached,
+            tension=self.constraints.tension,
+            body=self.body,
+            loss=self.options.loss,
         )
         return Network(
             robot=designed,
@@ -140,12 +147,19 @@ class _TreeDesign:
         return tuple(found)
 
     def _activation(self, pose: Pose) -> Activation:
-        return activate(self.robot, pose, self._fibres(pose), effort=self.options.effort, stages=self.options.stages)
+        return activate(
+            self.robot,
+            pose,
+            self._fibres(pose),
+            effort=self.options.effort,
+            stages=self.options.stages,
+            body=self.body,
+        )
 
     def _fibres(self, pose: Pose) -> Fibres:
         if self.options.fibres is FibreKind.EDGES:
             return edge_fibres(self.mesh)
-        return element_fibres(self.mesh, wanted_directions(self.robot, pose))
+        return element_fibres(self.mesh, wanted_directions(self.robot, pose, body=self.body))
 
     def _routes(
         self, activations: tuple[Activation, ...], threshold: int, distance: float

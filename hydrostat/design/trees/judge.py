@@ -6,7 +6,7 @@ from hydrostat.design.network import DesignStage, rms_error
 from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import BodyPhysics, Simulation
 
 _ROUNDS = tuple(InverseOptions(iterations=steps, restarts=0, unique=False) for steps in (3, 4, 100))
 """Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
@@ -19,7 +19,13 @@ _FEWEST = 4
 
 
 def judge(
-    robots: Sequence[Robot], poses: Sequence[Pose], *, tension: float, progress: Progress, watch: Watch = unseen
+    robots: Sequence[Robot],
+    poses: Sequence[Pose],
+    *,
+    tension: float,
+    progress: Progress,
+    watch: Watch = unseen,
+    body: BodyPhysics | None = None,
 ) -> tuple[int, tuple[ReachedPose, ...]]:
     """The index of the robot of least cost, and what it reaches of each pose.
 
@@ -29,10 +35,11 @@ def judge(
         robots: the candidates.
         poses: what they should reach.
         tension: what a cable should bear at most [N], see `cost`.
+        body: physics of the body that they share.
         progress: called as the work goes on.
         watch: told each robot that is better than all before and keeps to the tension.
     """
-    simulations = [Simulation(robot) for robot in robots]
+    simulations = [Simulation(robot, body=body) for robot in robots]
     reached: dict[int, tuple[ReachedPose, ...]] = {}
     chosen = list(range(len(robots)))
     better = Better(watch)
@@ -62,7 +69,13 @@ def cost(reached: Sequence[ReachedPose], tension: float) -> float:
 
 
 def prune(
-    robot: Robot, poses: Sequence[Pose], reached: tuple[ReachedPose, ...], *, tension: float, loss: float
+    robot: Robot,
+    poses: Sequence[Pose],
+    reached: tuple[ReachedPose, ...],
+    *,
+    tension: float,
+    loss: float,
+    body: BodyPhysics | None = None,
 ) -> tuple[Robot, tuple[ReachedPose, ...]]:
     """Leave out cables, the shortest first, while the cost stays within 1 + `loss` of what it was.
 
@@ -73,6 +86,7 @@ def prune(
         poses: what it should reach.
         reached: what it reaches of them.
         tension: what a cable should bear at most [N].
+        body: physics of its body.
         loss: how much of the cost all omissions together may add, as a fraction.
     """
     allowed = (1.0 + loss) * cost(reached, tension)
@@ -81,7 +95,7 @@ def prune(
         if not any(other.winch == cable.winch for other in others):
             continue
         trial = robot.with_network(robot.winches, others)
-        simulation = Simulation(trial)
+        simulation = Simulation(trial, body=body)
         found = tuple(solve_ik(simulation, pose, options=_OPTIONS) for pose in poses)
         if cost(found, tension) <= allowed:
             robot, reached = trial, found
