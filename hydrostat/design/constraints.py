@@ -6,6 +6,9 @@ from math import inf, isfinite
 from numbers import Integral, Real
 from typing import NoReturn
 
+import numpy as np
+
+from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
@@ -143,6 +146,10 @@ class Constraints:
             return self.tension
         arm = self.spool_radius * self.spool_ratio
         return min(self.tension, self.torque / (arm * self.cables_per_winch))
+
+    def flip(self, dim: int) -> Vector:
+        """Signs that make of coordinates those of their mirror image, (dim,); all 1 without a mirror."""
+        return np.array([-1.0 if axis == self.mirror else 1.0 for axis in "xyz"[:dim]])
 
     def staying(self, robot: Robot) -> tuple[tuple[Winch, ...], tuple[Cable, ...]]:
         """Winches and cables of a robot that stay: those that are locked, and the winches of locked cables."""

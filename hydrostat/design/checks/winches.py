@@ -86,11 +86,9 @@ _NEAR = 1e-4
 
 def mirror_violations(parts: Parts) -> Iterator[str]:
     """Parts that have no equal on the other side; what stands in the mirror is its own."""
-    axis = parts.constraints.mirror
-    if axis is None:
+    if parts.constraints.mirror is None:
         return
-    flip = np.ones(parts.robot.body.mesh.dim)
-    flip["xyz".index(axis)] = -1.0
+    flip = parts.constraints.flip(parts.robot.body.mesh.dim)
     images = [_image_of(parts, winch, flip) for winch in parts.robot.winches]
     for index in parts.new_winches:
         if images[index] is None:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.design.muscles.fibres import Fibres
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.mechanics import NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics
@@ -138,12 +138,7 @@ class _Activation:
 
     def _jacobian(self, nodes: Nodes, tensions: Vector) -> Float[np.ndarray, "rows fibres"]:
         """D markers / d tensions by the adjoint: one solve for each marker coordinate, none for each fibre."""
-        markers, dim = self.goals.shape
-        rows = np.zeros((self.assembly.size, markers * dim))
-        for marker in range(markers):
-            for axis in range(dim):
-                dofs = self.anchors.stencils[marker] * dim + axis
-                rows[dofs, marker * dim + axis] = self.anchors.weights[marker]
+        rows = place_slopes(self.anchors, nodes)
         adjoint = self.assembly.stiffness(nodes, tensions).solve(rows)
         return -(self.assembly.control_derivative(nodes, tensions).T @ adjoint).T
 
@@ -172,6 +167,16 @@ class _Activation:
     def _objective(self, nodes: Nodes, tensions: Vector, goals: Points, rho: float) -> float:
         miss = self.anchors.positions(nodes) - goals
         return float(0.5 * (miss**2).sum() + 0.5 * rho * tensions @ tensions)
+
+
+def place_slopes(held: Anchors, nodes: Nodes) -> Float[np.ndarray, "dofs rows"]:
+    """Slopes of the places of held points by the nodes, a column for each of their coordinates."""
+    points, dim = len(held.stencils), nodes.shape[1]
+    rows = np.zeros((nodes.size, points * dim))
+    for point in range(points):
+        for axis in range(dim):
+            rows[held.stencils[point] * dim + axis, point * dim + axis] = held.weights[point]
+    return rows
 
 
 def least_effort(

@@ -5,7 +5,7 @@ from jaxtyping import Float
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.design.muscles.activation import least_effort
+from hydrostat.design.muscles.activation import least_effort, place_slopes
 from hydrostat.design.muscles.fibres import Fibres, edge_fibres
 from hydrostat.geometry.anchors import Anchors
 from hydrostat.mechanics import NewtonOptions, NewtonResult, minimise
@@ -122,7 +122,7 @@ class FreePosing:
         Effort weighs more for a goal out of reach, so that the strongest fibre pulls as hard as it can and the others
         by their leverage; were all of them at their bounds, the body would be crushed.
         """
-        rows = self._rows(held)
+        rows = place_slopes(held, self.nodes)
         adjoint = self._stiffness.solve(rows)
         jacobian = -(self._pulls(self.nodes, self.tensions).T @ adjoint).T
         gradient = self._assembly.gradient(self.nodes, self.tensions)
@@ -143,15 +143,6 @@ class FreePosing:
         """What each fibre can pull at its present length: all at rest, nothing when it is as short as it gets."""
         shares = self._energy.lengths(self.nodes) / self._lengths
         return self.strength * np.clip((shares - _SHORTEST) / (1.0 - _SHORTEST), 0.0, 1.0)
-
-    def _rows(self, held: Anchors) -> Float[np.ndarray, "dofs rows"]:
-        """D places of the held points / d nodes, a column for each of their coordinates."""
-        points, dim = len(held.stencils), self.nodes.shape[1]
-        rows = np.zeros((self.nodes.size, points * dim))
-        for point in range(points):
-            for axis in range(dim):
-                rows[held.stencils[point] * dim + axis, point * dim + axis] = held.weights[point]
-        return rows
 
     def _weight(self, rows: Float[np.ndarray, "dofs rows"]) -> float:
         """Rho, by what the strongest fibre can do to these points at rest; not less for points that are pinned."""

@@ -63,10 +63,7 @@ def mirrored(layout: Layout) -> Layout | None:
 
 def flipped(layout: Layout, points: Points) -> Points:
     """Points on the other side of the mirror."""
-    assert layout.constraints.mirror is not None
-    flip = np.ones(layout.dim)
-    flip["xyz".index(layout.constraints.mirror)] = -1.0
-    return points * flip
+    return points * layout.constraints.flip(layout.dim)
 
 
 def _world_winch(layout: Layout, place: np.ndarray) -> str | None:

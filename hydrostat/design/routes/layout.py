@@ -148,9 +148,7 @@ class Layout:
     def ties(self) -> Float[np.ndarray, "numbers free"]:
         """How the numbers follow those that are free: what stays has no column, a mirrored part follows its twin."""
         dim, slacks, ratios = self.dim, *self.starts[-2:]
-        flip = np.ones(dim)
-        if self.constraints.mirror is not None:
-            flip["xyz".index(self.constraints.mirror)] = -1.0
+        flip = self.constraints.flip(dim)
         full = np.eye(self.size)
         drop = np.zeros(self.size, dtype=bool)
         for index, site in enumerate(self.sites):
