@@ -51,10 +51,11 @@ def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
     from hydrostat.design import DesignMethod, DesignRequest
 
     winches = _winch_count(typed.winches)
-    given = {"winches": winches, "cables": typed.cables, "method": typed.method}
+    method = None if typed.method is None else member(DesignMethod, typed.method, what="method")
+    given = {"winches": winches, "cables": typed.cables, "method": method}
     given = {name: value for name, value in given.items() if value is not None}
     poses = [robot.pose(name) for name in typed.poses] or list(robot.poses.values())
-    trees = typed.method == DesignMethod.TREES
+    trees = method is DesignMethod.TREES
     request = DesignRequest(
         poses=tuple(poses),
         constraints=_constraints(robot, typed.limits),

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import TypedDict, Unpack
 
+from hydrostat.closed_set import member
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Network
 from hydrostat.design.progress import Progress, Watch, silent, unseen
@@ -47,6 +48,7 @@ def design_cables(
         HydrostatError: no network can be built.
     """
     given = {name: value for name, value in asked.items() if value is not None}
+    given["method"] = member(DesignMethod, given.get("method", DesignRequest.method), what="method")
     return find_network(robot, DesignRequest(poses=tuple(poses), **given), progress=progress, watch=watch)  # type: ignore[arg-type]
 
 

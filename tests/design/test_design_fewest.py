@@ -28,7 +28,7 @@ def test_every_pose_is_within_the_tolerance(unchecked: None) -> None:
     assert network.complete
     assert max(reached.rms_error for reached in network.reached) <= TOLERANCE
     assert broken(network) == []
-    assert network.options == options()
+    assert network.request.options == options()
 
 
 def test_fewer_winches_miss_it(unchecked: None) -> None:
