@@ -55,7 +55,7 @@ def asks(tree: ast.Module, energies: set[str]) -> int:
     return sum(bool(set(re.findall(r"\w+", ast.unparse(call.args[1]))) & energies) for call in calls)
 
 
-def sizes(tree: Path) -> dict[str, str]:
+def sizes(tree: Path) -> list[tuple[str, str]]:
     """The figures of a tree that are read off its text."""
     texts = {file: file.read_text(encoding="utf-8") for file in sorted((tree / "hydrostat").rglob("*.py"))}
     modules = {file: ast.parse(text) for file, text in texts.items()}
@@ -72,29 +72,27 @@ def sizes(tree: Path) -> dict[str, str]:
     energies = energy_names(list(modules.values()))
     outside = {file: module for file, module in modules.items() if "mechanics" not in file.parts}
     largest, longest = max(files, key=files.__getitem__), max(functions, key=functions.__getitem__)
-    return {
-        "modules, without __init__": str(len(files)),
-        "lines of all files": str(sum(len(text.splitlines()) for text in texts.values())),
-        "median file [lines]": f"{median(files.values()):g}",
-        "largest file [lines]": f"{files[largest]} ({largest.relative_to(tree / 'hydrostat')})",
-        "median function [code lines]": f"{median(functions.values()):g}",
-        "largest function [code lines]": f"{functions[longest]} ({longest})",
-        "class names that stand twice": str(sum(count > 1 for count in classes.values())),
-        "isinstance on energies outside mechanics": str(sum(asks(module, energies) for module in outside.values())),
-    }
+    return [
+        ("modules, without __init__", str(len(files))),
+        ("lines of all files", str(sum(len(text.splitlines()) for text in texts.values()))),
+        ("median file [lines]", f"{median(files.values()):g}"),
+        ("largest file [lines]", f"{files[largest]} ({largest.relative_to(tree / 'hydrostat')})"),
+        ("median function [code lines]", f"{median(functions.values()):g}"),
+        ("largest function [code lines]", f"{functions[longest]} ({longest})"),
+        ("class names that stand twice", str(sum(count > 1 for count in classes.values()))),
+        ("isinstance on energies outside mechanics", str(sum(asks(module, energies) for module in outside.values()))),
+    ]
 
 
-def seconds(tree: Path) -> dict[str, str]:
+def seconds(tree: Path) -> Iterator[tuple[str, str]]:
     """How long the tests take to collect, and to run on two cores."""
-    table = {}
     for name, options in (("collection", ["--collect-only"]), ("make test", ["-n", "2", "--dist", "worksteal"])):
         before = time.perf_counter()
         done = subprocess.run(
             [sys.executable, "-m", "pytest", "-q", *options], cwd=tree, capture_output=True, text=True, check=False
         )
         last = (done.stdout.strip().splitlines() or ["nothing"])[-1]
-        table[f"{name} [s]"] = f"{time.perf_counter() - before:.0f} ({last.strip('= ')})"
-    return table
+        yield f"{name} [s]", f"{time.perf_counter() - before:.0f} ({last.strip('= ')})"
 
 
 @contextmanager
@@ -207,18 +205,14 @@ def walk(name: str) -> list[str]:
     return sorted(str(Path(file).relative_to(package)) for file in files)
 
 
-def walks(tree: Path) -> dict[str, str]:
+def walks(tree: Path) -> Iterator[tuple[str, str]]:
     """Number of files that each flow enters, each in a process of its own."""
-    table = {}
     for name in ("drawing to pose", "pose to contractions", "design", "kit", "drag", "scan to mesh"):
         command = [sys.executable, str(Path(__file__).resolve()), "--walk", name]
         environment = {**os.environ, "PYTHONPATH": str(tree)}
         done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=False)
         last = (done.stderr.strip().splitlines() or ["?"])[-1]
-        table[f"files entered: {name}"] = (
-            last if done.returncode else str(len(json.loads(done.stdout.splitlines()[-1])))
-        )
-    return table
+        yield f"files entered: {name}", last if done.returncode else str(len(json.loads(done.stdout.splitlines()[-1])))
 
 
 def main() -> None:
@@ -232,14 +226,11 @@ def main() -> None:
         print(json.dumps(walk(options.walk)))
         return
     tree = options.tree.resolve()
-    table = sizes(tree)
-    if not options.no_flows:
-        table |= walks(tree)
-    if options.seconds:
-        table |= seconds(tree)
     print(f"| {tree.name} | |\n|---|---|")
-    for what, figure in table.items():
-        print(f"| {what} | {figure} |")
+    parts = [sizes] + [walks] * (not options.no_flows) + [seconds] * options.seconds
+    for part in parts:
+        for what, figure in part(tree):
+            print(f"| {what} | {figure} |", flush=True)
 
 
 if __name__ == "__main__":
