@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import reduce
 from itertools import chain
 
 import numpy as np
@@ -72,7 +71,8 @@ def locate(mesh: Mesh, points: Points) -> Anchors:
         raise InputError(f"points on a mesh of dimension {mesh.dim} must be finite, (points, {mesh.dim})")
     held, weights = _holders(mesh, points)
     distances = np.zeros(len(points))
-    for outside in np.flatnonzero(held < 0):
+    outside = np.flatnonzero(held < 0)
+    if outside.size:
         held[outside], weights[outside], distances[outside] = _nearest(mesh, points[outside])
     weights = np.clip(weights, 0.0, None)
     return Anchors(mesh.elements[held], weights / weights.sum(axis=1, keepdims=True), distances)
@@ -96,32 +96,36 @@ def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndar
 def _holders(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"]]:
     """The element in which each point lies deepest, and its barycentric weights there; -1 and 0 where it is in none."""
     asked, elements = _in_boxes(mesh, points)
-    some, which = np.unique(elements, return_inverse=True)
-    corners = mesh.nodes[mesh.elements[some]]
-    inverses = np.linalg.inv(np.swapaxes(_spans(corners), 1, 2))
-    local = np.einsum("pij,pj->pi", inverses[which], points[asked] - corners[which, 0])
+    shifts = points[asked] - mesh.nodes[mesh.elements[elements, 0]]
+    local = np.einsum("pij,pj->pi", mesh.inverse_spans[elements], shifts)
     weights = np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1)
     depth = weights.min(axis=1)
     order = np.lexsort((elements, -depth, asked))
     order = order[depth[order] >= -_HAIR]
-    found, first = np.unique(asked[order], return_index=True)
+    first = _firsts(asked[order])
+    found, order = asked[order][first], order[first]
     held, shares = np.full(len(points), -1), np.zeros((len(points), mesh.dim + 1))
-    held[found], shares[found] = elements[order[first]], weights[order[first]]
+    held[found], shares[found] = elements[order], weights[order]
     return held, shares
+
+
+def _firsts(rising: Int[np.ndarray, " pairs"]) -> Bool[np.ndarray, " pairs"]:
+    """Whether each of some rising numbers is the first of its kind."""
+    return np.append(True, rising[1:] != rising[:-1])[: len(rising)]
 
 
 def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]:
     """Every pair of a point and an element in whose box it lies."""
-    corners = [mesh.nodes[corner] for corner in mesh.elements.T]
-    low, high = reduce(np.minimum, corners), reduce(np.maximum, corners)
+    low, high = mesh.boxes
     longest = (high - low).max(axis=1)
     low, high = low - _MARGIN * longest[:, None], high + _MARGIN * longest[:, None]
     if len(points) * len(low) <= _AT_ONCE:
-        inside = np.ones((len(points), len(low)), dtype=bool)
-        for axis in range(mesh.dim):
-            inside &= (points[:, axis, None] >= low[:, axis]) & (points[:, axis, None] <= high[:, axis])
-        asked, elements = np.nonzero(inside)
-        return asked, elements
+        along = int(np.argmax(np.ptp(mesh.nodes, axis=0)))  # most pairs are apart along the body
+        asked, elements = np.nonzero(
+            (points[:, along, None] >= low[:, along]) & (points[:, along, None] <= high[:, along])
+        )
+        inside = ((points[asked] >= low[elements]) & (points[asked] <= high[elements])).all(axis=1)
+        return asked[inside], elements[inside]
     # Imported here: few points do without, and start sooner.
     from scipy.spatial import KDTree
 
@@ -132,17 +136,30 @@ def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], In
     return asked[inside], elements[inside]
 
 
-def _nearest(mesh: Mesh, point: Float[np.ndarray, " dim"]) -> tuple[int, Float[np.ndarray, " corners"], float]:
-    """Element, weights and distance [m] of the place on the boundary nearest to a point outside."""
-    corners = mesh.nodes[mesh.boundary]
-    shares = nearest_shares(corners, point[None])
-    distances = np.linalg.norm(np.einsum("fc,fcd->fd", shares, corners) - point, axis=1)
-    facet = int(np.argmin(distances))
-    element = int(mesh.boundary_elements[facet])
-    weights = np.zeros(mesh.dim + 1)
-    for node, share in zip(mesh.boundary[facet], shares[facet], strict=True):
-        weights[mesh.elements[element] == node] = share
-    return element, weights, float(distances[facet])
+def _nearest(
+    mesh: Mesh, points: Points
+) -> tuple[Int[np.ndarray, " points"], Float[np.ndarray, "points corners"], Float[np.ndarray, " points"]]:
+    """Element, weights and distance [m] of the place on the boundary nearest to each point outside.
+
+    The nearest facet is no farther than the nearest middle of one, so its own middle is within its radius of that.
+    """
+    facets, (middles, radii) = mesh.boundary, mesh.facet_balls
+    asked, near = [], []
+    for first in range(0, len(points), max(1, _AT_ONCE // len(facets))):
+        some = points[first : first + max(1, _AT_ONCE // len(facets))]
+        away = np.sqrt(sum((some[:, axis, None] - middles[:, axis]) ** 2 for axis in range(mesh.dim)))
+        pairs = np.nonzero(away - radii <= away.min(axis=1, keepdims=True) * (1 + 1e-9))
+        asked.append(first + pairs[0])
+        near.append(pairs[1])
+    which, facet = np.concatenate(asked), np.concatenate(near)
+    corners = mesh.nodes[facets[facet]]
+    shares = nearest_shares(corners, points[which])
+    distances = np.linalg.norm(np.einsum("fc,fcd->fd", shares, corners) - points[which], axis=1)
+    order = np.lexsort((facet, distances, which))
+    order = order[_firsts(which[order])]
+    element = mesh.boundary_elements[facet[order]]
+    match = mesh.elements[element][:, :, None] == facets[facet[order]][:, None, :]
+    return element, (match * shares[order][:, None, :]).sum(axis=2), distances[order]
 
 
 def nearest_shares(

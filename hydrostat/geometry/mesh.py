@@ -72,6 +72,25 @@ class Mesh:
         return np.linalg.det(corners[:, 1:] - corners[:, :1]) / factorial
 
     @cached_property
+    def boxes(self) -> tuple[Float[np.ndarray, "elements dim"], Float[np.ndarray, "elements dim"]]:
+        """Lowest and highest corner of the box around each element [m]."""
+        corners = self.nodes[self.elements]
+        return corners.min(axis=1), corners.max(axis=1)
+
+    @cached_property
+    def inverse_spans(self) -> Float[np.ndarray, "elements dim dim"]:
+        """Inverse of the matrix whose columns are the edges from the first corner of each element [1/m]."""
+        corners = self.nodes[self.elements]
+        return np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
+
+    @cached_property
+    def facet_balls(self) -> tuple[Float[np.ndarray, "facets dim"], Float[np.ndarray, " facets"]]:
+        """Middle and radius of the ball about the middle of each facet of `boundary` [m]."""
+        corners = self.nodes[self.boundary]
+        middles = corners.mean(axis=1)
+        return middles, np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
+
+    @cached_property
     def edges(self) -> Int[np.ndarray, "edges 2"]:
         """Every edge once, lower node first, sorted."""
         pairs = np.concatenate([self.elements[:, list(pair)] for pair in combinations(range(self.dim + 1), 2)])

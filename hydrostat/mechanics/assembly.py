@@ -12,7 +12,7 @@ from scipy.sparse import csc_array
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.kernel import KERNEL
 from hydrostat.mechanics.energy import Coupling, Energy
-from hydrostat.mechanics.pattern import Pattern
+from hydrostat.mechanics.sparsity import SparsityPattern
 from hydrostat.mechanics.stiffness import Stiffness
 
 
@@ -27,7 +27,7 @@ class Assembly:
     """
 
     def __init__(
-        self, energies: Sequence[Energy], *, rest: Nodes, control_count: int, pattern: Pattern | None = None
+        self, energies: Sequence[Energy], *, rest: Nodes, control_count: int, pattern: SparsityPattern | None = None
     ) -> None:
         """Sum of energies of a body whose nodes are at `rest` [m] before it deforms.
 
@@ -38,7 +38,7 @@ class Assembly:
             pattern: of the stencils of these energies, if it is at hand.
         """
         self.energies, self.control_count = tuple(energies), control_count
-        self.pattern = pattern or Pattern([energy.stencils for energy in energies], rest)
+        self.pattern = pattern or SparsityPattern([energy.stencils for energy in energies], rest)
         self.shape, self.size = rest.shape, rest.size
         self.token = object()
 
@@ -187,7 +187,7 @@ class Assembly:
             return csc_array(shape)
         return csc_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
 
-    def _like(self, energies: Sequence[Energy], pattern: Pattern) -> "Assembly":
+    def _like(self, energies: Sequence[Energy], pattern: SparsityPattern) -> "Assembly":
         """Assembly that factors of this one serve too."""
         other = Assembly(energies, rest=pattern.rest, control_count=self.control_count, pattern=pattern)
         other.token = self.token

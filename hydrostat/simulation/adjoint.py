@@ -78,6 +78,7 @@ def sensitivity(
         raise InputError(f"an adjoint needs a SolvedPose, as solve() returns it, not a {type(pose).__name__}")
     if pose.nodes.shape != assembly.shape or pose.tensions.shape != (len(robot.cables),):
         raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {assembly.shape}")
+    assembly = assembly.near(pose.nodes)
     nodes = _checked("nodes", nodes, assembly.shape)
     tensions = _checked("tensions", np.zeros(len(robot.cables)) if tensions is None else tensions, pose.tensions.shape)
     elongations = cables.elongations(pose.nodes, pose.contractions)

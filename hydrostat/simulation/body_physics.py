@@ -83,14 +83,18 @@ class BodyPhysics:
 
     def round_off(self, stiffest: float = 0.0) -> RoundOff:
         """What the rounding errors of the body's own forces hide, and those of springs up to `stiffest` [N/m]."""
+        scale, reach, springs, size = self._scales
+        force = 1e-14 * scale / size * (reach / size) + 2e-16 * max(springs, stiffest) * reach
+        return RoundOff(force=force, energy=1e-15 * scale)
+
+    @cached_property
+    def _scales(self) -> tuple[float, float, float, float]:
+        """Modulus x volume [J], largest coordinate [m], stiffest pin [N/m], size [m]."""
         body, pins, _ = self._given
         mu, lame = body.material.lame
         scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
-        springs = max((pin.stiffness for pin in pins), default=0.0)
-        springs = max(springs, stiffest)
-        force = 1e-14 * scale / body.mesh.size * (reach / body.mesh.size) + 2e-16 * springs * reach
-        return RoundOff(force=force, energy=1e-15 * scale)
+        return scale, reach, max((pin.stiffness for pin in pins), default=0.0), body.mesh.size
 
 
 def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:

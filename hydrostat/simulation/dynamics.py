@@ -1,7 +1,8 @@
 """`Dynamics`: how a robot moves in time."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from hydrostat.mechanics.viscous import Memory, Metrics
 from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.motion import Motion
+from hydrostat.simulation.profile import Profile
 
 PinShifts = Mapping[int, Vector]
 """How far pins have been moved from where they were at rest [m], by their number; the others stay where they are."""
@@ -136,6 +138,23 @@ class Dynamics:
             f"try another time step (force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
             result,
         )
+
+    def play(
+        self, profile: Profile, seconds: float, dt: float, start: Motion, options: StepOptions
+    ) -> Iterator[Motion]:
+        """The motion under contractions in time: its start, then each step as it is found.
+
+        Raises:
+            InputError: a duration or a time step that is not above 0.
+        """
+        if not (seconds > 0 and dt > 0):
+            raise InputError(f"duration and time step must be above 0 s, not {seconds:g} and {dt:g}")
+        motion, begin, steps = start, start.time, max(1, ceil(seconds / dt - 1e-9))
+        yield motion
+        for step in range(1, steps + 1):
+            end = begin + seconds * step / steps
+            motion = self.step(motion, profile.at(end), end - motion.time, options, {})
+            yield motion
 
     def _advance(
         self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions

@@ -1,6 +1,7 @@
 """`RoutePoints`: the points of all cables of a robot, and how they move with their places in the rest shape."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -25,10 +26,9 @@ class RoutePoints:
     Attributes:
         places: in the rest shape, as asked for [m].
         rests: where they are in it: at their places, but for those outside the body [m].
+        mesh: of the body.
         anchors: what holds them.
         world: which of them are fixed in space.
-        ways: how the place that holds a point moves with it: the identity inside the body.
-        shape_gradients: of the weights in the rest shape [1/m].
         starts: first point of each bare segment, in the order of the terms of a `CableEnergy`.
         cables: which cable each bare segment belongs to.
         counts: how many points each cable has.
@@ -36,13 +36,32 @@ class RoutePoints:
 
     places: Points
     rests: Points
+    mesh: Mesh
     anchors: Anchors
     world: Bool[np.ndarray, " points"]
-    ways: Float[np.ndarray, "points dim dim"]
-    shape_gradients: Float[np.ndarray, "points corners dim"]
     starts: Int[np.ndarray, " segments"]
     cables: Int[np.ndarray, " segments"]
     counts: tuple[int, ...]
+
+    @cached_property
+    def shape_gradients(self) -> Float[np.ndarray, "points corners dim"]:
+        """Gradients of the weights in the rest shape [1/m]."""
+        corners = self.mesh.nodes[self.anchors.stencils]
+        inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
+        return np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
+
+    @cached_property
+    def projections(self) -> Float[np.ndarray, "points dim dim"]:
+        """How the place that holds a point moves with it: the identity inside the body.
+
+        Outside it is the projection onto the plane or line of the corners that carry a weight.
+        """
+        projections = np.tile(np.eye(self.mesh.dim), (len(self.anchors.stencils), 1, 1))
+        for outside in np.flatnonzero(~self.anchors.inside):
+            corners = self.mesh.nodes[self.anchors.stencils[outside][self.anchors.weights[outside] > 0]]
+            along = np.linalg.qr((corners[1:] - corners[0]).T)[0]
+            projections[outside] = along @ along.T
+        return projections
 
     def segments(
         self, starts: Int[np.ndarray, " segments"]
@@ -78,7 +97,7 @@ class RoutePoints:
 
     def held_back(self, slopes: Points) -> Points:
         """Slopes by the positions at rest, as slopes by the places asked for."""
-        held = np.einsum("pij,pi->pj", self.ways, slopes)
+        held = np.einsum("pij,pi->pj", self.projections, slopes)
         return np.where(self.world[:, None], slopes, held)
 
     def spans(self, positions: Points) -> Float[np.ndarray, "segments dim"]:
@@ -98,7 +117,7 @@ class RoutePoints:
 
     def _through(self, field: Nodes, slopes: Points) -> Points:
         gradients = np.einsum("pci,pcj->pij", field[self.anchors.stencils], self.shape_gradients)
-        return np.einsum("pij,pi,pjk->pk", gradients, slopes, self.ways)
+        return np.einsum("pij,pi,pjk->pk", gradients, slopes, self.projections)
 
 
 def route_points(robot: Robot) -> RoutePoints:
@@ -116,27 +135,10 @@ def route_points(robot: Robot) -> RoutePoints:
     return RoutePoints(
         places=places,
         rests=np.where(world[:, None], places, anchors.positions(mesh.nodes)),
+        mesh=mesh,
         anchors=anchors,
         world=world,
-        ways=_ways(mesh, anchors),
-        shape_gradients=_shape_gradients(mesh, anchors),
         starts=np.concatenate([none, *(start + own for start, own in zip(first, bare, strict=True))]),
         cables=np.repeat(np.arange(len(cables)), [len(own) for own in bare]),
         counts=counts,
     )
-
-
-def _shape_gradients(mesh: Mesh, anchors: Anchors) -> Float[np.ndarray, "points corners dim"]:
-    corners = mesh.nodes[anchors.stencils]
-    inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
-    return np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
-
-
-def _ways(mesh: Mesh, anchors: Anchors) -> Float[np.ndarray, "points dim dim"]:
-    """Outside the body: the projection onto the plane or line of the corners that carry a weight."""
-    ways = np.tile(np.eye(mesh.dim), (len(anchors.stencils), 1, 1))
-    for outside in np.flatnonzero(~anchors.inside):
-        corners = mesh.nodes[anchors.stencils[outside][anchors.weights[outside] > 0]]
-        along = np.linalg.qr((corners[1:] - corners[0]).T)[0]
-        ways[outside] = along @ along.T
-    return ways

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from math import ceil
 
 import numpy as np
 from jaxtyping import Float
@@ -187,7 +186,7 @@ class Simulation:
         """
         return sensitivity(
             self.robot,
-            self.assembly.near(pose.nodes),
+            self.assembly,
             self.cables,
             pose,
             nodes=nodes,
@@ -288,15 +287,7 @@ class Simulation:
         Raises:
             InputError, NotConvergedError: as for `step`.
         """
-        if not (seconds > 0 and dt > 0):
-            raise InputError(f"duration and time step must be above 0 s, not {seconds:g} and {dt:g}")
-        motion = start or self.still()
-        begin, steps = motion.time, max(1, ceil(seconds / dt - 1e-9))
-        yield motion
-        for step in range(1, steps + 1):
-            goal = profile.at(begin + seconds * step / steps)
-            motion = self.step(motion, goal, begin + seconds * step / steps - motion.time, options=options)
-            yield motion
+        return self.dynamics.play(profile, seconds, dt, start or self.still(), options or StepOptions())
 
     @cached_property
     def dynamics(self) -> Dynamics:

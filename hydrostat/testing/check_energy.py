@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics.energy import Coupling, Energy
+from hydrostat.mechanics.energy import Energy
+from hydrostat.testing.check_solver_contract import check_history, check_law, check_loads, check_steps, check_supports
 from hydrostat.testing.conformance_error import ConformanceError
 from hydrostat.testing.differences import central_differences, steps
 
@@ -44,9 +45,10 @@ def check_energy(
     check.coupling()
     check.projection()
     check.convexity()
-    check.solver()
-    check.parameters()
-    check.history()
+    check_steps(energy, nodes, controls, check.states())
+    check_supports(energy, nodes, controls)
+    check_loads(energy, nodes, controls)
+    check_history(energy, nodes, controls)
 
 
 class _EnergyCheck:
@@ -93,7 +95,7 @@ class _EnergyCheck:
 
     def values(self) -> None:
         """The value is never NaN; wherever it is finite, so are the gradient and the Hessian."""
-        for nodes in self._states():
+        for nodes in self.states():
             value = self.energy.value(nodes, self.controls)
             if np.isnan(value) or value == -np.inf:
                 raise ConformanceError("value", f"{value} at some positions; where it is not defined it must be +inf")
@@ -214,7 +216,7 @@ class _EnergyCheck:
 
     def coupling(self) -> None:
         """G and D are finite, D is symmetric and positive semidefinite; G and D are slopes of elongations and law."""
-        for nodes in self._states():
+        for nodes in self.states():
             if not np.isfinite(self.energy.value(nodes, self.controls)):
                 continue
             part = self.energy.coupling(nodes, self.controls)
@@ -232,7 +234,7 @@ class _EnergyCheck:
             if negative > 1e-9:
                 raise ConformanceError("coupling", "D has a negative eigenvalue", relative_error=negative)
             if part.law is not None and part.elongations is not None:
-                self._law(part)
+                check_law(part)
         part = self.energy.coupling(self.nodes, self.controls)
         if part is not None and part.elongations is not None:
             self._elongations(part.columns)
@@ -253,98 +255,9 @@ class _EnergyCheck:
         worst, place = self._best(error, self.size)
         self._judge("coupling", "[spring, variable] of G is not the derivative of its elongation", worst, place)
 
-    def _law(self, part: Coupling) -> None:
-        """D is the tangent of the law, and the forces it finds on a body that gives way balance."""
-        assert part.law is not None
-        assert part.elongations is not None
-        tangents = np.diag(part.law.tangent(part.elongations))
-        miss = _largest(part.weights - tangents) / (_largest(tangents) or 1.0)
-        if miss > 1e-9:
-            raise ConformanceError("coupling", "D is not the tangent of its law", relative_error=miss)
-        for softness in (1e-6, 1.0, 1e3):
-            compliance = softness / (_largest(tangents) or 1.0) * np.eye(len(tangents))
-            tensions = part.law.balance(part.elongations, compliance)
-            if tensions is None:
-                raise ConformanceError("coupling", "its law finds no balance on a body that gives way evenly")
-            wanted = part.law.tension(part.elongations - compliance @ tensions)
-            off = _largest(wanted - tensions) / (_largest(tensions) or 1.0)
-            if off > 1e-6:
-                raise ConformanceError("coupling", "the forces of its law do not balance", relative_error=off)
-
-    def solver(self) -> None:
-        """Largest force and step are in their range; terms near a place stay; whole loads change nothing."""
-        energy, controls = self.energy, self.controls
-        force = energy.largest_force(self.nodes, controls)
-        if not (np.isfinite(force) and force >= 0.0):
-            raise ConformanceError("largest force", f"it must be finite and not negative, not {force:g}")
-        for nodes in self._states():
-            share = energy.largest_step(self.nodes, nodes - self.nodes)
-            if not 0.0 < share <= 1.0:
-                raise ConformanceError("largest step", f"it must be above 0 and at most 1, not {share:g}")
-            reached = self.nodes + share * (nodes - self.nodes)
-            if share < 1.0 and not np.isfinite(energy.near(reached).value(reached, controls)):
-                raise ConformanceError("largest step", "the energy is not finite where it allows the nodes to go")
-        near = energy.near(self.nodes)
-        if near.near(self.nodes).stencils.shape != near.stencils.shape:
-            raise ConformanceError("near", "asked again at the same nodes it has other terms")
-        value = energy.value(self.nodes, controls)
-        for name, other in (("load", energy.with_load(1.0)), ("supports", self._supported(0.0))):
-            if abs(other.value(self.nodes, controls) - value) > 1e-9 * abs(value):
-                raise ConformanceError(name, "a whole load, or supports that have not moved, must change nothing")
-        self._moves_with_supports()
-
-    def _moves_with_supports(self) -> None:
-        """An energy that supports alone hold is the same where it is moved together with them."""
-        if self.energy.supports is None:
-            return
-        shift = 0.01 * self.size
-        moved = self._supported(shift).value(self.nodes + shift, self.controls)
-        value = self.energy.value(self.nodes, self.controls)
-        if abs(moved - value) > 1e-9 * max(abs(value), np.finfo(float).tiny):
-            raise ConformanceError("supports", "moved together with its supports it has another value")
-
-    def _supported(self, shift: float) -> Energy:
-        count = 0 if self.energy.supports is None else int(self.energy.supports.max(initial=-1)) + 1
-        return self.energy.with_supports_moved(np.full((count, self.nodes.shape[1]), shift))
-
-    def parameters(self) -> None:
-        """`parameter_work` gives finite vectors; that of the dead load is the work of the forces that it adds."""
-        field = self.random.standard_normal(self.nodes.shape)
-        works = self.energy.parameter_work(self.nodes, field)
-        for name, work in works.items():
-            if not (np.ndim(work) == 1 and np.isfinite(work).all()):
-                raise ConformanceError("parameters", f"the work of {name} must be finite numbers in a vector")
-        full, none = (self._forces(self.energy.with_load(share)) for share in (1.0, 0.0))
-        expected, found = float(np.vdot(full - none, field)), float(np.sum(works.get("load", 0.0)))
-        if abs(found - expected) > 1e-6 * max(abs(expected), np.finfo(float).tiny):
-            raise ConformanceError("parameters", "the work of the load is not that of the forces it adds")
-
-    def history(self) -> None:
-        """An energy with a history goes on from it as if it had never stopped; others remember nothing."""
-        energy, nodes, controls = self.energy, self.nodes, self.controls
-        if not energy.has_history:
-            if len(energy.history) or energy.imbalance(nodes, controls) or energy.after(nodes, controls) is not energy:
-                raise ConformanceError("history", "an energy that remembers must say so by `has_history`")
-            return
-        after = energy.after(nodes, controls)
-        resumed = energy.resumed(after.history, nodes, controls)
-        if np.abs(resumed.history - after.history).max(initial=0.0) > 0:
-            raise ConformanceError("history", "resumed from what it remembers it remembers something else")
-        first, second = (one.value(nodes, controls) for one in (after, resumed))
-        if abs(first - second) > 1e-9 * max(abs(first), np.finfo(float).tiny):
-            raise ConformanceError("history", "resumed from what it remembers it has another value")
-        left = energy.corrected(nodes, controls, None).imbalance(nodes, controls)
-        if left > 1e-6 * energy.largest_force(nodes, controls) and left >= energy.imbalance(nodes, controls):
-            raise ConformanceError("history", "a correction brings it no nearer to balance")
-
-    def _forces(self, energy: Energy) -> np.ndarray:
-        total = np.zeros(self.nodes.shape)
-        np.add.at(total, energy.stencils, energy.gradient(self.nodes, self.controls))
-        return total
-
     def projection(self) -> None:
         """The projected Hessian is the Hessian at share 0, semidefinite at 1, linear between; no eigenvalue falls."""
-        for nodes in self._states():
+        for nodes in self.states():
             if not np.isfinite(self.energy.value(nodes, self.controls)):
                 continue
             none, half, whole = (
@@ -370,7 +283,7 @@ class _EnergyCheck:
         """An energy that says it is convex has no block with a negative eigenvalue."""
         if not self.energy.convex:
             return
-        for nodes in self._states():
+        for nodes in self.states():
             if not np.isfinite(self.energy.value(nodes, self.controls)):
                 continue
             eigenvalues = np.linalg.eigvalsh(self.energy.hessian(nodes, self.controls))
@@ -382,7 +295,7 @@ class _EnergyCheck:
                     "convexity", "this term's Hessian has a negative eigenvalue", index=(term,), relative_error=worst
                 )
 
-    def _states(self) -> Iterator[Nodes]:
+    def states(self) -> Iterator[Nodes]:
         """The state itself, and others scattered more and more about it."""
         yield self.nodes
         for amplitude in (1e-3, 1e-2, 0.03, 0.1, 0.3, 1.0, 100.0):

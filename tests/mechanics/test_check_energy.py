@@ -1,10 +1,13 @@
 """The conformance suite can fail: every kind of slip is found, by its name. Oracle: energies broken on purpose."""
 
+from copy import copy
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from states import LAW, cables, deform, element_fibres, neo_hookean, pins, rough_mesh
+from states import LAW, cables, deform, element_fibres, neo_hookean, pins, rough_mesh, weight
 
-from hydrostat.mechanics import CableEnergy, FibreEnergy, NeoHookean, PinEnergy
+from hydrostat.mechanics import CableEnergy, CableSegments, FibreEnergy, NeoHookean, PinEnergy, WeightEnergy
 from hydrostat.mechanics.energy import Coupling, Energy
 from hydrostat.testing import ConformanceError, check_energy
 
@@ -152,6 +155,80 @@ class CableControlForgotten(CableEnergy):
         return blocks
 
 
+class CableOfAnotherLaw(CableEnergy):
+    """D is right, but the law that is told is that of a stiffer cable."""
+
+    def coupling(self, nodes, controls):
+        law = replace(self.law, stiffness=1.01 * self.law.stiffness)
+        return replace(super().coupling(nodes, controls), law=law)
+
+
+class CableOfShiftedElongations(CableEnergy):
+    """Told with a factor, so that G is not their slope."""
+
+    def coupling(self, nodes, controls):
+        found = super().coupling(nodes, controls)
+        return replace(found, law=None, elongations=1.001 * found.elongations)
+
+
+class ForceThatIsNegative(PinEnergy):
+    def largest_force(self, nodes, controls):
+        return -1.0
+
+
+class StepOfNothing(PinEnergy):
+    def largest_step(self, nodes, move):
+        return 0.0
+
+
+class TermsThatNeverRest(PinEnergy):
+    """Near the same nodes it loses a term each time it is asked."""
+
+    def near(self, nodes):
+        other = copy(self)
+        other.stencils = self.stencils[1:]
+        return other
+
+
+class SupportsThatStay(PinEnergy):
+    def with_supports_moved(self, shifts):
+        return self
+
+
+class LoadOfHalf(WeightEnergy):
+    """With a share of its load it forgets half of it."""
+
+    def with_load(self, share):
+        return WeightEnergy(self._rest, 0.5 * share * self.forces)
+
+
+class LoadOfNoWork(WeightEnergy):
+    def parameter_work(self, nodes, field):
+        return {}
+
+
+class SilentMemory(PinEnergy):
+    """It changes along the path and does not say so."""
+
+    def after(self, nodes, controls):
+        return copy(self)
+
+
+class ForgetsItsSlips(PinEnergy):
+    """Resumed from what it remembers, it holds its points elsewhere."""
+
+    has_history = True
+
+    @property
+    def history(self):
+        return np.ones(1)
+
+    def resumed(self, history, nodes, controls):
+        other = copy(self)
+        other.targets = self.targets + 0.01
+        return other
+
+
 class LiftsNothing(NeoHookean):
     def projected_hessian(self, nodes, controls, share):
         return super().projected_hessian(nodes, controls, 0.0)
@@ -209,13 +286,29 @@ BROKEN = [
     (LowRankNotSymmetric, "coupling"),
     (LowRankOfWrongShape, "coupling"),
     (CableControlForgotten, "control gradient"),
+    (CableOfAnotherLaw, "coupling"),
+    (CableOfShiftedElongations, "coupling"),
+    (ForceThatIsNegative, "largest force"),
+    (StepOfNothing, "largest step"),
+    (TermsThatNeverRest, "near"),
+    (SupportsThatStay, "supports"),
+    (LoadOfHalf, "load"),
+    (LoadOfNoWork, "parameters"),
+    (SilentMemory, "history"),
+    (ForgetsItsSlips, "history"),
     (LiftsNothing, "projection"),
     (LiftsAtZero, "projection"),
     (LiftsBySquare, "projection"),
     (LiftsTooLittle, "projection"),
     (LiftThatLowers, "projection"),
 ]
-MAKERS = {NeoHookean: neo_hookean, PinEnergy: pins, FibreEnergy: element_fibres, CableEnergy: cables}
+MAKERS = {
+    NeoHookean: neo_hookean,
+    PinEnergy: pins,
+    FibreEnergy: element_fibres,
+    CableEnergy: cables,
+    WeightEnergy: weight,
+}
 
 
 @pytest.mark.parametrize(("broken", "check"), BROKEN)
@@ -270,10 +363,12 @@ def test_a_cable_that_forgets_a_node_is_found() -> None:
     mesh = rough_mesh(2, random)
     energy = Forgetful(
         mesh.nodes,
-        stencils=np.array([[1, 3]]),
-        weights=np.array([[-1.0, 1.0]]),
-        offsets=np.zeros((1, 2)),
-        cables=np.array([0]),
+        CableSegments(
+            stencils=np.array([[1, 3]]),
+            weights=np.array([[-1.0, 1.0]]),
+            offsets=np.zeros((1, 2)),
+            cables=np.array([0]),
+        ),
         law=LAW,
         winches=np.array([0]),
         slack=np.zeros(1),

@@ -1,4 +1,4 @@
-"""`Pattern`: which pairs of nodes meet in a Hessian, and where the block of each pair of each term goes."""
+"""`SparsityPattern`: which pairs of nodes meet in a Hessian, and where the block of each pair of each term goes."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -14,7 +14,7 @@ AnyStencils = Int[np.ndarray, "_ _"]
 """Stencils of one of several energies, which differ in terms and corners."""
 
 
-class Pattern:
+class SparsityPattern:
     """Sparsity of the Hessian of a sum of energies, column by column, with degrees of freedom node by node.
 
     All that follows from it is made when it is first asked for, once, and never changes: patterns are shared.
@@ -26,7 +26,7 @@ class Pattern:
         rest: rest positions of the nodes [m].
     """
 
-    def __init__(self, stencils: Sequence[AnyStencils], rest: Nodes, *, base: "Pattern | None" = None) -> None:
+    def __init__(self, stencils: Sequence[AnyStencils], rest: Nodes, *, base: "SparsityPattern | None" = None) -> None:
         """Pairs of all stencils of a body whose nodes are at `rest` [m], together with those of `base`.
 
         `rest` decides the order of elimination alone, and `base` too, where its order serves here as well.
@@ -37,15 +37,17 @@ class Pattern:
             keys = np.arange(len(rest), dtype=np.int64) * (len(rest) + 1)
             self.entries = np.unique(np.concatenate([keys, *map(self._keys, self.stencils)]))
         else:
-            self.entries = np.union1d(base.entries, np.concatenate([base.entries[:0], *map(self._keys, self.stencils)]))
+            shared = {id(own) for own in base.stencils}
+            keys = [self._keys(own) for own in self.stencils if id(own) not in shared]
+            self.entries = _joined(base.entries, np.sort(np.concatenate([base.entries[:0], *keys])))
 
-    def extended(self, stencils: Sequence[AnyStencils]) -> "Pattern":
+    def extended(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
         """Pattern of these stencils behind those of this one."""
-        return Pattern([*self.stencils, *stencils], self.rest, base=self)
+        return SparsityPattern([*self.stencils, *stencils], self.rest, base=self)
 
-    def changed(self, stencils: Sequence[AnyStencils]) -> "Pattern":
+    def changed(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
         """Pattern of other stencils that keeps all pairs of this one; its analysis too, if no new pair comes."""
-        other = Pattern(stencils, self.rest, base=self)
+        other = SparsityPattern(stencils, self.rest, base=self)
         if len(other.entries) == len(self.entries):
             other.__dict__["analysis"] = self.analysis
         return other
@@ -117,3 +119,11 @@ class Pattern:
 
     def _keys(self, stencils: Stencils) -> np.ndarray:
         return (stencils[:, None, :].astype(np.int64) * self.shape[0] + stencils[:, :, None]).ravel()
+
+
+def _joined(rising: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Numbers that stand in either of two rising lists, once each and rising; the first has no number twice."""
+    others = others[np.append(True, others[1:] != others[:-1])[: len(others)]]
+    places = np.searchsorted(rising, others)
+    new = rising[np.minimum(places, len(rising) - 1)] != others
+    return np.insert(rising, places[new], others[new])
