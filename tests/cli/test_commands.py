@@ -90,6 +90,7 @@ def test_pose_writes_one_pose_or_a_folder_for_each(run: Run, tmp_path: Path, sta
     assert {folder.name for folder in (tmp_path / "all").iterdir()} == set(robot.poses)
 
 
+@pytest.mark.slow
 def test_design_writes_robot_report_score_and_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
     arguments = (
         *("--pose", "wave", "--method", "trees", "--winches", 1, "--cables", 2, "--kit"),

@@ -12,6 +12,7 @@ from hydrostat.robot import save_robot
 Run = Callable[..., tuple[int, str, str]]
 
 
+@pytest.mark.slow
 def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, out, err = run("fabricate", starfish, "--out", tmp_path)
     assert code == 0

@@ -34,6 +34,7 @@ def _only(folder: Path, *names: str) -> None:
     assert sorted(path.name for path in folder.iterdir()) == sorted(names)
 
 
+@pytest.mark.slow
 def test_a_scan_becomes_a_robot_that_can_be_checked_and_pulled(run: Run, tmp_path: Path, bar: Path) -> None:
     folder = tmp_path / "sub" / "bar"
     code, out, err = run("new", folder, "--from", bar, "--nodes", 150)
@@ -83,6 +84,7 @@ def test_a_ready_mesh(run: Run, tmp_path: Path) -> None:
     assert not (tmp_path / "b").exists()
 
 
+@pytest.mark.slow
 def test_a_drawing_is_blown_up(run: Run, tmp_path: Path) -> None:
     """As thick in the middle as asked for."""
     (tmp_path / "a.svg").write_bytes(DRAWING)
@@ -101,6 +103,7 @@ def test_a_gallery_robot_of_other_elements(run: Run, tmp_path: Path) -> None:
     assert mine.poses == theirs.poses
 
 
+@pytest.mark.slow
 def test_a_dirty_scan_is_healed_told_and_drawn(run: Run, tmp_path: Path, bar: Path) -> None:
     """A hole and flipped triangles: both are in the report, which is on the screen and in the folder."""
     import trimesh

@@ -104,6 +104,7 @@ def test_cables_are_no_stubs(case: str, unchecked: None) -> None:
         assert cable.segments[cable.bare].sum() > 2.0 * edge
 
 
+@pytest.mark.slow
 def test_the_same_twice(unchecked: None) -> None:
     poses, winches, cables, kind = CASES["two poses"]
     options = TreeOptions(fibres=kind, trials=12)

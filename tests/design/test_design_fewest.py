@@ -23,6 +23,7 @@ def fewest(tolerance: float = TOLERANCE) -> Network:
     return design_cables(bare(), [UP, DOWN], winches="auto", cables=3, options=options(tolerance))
 
 
+@pytest.mark.slow
 def test_every_pose_is_within_the_tolerance(unchecked: None) -> None:
     network = fewest()
     assert network.complete

@@ -23,6 +23,7 @@ def shifted(shift: float) -> Robot:
     return robot.with_network(winches, cables)
 
 
+@pytest.mark.slow
 def test_the_best_robot_is_found_with_what_it_reaches() -> None:
     robots = [shifted(shift) for shift in np.linspace(-0.01, 0.008, 8)]
     robots.insert(5, strip_robot(columns=10, rows=3))

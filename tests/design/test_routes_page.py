@@ -12,6 +12,8 @@ from hydrostat.design.constraints_file import read_constraints
 from hydrostat.design.region import body_region
 from hydrostat.robot import load_robot
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 
 

@@ -44,6 +44,7 @@ def kit(request: pytest.FixtureRequest) -> Kit:
     return request.getfixturevalue(request.param)
 
 
+@pytest.mark.slow
 def test_a_kit_is_the_same_bytes_on_every_run(kit):
     """Oracle: a second kit of the robot read again."""
     again = build_kit(hs.load_robot(gallery_folder(kit.robot.name)))
@@ -158,6 +159,7 @@ def test_a_choice_may_be_given_as_text(unchecked):
     assert given == KitOptions(method=Method.FOAM, paper=Paper.LETTER, mould=MouldOptions(kind=MouldKind.SILICONE))
 
 
+@pytest.mark.slow
 def test_a_stuffed_body_in_space_is_sewn_of_patches():
     """Oracle: the checks on its pattern, and ezdxf's audit of the drawing."""
     kit = build_kit(hs.load_robot(gallery_folder("bear")))
@@ -168,6 +170,7 @@ def test_a_stuffed_body_in_space_is_sewn_of_patches():
     assert len(pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages) == 2
 
 
+@pytest.mark.slow
 def test_a_body_of_foam_is_not_stuffed_unless_forced():
     """Oracle: the fish tail was simulated as a castable foam."""
     robot = hs.load_robot(gallery_folder("fish_tail"))

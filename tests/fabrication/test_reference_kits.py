@@ -14,6 +14,8 @@ from hydrostat.fabrication import Kit, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.fabrication.solids.print_files import stl_bytes
 from hydrostat.fabrication.solids.printed import Printed
 
+pytestmark = pytest.mark.slow
+
 REFERENCES = Path(__file__).parent / "references"
 
 

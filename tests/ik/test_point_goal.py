@@ -34,6 +34,7 @@ def test_at_markers_it_is_the_goal_of_markers() -> None:
     assert found.errors(posture) == pytest.approx(known.errors(posture))
 
 
+@pytest.mark.slow
 def test_a_tracker_follows_a_point_that_moves() -> None:
     points = {"grip": (0.15, 0.01)}
     start = np.array(points["grip"])

@@ -210,6 +210,7 @@ def test_a_good_start_saves_solves() -> None:
 
 
 @pytest.mark.parametrize("folder", example_folders(), ids=lambda folder: folder.name)
+@pytest.mark.slow
 def test_all_poses_of_all_examples(folder, unchecked: None) -> None:
     """They end at an optimum no worse than rest, at an equilibrium that can be solved for again."""
     robot = load_robot(folder)
@@ -237,6 +238,7 @@ def test_an_unknown_marker_and_a_robot_without_cables() -> None:
         solve_ik(Simulation(robot))
 
 
+@pytest.mark.slow
 def test_targets_far_out_of_reach_take_few_steps() -> None:
     """Where much is left over Gauss-Newton alone creeps; the curvature of the residual is learnt."""
     simulation = Simulation(load_robot(next(folder for folder in example_folders() if folder.name == "starfish")))

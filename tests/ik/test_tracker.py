@@ -94,6 +94,7 @@ def test_a_start_above_the_limit_of_tension_is_brought_below_it() -> None:
     assert reached.pose.tensions.max() <= 1.0 * (1 + 2e-3)
 
 
+@pytest.mark.slow
 def test_a_target_that_moves_on_after_long_rest_is_followed() -> None:
     simulation = Simulation(strip_robot())
     tracker = Tracker(simulation, options=InverseOptions(tolerance=1e-15))

@@ -34,6 +34,7 @@ def shown(path: Path) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("kind", FILMS)
+@pytest.mark.slow
 def test_a_gif_lasts_as_long_as_asked_and_moves_when_the_body_does(kind: str, tmp_path: Path) -> None:
     """Oracle: the frames; pixels differ from one to the next just where nodes or words do."""
     robot, made = FILMS[kind]()

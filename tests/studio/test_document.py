@@ -98,6 +98,7 @@ def test_the_physics_is_shared_by_changes_that_leave_the_robot_as_it_is(document
     assert document.simulation is before
 
 
+@pytest.mark.slow
 def test_the_past_does_not_grow_without_end(document: Document, starfish: Robot) -> None:
     for step in range(MOST_STEPS + 50):
         document.change(f"{step}", robot=named(starfish, f"n_{step}"))

@@ -91,6 +91,7 @@ def mould_of(solid: Manifold, kind: MouldKind, monkeypatch: pytest.MonkeyPatch) 
     return make_mould(foam_robot(slab_body()), MouldOptions(kind=kind))
 
 
+@pytest.mark.slow
 def test_mould_that_is_linked_with_the_body_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     mould = mould_of(ball_with_handles(), MouldKind.PRINTED, monkeypatch)
     assert mould.pull.share < TOLERATED  # of the skin little is undercut: its area alone does not tell

@@ -61,6 +61,7 @@ def lens() -> Cutting:
 
 
 @pytest.mark.parametrize("name", ["ball", "lens"])
+@pytest.mark.slow
 def test_patches_are_discs_that_cover_the_skin_once(name, request):
     cutting = request.getfixturevalue(name)
     mesh = skin_mesh(ellipsoid_body({"ball": (0.1, 0.1, 0.1), "lens": (0.12, 0.04, 0.1)}[name]))

@@ -114,6 +114,7 @@ def test_a_body_too_small_to_sew_is_refused():
     assert space_pattern(tiny, PatternOptions(force=True)).problems
 
 
+@pytest.mark.slow
 def test_deep_cables_get_no_hole_and_are_told():
     deep = cushion(ellipsoid_body((0.2, 0.1, 0.16)), [(0, 0, 0), (0.03, 0, 0)])
     pattern = space_pattern(deep, PatternOptions(force=True))

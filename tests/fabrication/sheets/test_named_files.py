@@ -27,6 +27,7 @@ def wrong(kit: Kit) -> set[str]:
 
 
 @pytest.mark.parametrize("which", ["plush_kit", "foam_kit"])
+@pytest.mark.slow
 def test_files_that_are_named_are_there(which, request):
     """Oracle: the paths of the kit."""
     kit = request.getfixturevalue(which)

@@ -12,6 +12,8 @@ import pytest
 
 from hydrostat.robot import gallery_folder, load_robot, save_robot
 
+pytestmark = pytest.mark.slow
+
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 

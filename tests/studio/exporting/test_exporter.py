@@ -111,6 +111,7 @@ def test_pages_are_pictures_of_the_sheet(kit: tuple[KitMade, Told]) -> None:
     assert ET.fromstring(made.pattern).tag.endswith("svg")
 
 
+@pytest.mark.slow
 def test_what_cannot_be_built_is_told_and_made_all_the_same_if_forced(starfish: Robot) -> None:
     small = replace(KitOptions(), mould=replace(KitOptions().mould, bed=(20.0, 20.0, 20.0)))
     refused = make_kit(Told(), starfish, small)
@@ -121,6 +122,7 @@ def test_what_cannot_be_built_is_told_and_made_all_the_same_if_forced(starfish: 
     assert forced.zip is not None
 
 
+@pytest.mark.slow
 def test_results_belong_to_the_robot_they_were_made_of(exporter: Exporter) -> None:
     document = exporter._document
     exporter.make_pictures()

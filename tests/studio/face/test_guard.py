@@ -19,6 +19,8 @@ from websockets.sync.client import connect
 
 from hydrostat.studio.face.guard import Guard
 
+pytestmark = pytest.mark.slow
+
 PATHS = ("/", "/socket.io/?EIO=4&transport=polling", "/_nicegui_ws/socket.io/?EIO=4&transport=polling", "/none")
 
 LIMIT = 50_000

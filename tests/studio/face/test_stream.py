@@ -16,6 +16,8 @@ from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, StageName
 from hydrostat.studio.view.packet import opened
 
+pytestmark = pytest.mark.slow
+
 LONGEST = 20.0
 """The most that a test waits for a frame [s]."""
 

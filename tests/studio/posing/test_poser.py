@@ -62,6 +62,7 @@ def drag_marker(robot: Robot, poser: Poser, name: str, target: Point, moves: int
 
 
 @pytest.mark.parametrize("mode", list(Mode))
+@pytest.mark.slow
 def test_a_marker_that_is_dragged_ends_on_its_target(starfish: Robot, poser: Poser, mode: Mode) -> None:
     poser.set_mode(mode)
     name, target = farthest(starfish)

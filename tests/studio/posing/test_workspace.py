@@ -70,6 +70,7 @@ def test_places_are_those_of_equilibria_within_the_limit() -> None:
     assert places == pytest.approx(np.array(expected), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_cloud_grows_in_another_process() -> None:
     document = Document(Bell())
     document.open(Work(robot=ROBOT))

@@ -59,6 +59,7 @@ def work() -> Work:
     return Work(robot=load_robot(gallery_folder("letter_e")))
 
 
+@pytest.mark.slow
 def test_what_a_killed_studio_leaves_is_restored(tmp_path: Path) -> None:
     """Oracle: the change that was made before kill -9, made here again; the robot had never been saved."""
     process = subprocess.Popen(

@@ -184,6 +184,7 @@ def test_too_large_and_empty_files_are_refused() -> None:
         new_draft("a.stl", b"")
 
 
+@pytest.mark.slow
 def test_the_session_stays_as_it_was(tmp_path: Path) -> None:
     """Oracle: the open robot, its undo and the files around it; then a good file still works."""
     bell = Bell()

@@ -190,6 +190,7 @@ def test_editing_an_outline_is_one_change() -> None:
 
 
 @pytest.mark.parametrize("meanwhile", ["part", "robot", "drawing"])
+@pytest.mark.slow
 def test_a_slow_outline_loses_nothing(monkeypatch: pytest.MonkeyPatch, meanwhile: str) -> None:
     """Oracle: what was changed while the body was made is there after it; another robot stays as it is."""
     bell = Bell()

@@ -65,6 +65,7 @@ def test_each_gallery_robot_has_a_small_picture_and_words() -> None:
     assert {path.stem for path in PICTURES.glob("*.webp")} == set(gallery_names())
 
 
+@pytest.mark.slow
 def test_pictures_are_of_the_robots_as_they_are() -> None:
     """Oracle: the picture drawn anew; another robot's differs a lot."""
     from io import BytesIO
@@ -104,6 +105,7 @@ def test_a_folder_is_opened_and_remembered(tmp_path: Path, monkeypatch: pytest.M
     assert [card.name for card in Desk(tmp_path / "state").starter.recent()] == ["other", "mine"]
 
 
+@pytest.mark.slow
 def test_robots_are_listed_once_and_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: three folders, one of which has a second way to it, two of which have one name."""
     robot = gallery_robot("letter_e")
@@ -142,6 +144,7 @@ def test_suggestions_show_robots_first(tmp_path: Path) -> None:
     assert suggestions("a\0b") == []
 
 
+@pytest.mark.slow
 def test_a_drawing_becomes_a_robot(desk: Desk) -> None:
     """Oracle: the drawing's own size, and what was asked for."""
     desk.starter.bring("My bar.svg", BAR)
@@ -166,6 +169,7 @@ def test_a_drawing_becomes_a_robot(desk: Desk) -> None:
     assert desk.starter.draft is None
 
 
+@pytest.mark.slow
 def test_other_numbers_in_a_row_end_with_the_last(desk: Desk) -> None:
     """Oracle: the last size asked for, while the first mesh is still made."""
     desk.starter.bring("bar.svg", BAR)
@@ -179,6 +183,7 @@ def test_other_numbers_in_a_row_end_with_the_last(desk: Desk) -> None:
     assert desk.starter.sketch.robot.body.mesh.size == pytest.approx(0.4)
 
 
+@pytest.mark.slow
 def test_a_dirty_surface_comes_with_its_repair(desk: Desk) -> None:
     """Oracle: a gallery body with a hole cut into it; the report names it, and a picture shows it."""
     lines = _tetrahedron_text()
@@ -195,6 +200,7 @@ def test_a_dirty_surface_comes_with_its_repair(desk: Desk) -> None:
     assert desk.document.robot.poses, "a pose that the first cable makes"
 
 
+@pytest.mark.slow
 def test_a_wrong_number_is_refused_and_nothing_is_lost(desk: Desk) -> None:
     """Oracle: the sketch is as it was."""
     desk.starter.bring("bar.svg", BAR)
