@@ -80,6 +80,7 @@ def test_simulate_warns_beyond_travel(run: Run, tmp_path: Path, starfish: Path) 
     assert "beyond it" in run("simulate", starfish, "--contract", "left=-30mm", "--out", tmp_path)[1]
 
 
+@pytest.mark.slow
 def test_pose_writes_one_pose_or_a_folder_for_each(run: Run, tmp_path: Path, starfish: Path) -> None:
     robot = hs.load_robot(starfish)
     assert run("pose", starfish, "--pose", "wave", "--out", tmp_path / "one")[0] == 0

@@ -102,6 +102,7 @@ def test_a_pendulum_swings_with_its_period() -> None:
 
 
 @pytest.mark.parametrize("scheme", ["euler", "sdirk2"])
+@pytest.mark.slow
 def test_convergence_with_the_time_step(viscous_strip: hs.Simulation, scheme: str) -> None:
     """Oracle: a far finer solution by the method of third order. Cables, gravity and viscosity at once."""
     profile = hs.Profile.ramp(np.array([0.01, 0.0]), 0.15)

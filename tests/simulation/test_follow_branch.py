@@ -284,6 +284,7 @@ def test_a_way_of_no_length_is_a_point(simulation: Simulation) -> None:
 
 
 @pytest.mark.usefixtures("unchecked")
+@pytest.mark.slow
 def test_small_snaps_of_one_limb_are_not_passed_over() -> None:
     """The starfish snaps by 1.6 mm of 280. A looser limit on the mean displacement saw it on the way there only."""
     simulation = Simulation(gallery_robot("starfish"))

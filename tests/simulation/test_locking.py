@@ -63,6 +63,7 @@ def bent(rows: int, poisson: float, volume: Volume) -> float:
 
 
 @pytest.mark.parametrize(("poisson", "locked"), [(0.45, 0.11), (0.49, 0.33)])
+@pytest.mark.slow
 def test_a_strip_follows_finite_flexure(poisson: float, locked: float) -> None:
     """At second order, and at once: with 8 elements across 0.4 % off, where it bends 12 or 35 % less by elements."""
     errors = np.array([bent(rows, poisson, Volume.PATCH) for rows in (8, 16)])
@@ -71,6 +72,7 @@ def test_a_strip_follows_finite_flexure(poisson: float, locked: float) -> None:
     assert bent(8, poisson, Volume.ELEMENT) < -locked
 
 
+@pytest.mark.slow
 def test_a_bar_in_space_is_no_stiffer_when_incompressible() -> None:
     """What linear elements cannot bend at Poisson's ratio 0 they cannot at 0.49 either, but it becomes no worse."""
     shear = [bar(rows, 0.0, Volume.ELEMENT) for rows in (2, 4)]
