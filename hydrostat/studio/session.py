@@ -276,7 +276,7 @@ class Session:
         self.starter.autosave.close()
 
     def _tell_unkept(self) -> None:
-        """That work cannot be kept for a crash, once for each reason."""
+        """Tell that work cannot be kept for a crash, once for each reason."""
         problem = self.starter.autosave.problem
         if problem and problem != self._unkept:
             self.tell(problem, Tone.BAD)

@@ -174,7 +174,7 @@ class _MarginRows:
                 self._add(longest - float(lengths.sum()) - _HAIR, *parts)
 
     def _bounds(self) -> None:
-        """Of slack and spool ratios."""
+        """Bounds of slack and spool ratios."""
         slacks, ratios = self.layout.starts[-2:]
         most = self.constraints.spool_ratio
         for index, route in enumerate(self.layout.routes):

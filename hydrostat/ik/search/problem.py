@@ -205,7 +205,7 @@ class InverseProblem:
         return 0.5 * float(state.residual @ state.residual + effort @ effort)
 
     def weight(self, state: InverseState) -> float:
-        """Of the effort: a share of the error, for then it fades as fast as the search converges."""
+        """Weight of the effort: a share of the error, for then it fades as fast as the search converges."""
         error = float(np.sqrt(state.residual @ state.residual)) / self._size
         return max(min(self.options.effort, _SHARE * error), _LEAST_WEIGHT)
 

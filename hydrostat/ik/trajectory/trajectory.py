@@ -125,7 +125,7 @@ class Trajectory:
 
     @property
     def tensions(self) -> Float[np.ndarray, "samples cables"]:
-        """Of each cable at each sample [N]."""
+        """Tension of each cable at each sample [N]."""
         return np.array([pose.tensions for pose in self.poses])
 
     def profile(self) -> Profile:

@@ -109,7 +109,7 @@ class CableMover(Mover):
         return self._shape(dict(reached.errors), notes), more
 
     def _calm(self, held: Mapping[str, Held]) -> Closeness:
-        """That the rest of the body stays, the more the farther the targets are."""
+        """Wish that the rest of the body stays, the more the farther the targets are."""
         error = max(self._anchored.errors(held, self._pose.nodes).values()) / self.robot.body.mesh.size
         return Closeness(pose=self._simulation.rest, of="nodes", weight=min(CALM * error, CALMEST))
 

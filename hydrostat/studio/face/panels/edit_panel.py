@@ -174,7 +174,7 @@ def _part_words(robot: Robot, key: str) -> tuple[str, str]:
 
 
 def _colour(robot: Robot, key: str) -> str:
-    """That of its winch; the quiet one for all else."""
+    """Colour of its winch; the quiet one for all else."""
     part, colours = find_part(robot, key), winch_colours(robot.winches)
     if part is not None and part.kind is Kind.WINCH:
         return _seen(colours[robot.winches[part.index].name])
