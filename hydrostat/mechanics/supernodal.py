@@ -414,7 +414,7 @@ def _backward(panel, columns, height, own, work):
 @njit(fastmath=FINE, **KERNEL)
 @no_type_check
 def solve_matrix(fronts, lower, signs, values, work, call):
-    """Solve, as `solve_vector`, for several right-hand sides, (dofs, sides) row by row: transposed, they are Fortran's."""
+    """Solve for several right-hand sides, (dofs, sides) row by row: transposed, they are Fortran's."""
     table, rows = fronts.table, fronts.rows
     sides = values.shape[1]
     at, other, panels = np.int64(values.ctypes.data), np.int64(work.ctypes.data), np.int64(lower.ctypes.data)
