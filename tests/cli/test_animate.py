@@ -15,6 +15,7 @@ from hydrostat.robot import save_robot
 Run = Callable[..., tuple[int, str, str]]
 
 
+@pytest.mark.slow
 def test_a_pose_and_back(run: Run, starfish: Path, tmp_path: Path) -> None:
     """Oracle: the time of all frames; the last target of the scene is the pose that inverse kinematics finds."""
     options = ("--pose", "wave", "--seconds", "1", "--width", "240", "--out", tmp_path / "out")

@@ -51,6 +51,7 @@ def test_bad_arguments_are_one_line(run: Run, tmp_path: Path, starfish: Path, op
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_with_friction_ways_are_compared_and_no_branch_is_followed(run: Run, tmp_path: Path, starfish: Path) -> None:
     robot = tmp_path / "rubbing"
     hs.save_robot(hs.load_robot(starfish), robot)

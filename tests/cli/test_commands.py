@@ -46,6 +46,7 @@ def test_new_from_a_drawing_can_be_checked_and_simulated(run: Run, tmp_path: Pat
     assert run("simulate", tmp_path / "box", "--out", tmp_path / "out")[0] == 0
 
 
+@pytest.mark.slow
 def test_check_says_that_all_is_well(run: Run) -> None:
     """All flat robots of the gallery and one in space; for the others see tests/robot/test_gallery_bodies.py."""
     flat = [name for name in gallery_names() if list(Path("examples", name).glob("*.svg"))]

@@ -122,6 +122,7 @@ def test_options_come_before_the_file(run: Run, strip: Path, search: Search, no_
     assert "still" not in told
 
 
+@pytest.mark.slow
 def test_everything_is_written_and_can_be_read(run: Run, strip: Path, search: Search, tmp_path: Path) -> None:
     out = tmp_path / "new" / "out"
     code, told, _ = run("design", strip, "--out", out)

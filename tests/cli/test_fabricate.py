@@ -77,6 +77,7 @@ def test_what_cannot_be_built_is_refused_with_every_reason(run: Run, tmp_path: P
     assert not (tmp_path / "kit").exists()
 
 
+@pytest.mark.slow
 def test_force_builds_it_and_says_why_not(run: Run, tmp_path: Path) -> None:
     save_robot(near_the_edge(), tmp_path / "robot")
     code, out, _ = run("fabricate", tmp_path / "robot", "--force", "--out", tmp_path / "kit")

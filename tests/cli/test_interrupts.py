@@ -105,6 +105,7 @@ Thread(target=work).start()
 
 
 @pytest.mark.parametrize("begun", [USUAL, IGNORED])
+@pytest.mark.slow
 def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_path: Path) -> None:
     """Oracle: exit code 130 and one line; in the background of a script, too, where SIGINT comes ignored."""
     code = "from hydrostat.cli.main import main; main()"

@@ -13,6 +13,7 @@ import hydrostat as hs
 Run = Callable[..., tuple[int, str, str]]
 
 
+@pytest.mark.slow
 def test_a_ramp(run: Run, starfish: Path, tmp_path: Path) -> None:
     options = ("--dynamic", "--duration", "0.1s", "--step", "20 ms", "--ramp", "50ms")
     code, out, _ = run("simulate", starfish, *options, "--contract", "left=5mm", "--out", tmp_path)
@@ -33,6 +34,7 @@ def test_a_ramp(run: Run, starfish: Path, tmp_path: Path) -> None:
     assert (tmp_path / "frames" / "motion_0000.vtu").exists()
 
 
+@pytest.mark.slow
 def test_a_table_is_played(run: Run, starfish: Path, tmp_path: Path) -> None:
     """Oracle: the contractions of the table, for as long as it lasts, but a second at least."""
     played = tmp_path / "wave.csv"

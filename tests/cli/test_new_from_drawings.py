@@ -4,11 +4,13 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from PIL import Image, ImageDraw
 
 Run = Callable[..., tuple[int, str, str]]
 
 
+@pytest.mark.slow
 def test_notes_are_printed(run: Run, tmp_path: Path) -> None:
     """Oracle: what is in the picture: a ring of line, and a speck."""
     image = Image.new("RGB", (400, 400), "white")

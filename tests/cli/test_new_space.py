@@ -55,6 +55,7 @@ def test_a_scan_becomes_a_robot_that_can_be_checked_and_pulled(run: Run, tmp_pat
 
 
 @pytest.mark.parametrize("ending", ["obj", "ply", "off"])
+@pytest.mark.slow
 def test_formats_sizes_and_elements(run: Run, tmp_path: Path, ending: str) -> None:
     source = _exported(tmp_path / f"bar.{ending}")
     arguments = ("--size", "180 mm", "--element-size", "20 mm", "--material", "polyester fibre")
@@ -66,6 +67,7 @@ def test_formats_sizes_and_elements(run: Run, tmp_path: Path, ending: str) -> No
     assert _sides(tmp_path / "bar") == pytest.approx([0.18, 0.04, 0.04], abs=0.004)
 
 
+@pytest.mark.slow
 def test_a_ready_mesh(run: Run, tmp_path: Path) -> None:
     import meshio
     from builders import box_mesh
@@ -95,6 +97,7 @@ def test_a_drawing_is_blown_up(run: Run, tmp_path: Path) -> None:
     _only(tmp_path / "pillow", "robot.toml", "a.ply", "rest.png")
 
 
+@pytest.mark.slow
 def test_a_gallery_robot_of_other_elements(run: Run, tmp_path: Path) -> None:
     assert run("new", tmp_path / "mine", "--from", "gallery:starfish", "--nodes", 150)[0] == 0
     mine, theirs = hs.load_robot(tmp_path / "mine"), hs.load_robot(Path("examples/starfish"))

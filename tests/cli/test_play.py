@@ -35,6 +35,7 @@ def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish:
     assert lines[-1] == "simulated: played; the motors hold at right 0.0 mm, left 3.0 mm, feet 0.0 mm"
 
 
+@pytest.mark.slow
 def test_on_a_terminal_one_line_is_updated(starfish: Path, wave: Path) -> None:
     import pty
 
@@ -63,6 +64,7 @@ PROGRAM = "from hydrostat.cli.main import main; main()"
     ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["interrupt", "terminate"]
 )
 @pytest.mark.parametrize("ignored", [False, True])
+@pytest.mark.slow
 def test_a_signal_stops_the_motors(starfish: Path, wave: Path, number: int, code: int, ignored: bool) -> None:
     """Also in the background of a script, where SIGINT comes ignored."""
     before = signal.SIG_IGN if ignored else signal.SIG_DFL

@@ -48,6 +48,7 @@ def test_a_drawing_leads_to_the_contractions_behind_it(run: Run, starfish: Path,
     assert (tmp_path / "out" / "pose.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_markers_and_a_drawing_together(run: Run, starfish: Path, drawing: Path, tmp_path: Path) -> None:
     assert run("pose", starfish, "--drawing", drawing, "--pose", "wave", "--out", tmp_path / "out")[0] == 0
     facts = json.loads((tmp_path / "out" / "pose.json").read_text())

@@ -18,6 +18,7 @@ Run = Callable[..., tuple[int, str, str]]
 pytestmark = pytest.mark.usefixtures("unchecked")
 
 
+@pytest.mark.slow
 def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Path) -> None:
     options = ("--poses", "star_jump,rest", "--speed", "0.1 m/s", "--acceleration", "500 mm/s^2", "--width", "200")
     code, out, err = run("trajectory", starfish, *options, "--out", tmp_path / "out")
@@ -44,6 +45,7 @@ def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Pa
         assert getattr(image, "n_frames", 1) > 10
 
 
+@pytest.mark.slow
 def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> None:
     options = ("--poses", "wave", "--path", "linear", "--speed", "200 mm/s", "--width", "200")
     assert run("trajectory", starfish, *options, "--out", tmp_path / "way")[0] == 0
@@ -82,6 +84,7 @@ def test_bad_options_are_one_line(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_search_that_is_stuck_ends_with_1(
     run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

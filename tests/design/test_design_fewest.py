@@ -32,6 +32,7 @@ def test_every_pose_is_within_the_tolerance(unchecked: None) -> None:
     assert network.request.options == options()
 
 
+@pytest.mark.slow
 def test_fewer_winches_miss_it(unchecked: None) -> None:
     count = len(fewest().robot.winches)
     assert count == 2
@@ -48,6 +49,7 @@ def test_the_front_holds_every_size_once(unchecked: None) -> None:
     assert (len(network.robot.winches), len(network.robot.cables)) in counts
 
 
+@pytest.mark.slow
 def test_a_tolerance_out_of_reach_gives_the_best(unchecked: None) -> None:
     network = design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=options(1e-9))
     assert network.complete
@@ -74,6 +76,7 @@ def test_ctrl_c_keeps_what_was_found(at: int, unchecked: None) -> None:
     assert broken(network) == []
 
 
+@pytest.mark.slow
 def test_a_number_of_winches_that_cannot_be_built_is_passed_over(unchecked: None) -> None:
     """Two winches 160 mm apart find room on the strip; three do not."""
     limits = Constraints(winch_gap=0.16)

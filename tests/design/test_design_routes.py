@@ -119,6 +119,7 @@ def at_rest(robot: Robot, poses: tuple[Pose, ...]) -> float:
 
 
 @pytest.mark.parametrize("name", LIMITS)
+@pytest.mark.slow
 def test_every_constraint_is_kept(name: str, unchecked: None) -> None:
     network, (case, _) = designed(name), LIMITS[name]
     assert broken(network) == []
@@ -153,6 +154,7 @@ def test_more_cables_do_no_harm(name: str, unchecked: None) -> None:
     assert designed(name).rms_error < 0.2 * at_rest(bare(), (UP, DOWN))
 
 
+@pytest.mark.slow
 def test_the_same_twice(unchecked: None) -> None:
     again = designed.__wrapped__("usual")
     first = designed("usual")
@@ -162,6 +164,7 @@ def test_the_same_twice(unchecked: None) -> None:
     assert again.trace.certificate == first.trace.certificate  # type: ignore[union-attr]
 
 
+@pytest.mark.slow
 def test_what_is_locked_comes_back_as_it_was(unchecked: None) -> None:
     own = strip()
     assert designed("locked winch").robot.winch("up") == own.winch("up")

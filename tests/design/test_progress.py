@@ -24,6 +24,7 @@ def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) 
     assert len(told) > 1
 
 
+@pytest.mark.slow
 def test_the_fewest_tell_only_what_beats_fewer_winches(unchecked: None) -> None:
     told: list[DesignStage] = []
     options = replace(SMALL, tolerance=1e-9)

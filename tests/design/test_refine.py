@@ -146,6 +146,7 @@ def proposals(bench: Bench) -> Proposals:
     return Proposals(bench, graph, RouteOptions(hops=6), 1.5 * spacing)
 
 
+@pytest.mark.slow
 def test_the_slope_falls_towards_an_optimum(unchecked: None) -> None:
     """Of a pose that the network cannot reach, at the best that it can; not where via points are displaced.
 

@@ -46,6 +46,7 @@ def test_depths_in_a_box(name: str, corners: np.ndarray) -> None:
     assert region(name).depths(points) == pytest.approx(np.where(outer > 0, -outer, inner), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_depths_in_a_hand_as_solids_have_them(unchecked: None) -> None:
     """`Solid` tells inside from outside by winding numbers, a region by mean normals."""
     healing = body("cupping_hand").healing

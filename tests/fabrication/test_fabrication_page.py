@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "fabrication.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_its_code_writes_a_kit(tmp_path: Path) -> None:
     """Oracle: the folder's listing."""
     (tmp_path / "examples").symlink_to(ROOT / "examples")
@@ -27,6 +28,7 @@ def test_its_code_writes_a_kit(tmp_path: Path) -> None:
     assert set(kit.files) <= written
 
 
+@pytest.mark.slow
 def test_its_table_names_every_kind_of_file(plush_kit: Kit, foam_kit: Kit) -> None:
     """Oracle: the kits' own files, against the patterns in the first column."""
     table = [line for line in PAGE.splitlines() if line.startswith("| `")]

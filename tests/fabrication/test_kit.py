@@ -178,6 +178,7 @@ def test_a_body_of_foam_is_not_stuffed_unless_forced():
         build_kit(robot, options=KitOptions(method=Method.PLUSH))
 
 
+@pytest.mark.slow
 def test_a_flat_body_can_be_cast():
     """Oracle: the volume of its mould's cavity is its area times its thickness."""
     body = replace(crossed().body, material=MATERIALS["flexfoam-it x"])

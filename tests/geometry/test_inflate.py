@@ -55,6 +55,7 @@ def handles(surface: Surface) -> int:
 
 
 @pytest.mark.parametrize("up", [100.0, 45.0])
+@pytest.mark.slow
 def test_ellipse_becomes_an_ellipsoid(up: float) -> None:
     """Oracle: 2/3 of area times height; the error falls with the power 3/2 of the spacing, over two halvings."""
     errors = []

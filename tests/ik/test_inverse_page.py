@@ -24,6 +24,7 @@ def page() -> dict[str, Any]:
     return names
 
 
+@pytest.mark.slow
 def test_the_targets_of_the_page_are_reached(page: dict[str, Any]) -> None:
     """Oracle: where the markers are in the pose."""
     place = page["reached"].pose.markers["left"]

@@ -228,6 +228,7 @@ def test_a_limit_on_the_tension_holds_in_keyframes_and_is_told_between(simulatio
     assert not any("more than" in line for line in found.lines())
 
 
+@pytest.mark.slow
 def test_a_tension_above_its_limit_is_told_with_its_place() -> None:
     """Past its fold the arch gives way, so the soft cable pulls hardest just before; at 0.25 m harder than there."""
     simulation = Simulation(arch())

@@ -248,6 +248,7 @@ def test_one_off() -> None:
     assert_right(factorise(matrix), matrix, 1e-7)
 
 
+@pytest.mark.slow
 def test_compiled_code_is_found_again_by_another_process() -> None:
     """numba counts what it loads from disk; here it has been put there by the tests above."""
     code = """

@@ -103,6 +103,7 @@ def test_a_pixel_stays_while_no_eye_tells() -> None:
     assert len(set(levels)) < 8
 
 
+@pytest.mark.slow
 def test_sixty_frames_are_a_small_file(tmp_path: Path) -> None:
     """Oracle: 60 frames of 640 pixels, all of them different, are below 2 MB."""
     robot, made = flat_film()

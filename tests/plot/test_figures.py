@@ -129,6 +129,7 @@ def test_skin_follows_the_drawing_and_an_affine_motion() -> None:
         ("import hydrostat.plot", "matplotlib.pyplot"),
     ],
 )
+@pytest.mark.slow
 def test_imports_stay_light(statement: str, absent: str) -> None:
     code = f"{statement}\nimport sys\nsys.exit({absent!r} in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -57,12 +57,14 @@ def test_report_names_everything_and_runs_nothing() -> None:
         assert any(words in part for part in page.words), words
 
 
+@pytest.mark.slow
 def test_report_needs_no_other_file() -> None:
     page = Page(report_text(hostile_network()))
     assert all(link.startswith(("#", "data:")) for link in page.links)
     assert not re.search(r"@import|url\((?!#)", report_text(hostile_network()))
 
 
+@pytest.mark.slow
 def test_same_bytes_again(tmp_path: Path) -> None:
     one = write_report(hostile_network(), tmp_path / "report.html")
     two = write_report(hostile_network(), tmp_path / "again.html")
@@ -71,6 +73,7 @@ def test_same_bytes_again(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["again.html", "report.html"]
 
 
+@pytest.mark.slow
 def test_numbers_of_the_report() -> None:
     network = hostile_network()
     text = report_text(network)

@@ -47,6 +47,7 @@ def test_the_certificate_in_words() -> None:
 
 
 @pytest.mark.parametrize("network", [hostile_network, space_network])
+@pytest.mark.slow
 def test_the_report_tells_how_it_grew(network: object, unchecked: None) -> None:
     page = Page(report_text(grown(network())))  # pyright: ignore[reportCallIssue]
     words = " ".join(page.words)

@@ -40,6 +40,7 @@ def figure(kind: str) -> Figure:
 
 
 @pytest.mark.parametrize("kind", FIGURES)
+@pytest.mark.slow
 def test_png_twice_the_same(kind: str, tmp_path: Path) -> None:
     one = plot.save_png(figure(kind), tmp_path / "one.png", dpi=60)
     two = plot.save_png(figure(kind), tmp_path / "two.png", dpi=60)
@@ -139,6 +140,7 @@ def test_one_view_where_there_are_no_rules() -> None:
     assert len(open_sheet(robot, [robot.body.mesh.nodes], ruled=False)[1]) == 1
 
 
+@pytest.mark.slow
 def test_the_ghost_is_there_only_where_the_body_moved() -> None:
     """Oracle: the rest pose itself covers its ghost; a bent one leaves pixels of the ghost's fill."""
     from hydrostat.drawing.palette import GHOST_FILL
@@ -168,6 +170,7 @@ def test_winches_far_away_are_on_the_picture() -> None:
     assert "far" in {text.get_text() for text in drawn.axes[0].texts}
 
 
+@pytest.mark.slow
 def test_the_report_of_a_body_in_space() -> None:
     text = plot.report_text(space_network())
     assert "tetrahedra" in text

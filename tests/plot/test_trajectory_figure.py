@@ -29,6 +29,7 @@ def made() -> tuple[Robot, Trajectory]:
     return robot, solve_ik_trajectory(simulation, goals, hold=0.3, loop=True, options=options)
 
 
+@pytest.mark.slow
 def test_lines_are_the_trajectory() -> None:
     robot, trajectory = made()
     figure = draw_trajectory(robot, trajectory)

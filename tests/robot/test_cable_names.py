@@ -109,6 +109,7 @@ def three(tmp_path_factory: pytest.TempPathFactory) -> Robot:
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(names=st.permutations(["", "", "left 1", "left 2", "right 2", "thumb", "世 2"]).map(lambda names: names[:3]))
+@pytest.mark.slow
 def test_written_and_read(names: list[str], three: Robot) -> None:
     """Oracle: the robot itself, read from its own text and from one merged into another's."""
     robot = three.with_network(

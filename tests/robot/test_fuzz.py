@@ -105,6 +105,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @given(text=spoiled())
 @example(text=GOOD)
 @example(text=MAXIMAL_IN["in"])
+@pytest.mark.slow
 def test_spoiled_text(text: str, folder: Path) -> None:
     """Oracle: a robot that can be written again, or one printable line that names the file; within seconds."""
     (folder / "robot.toml").write_bytes(text.encode("utf-8", errors="surrogatepass"))

@@ -34,6 +34,7 @@ def characteristic(triangles: np.ndarray) -> int:
 
 
 @pytest.mark.parametrize("name", gallery.SHEETS)
+@pytest.mark.slow
 def test_bodies(name: str) -> None:
     """Oracle: no healing needed; the mesh is a ball, so no fingers are fused; no risk but coarse limbs."""
     body = robot(name).body
@@ -71,6 +72,7 @@ def test_hands_are_as_in_the_thesis(name: str) -> None:
     assert one.body.material.name == "flexfoam-it x"
 
 
+@pytest.mark.slow
 def test_the_thumbs_differ() -> None:
     """Oracle: both cables of the first thumb run along it, one of the second comes from the other side of the palm."""
     along, crossing = (

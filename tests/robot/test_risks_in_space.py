@@ -108,6 +108,7 @@ def test_spool_sticks_out() -> None:
     assert find_risks(robot) == [line]
 
 
+@pytest.mark.slow
 def test_a_mesh_unlike_its_surface() -> None:
     """By hand: the tip of a needle is far thinner than the elements; a ball is not."""
     turns = np.linspace(0, 2 * np.pi, 24, endpoint=False)

@@ -180,6 +180,7 @@ def test_distances_count_from_the_surface(tmp_path: Path) -> None:
     np.testing.assert_allclose(body.distances(points), [0, 0.007, 0.05, 0], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_ball_is_held_and_reached(tmp_path: Path) -> None:
     """A stout body, where the way from what is held is short: found by a scan of a ball."""
     import trimesh

@@ -71,6 +71,7 @@ def check_round_trip(robot: Robot, folder: Path) -> str:
 
 
 @pytest.mark.parametrize("name", gallery_names())
+@pytest.mark.slow
 def test_gallery(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: the robot itself, read again; and the gallery's own file, number by number."""
     mesh_once(monkeypatch)

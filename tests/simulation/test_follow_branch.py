@@ -223,6 +223,7 @@ def test_a_beam_has_no_fold() -> None:
     assert np.all(np.diff([point.share for point in found.points]) > 0)
 
 
+@pytest.mark.slow
 def test_a_column_splits_where_its_straight_shape_becomes_a_saddle() -> None:
     """Oracle: least dense eigenvalue of the straight column, whose root is found by its secant."""
     simulation = Simulation(column(4))

@@ -111,6 +111,7 @@ def test_a_cable_round_a_body_that_is_held() -> None:
     assert pose.tensions[0] == tensions[0]
 
 
+@pytest.mark.slow
 def test_loading_and_unloading_differ_and_the_loop_closes() -> None:
     """Oracle: the work of the winch in a closed loop is what friction dissipates: sum of limits x slips, above 0."""
     simulation = Simulation(wavy_strip(0.3))
@@ -183,6 +184,7 @@ def test_what_friction_does_not_allow_is_refused() -> None:
         simulation.step(simulation.still(), PULL, 0.01)
 
 
+@pytest.mark.slow
 def test_the_command_line_simulates_friction(tmp_path: Path) -> None:
     """Oracle: the same robot by the library."""
     robot = load_robot(Path(__file__).parents[2] / "examples" / "starfish")

@@ -231,6 +231,7 @@ def gaps(name: str, share: float = 1.0) -> tuple[float, float, float]:
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.slow
 def test_the_oracle_is_at_an_equilibrium_that_moved(name: str) -> None:
     """Its own forces are below 1e-9 N, every cable pulls, and the body has moved by more than 2 % of its size."""
     answer, mesh = oracle(name), CASES[name][0]().body.mesh

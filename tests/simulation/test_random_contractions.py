@@ -26,10 +26,12 @@ def test_every_random_contraction_of_every_flat_example_converges(folder: Path) 
 
 @pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize("name", ["cupping_hand", "octopus_arm"])
+@pytest.mark.slow
 def test_random_contractions_of_a_body_in_space_converge(name: str) -> None:
     assert sweep(gallery_robot(name), 8, seed=1).failures == []
 
 
+@pytest.mark.slow
 def test_the_judge_can_find_fault() -> None:
     """Oracle: an equilibrium that is none: one node moved, one element turned over, one number lost."""
     folder = example_folders()[0]

@@ -179,6 +179,7 @@ def test_eight_long_motors_do_not_fit_into_a_squid():
     )
 
 
+@pytest.mark.slow
 def test_channels_follow_the_cables_of_a_turned_unit():
     """Oracle: angle between the way out of the housing, in the body's plane, and the way in which the cable goes."""
     for name in FLAT:

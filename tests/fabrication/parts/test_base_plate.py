@@ -43,6 +43,7 @@ def tiles(base: BasePlate) -> list[Manifold]:
 @pytest.mark.parametrize(
     ("name", "motor"), [*((name, MOTORS[0]) for name in OUTSIDE), *(("trunk", motor) for motor in MOTORS[1:])]
 )
+@pytest.mark.slow
 def test_everything_fits_on_the_base(name: str, motor: Motor, unchecked: None):
     """Oracle: boolean intersections of all pieces; boxes round the units."""
     base, units = base_of(name, motor)
@@ -76,6 +77,7 @@ def test_a_base_only_for_winches_outside():
 
 @pytest.mark.parametrize("bed", [BED, (120.0, 120.0, 100.0), (90.0, 60.0, 100.0)])
 @pytest.mark.parametrize("name", ["cupping_hand", "tongue"])
+@pytest.mark.slow
 def test_tiles_fit_the_bed_and_together_are_the_sheet(name: str, bed: tuple[float, float, float]):
     """Oracle: area of the outline less its holes, by shapely; volume of the tiles."""
     base, _ = base_of(name, bed=bed)

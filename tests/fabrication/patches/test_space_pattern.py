@@ -30,6 +30,7 @@ def failed(robot: Robot, pattern: SpacePattern, svg: bytes) -> list[str]:
     return [check.what for check in patch_checks(robot, pattern, svg, pattern_dxf(pattern)) if not check.passed]
 
 
+@pytest.mark.slow
 def test_the_bear_is_a_front_and_a_back(pattern):
     assert [panel.name for panel in pattern.panels] == ["front", "back"]
     assert not pattern.problems
@@ -107,6 +108,7 @@ def test_cut_is_one_allowance_outside_the_seam(pattern):
         assert patch.outline.exterior.distance(edge.geometry) == pytest.approx(8.0, abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_body_too_small_to_sew_is_refused():
     tiny = cushion(ellipsoid_body((0.012, 0.004, 0.004)), [(0, 0, 0), (0.004, 0, 0)])
     with pytest.raises(InputError, match="narrower than 8 mm"):
@@ -130,6 +132,7 @@ def test_a_cable_through_the_body_is_refused():
         space_pattern(robot, PatternOptions())
 
 
+@pytest.mark.slow
 def test_a_body_without_winch_inside_is_turned_through_a_seam():
     robot = cushion(ellipsoid_body((0.2, 0.06, 0.16)))
     pattern = space_pattern(robot, PatternOptions())

@@ -46,6 +46,7 @@ def test_pages_and_paper(make, pages, paper, size):
         assert (float(page.mediabox.width), float(page.mediabox.height)) == pytest.approx(size, abs=0.01)
 
 
+@pytest.mark.slow
 def test_the_same_bytes(plush_sheet, foam_sheet):
     assert assembly_sheet(plush()) == plush_sheet
     assert assembly_sheet(foam()) == foam_sheet
@@ -89,6 +90,7 @@ def test_what_a_foam_sheet_says(foam_sheet):
     assert f"{given.mould.casting.body.part_a:.0f} g of part A" in text
 
 
+@pytest.mark.slow
 def test_a_mould_of_silicone_is_poured_round_the_printed_positive(foam_sheet):
     """Oracle: the parts of such a mould: a positive in halves, frames and domes; clay is for the thesis's way."""
     text = words(assembly_sheet(foam(silicone=True)))
@@ -101,6 +103,7 @@ def test_a_mould_of_silicone_is_poured_round_the_printed_positive(foam_sheet):
     assert "alginate" not in printed
 
 
+@pytest.mark.slow
 def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
     given = foam()
     assert given.mould is not None
@@ -112,6 +115,7 @@ def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
     assert "egg mixer as long" in words(foam_sheet)
 
 
+@pytest.mark.slow
 def test_motors_in_the_body_need_no_base(foam_sheet):
     given = foam()
     inside = tuple(
@@ -146,6 +150,7 @@ def test_long_names_are_shortened(name):
 @pytest.mark.parametrize(
     ("make", "pages", "paper"), [(plush, 2, Paper.A4), (plush, 2, Paper.LETTER), (foam, 4, Paper.LETTER)]
 )
+@pytest.mark.slow
 def test_a_crowded_sheet_has_no_more_pages(make, pages, paper):
     long = "The spool of winch “pull 1” takes 71 mm of cable, but its travel asks for 740 mm; " * 4
     given = make(
@@ -165,6 +170,7 @@ def test_a_crowded_sheet_has_no_more_pages(make, pages, paper):
     assert "claim 89" in text
 
 
+@pytest.mark.slow
 def test_warnings_stand_in_a_box_and_problems_say_that_it_was_forced(plush_sheet):
     quiet = words(plush_sheet)
     warned = words(assembly_sheet(plush(warnings=("mind the cat",))))
@@ -176,6 +182,7 @@ def test_warnings_stand_in_a_box_and_problems_say_that_it_was_forced(plush_sheet
     assert "cannot be built well" in forced
 
 
+@pytest.mark.slow
 def test_nothing_but_the_robot_is_enough():
     given = plush(winch=None, stopper=None, printed=(), tables={}, checks=())
     assert len(read(assembly_sheet(given)).pages) == 2
@@ -241,6 +248,7 @@ def test_the_cost_is_told_used_up_and_in_whole_packs():
         assert part in text
 
 
+@pytest.mark.slow
 def test_a_stopper_is_set_by_the_cloth_not_by_a_mark():
     """Oracle: lists count from the spool's shaft, so that no length from the winch's outside is right."""
     for make, cloth in ((plush, "cloth"), (foam, "skin")):
@@ -260,6 +268,7 @@ def stitching(*rows: tuple[str, float, str]) -> Table:
     )
 
 
+@pytest.mark.slow
 def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
     """Oracle: the list of stitches."""
     deep = stitching(("C1", 70.0, "tube laid before casting"), ("C2", 2.0, "sewn to the skin"))
@@ -269,6 +278,7 @@ def test_tubes_for_deep_cables_are_laid_before_casting(foam_sheet):
     assert "Lay tubes in the cavity" not in words(foam_sheet)
 
 
+@pytest.mark.slow
 def test_cables_are_put_in_as_deep_as_the_list_has_them(foam_sheet):
     """Oracle: a list of one that is sewn on, one that is drawn through, one whose tube is deep."""
     rows = (("C1", 2.0, "sewn to the skin"), ("C2", 9.0, "long needle"), ("C3", 9.0, "in its tube"))
@@ -349,6 +359,7 @@ def test_parts_are_told_with_their_files_and_for_which_winches():
     assert "W2 pull 2: spool_b" in text
 
 
+@pytest.mark.slow
 def test_a_robot_without_cables_has_no_empty_heading():
     for make in (plush, foam):
         given = make()

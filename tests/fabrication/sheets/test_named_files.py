@@ -35,6 +35,7 @@ def test_files_that_are_named_are_there(which, request):
     assert wrong(kit) == set()
 
 
+@pytest.mark.slow
 def test_files_of_a_mould_of_silicone_are_there():
     """Oracle: the paths of the kit."""
     options = KitOptions(method=Method.FOAM, force=True, mould=MouldOptions(kind=MouldKind.SILICONE))

@@ -75,6 +75,7 @@ def pattern() -> Pattern:
 
 @needs_poppler
 @pytest.mark.parametrize("paper", list(Paper))
+@pytest.mark.slow
 def test_pages_are_at_true_scale(paper, pattern, tmp_path):
     """Oracle: poppler and pixels: the bar and all distances of pinholes within 0.2 mm."""
     assert off_scale(tiled_pdf(pattern, paper), pattern, tmp_path) < 0.2
@@ -91,6 +92,7 @@ def test_the_check_of_the_scale_of_pages_can_fail(pattern, tmp_path):
 
 
 @needs_poppler
+@pytest.mark.slow
 def test_lines_survive_a_grey_printer_and_the_margin_is_white(pattern, tmp_path):
     """Oracle: pixels: each colour of a line is dark in grey; nothing is within 9.9 mm of the edge."""
     page = printed(tiled_pdf(pattern, Paper.A4), 2, tmp_path)
@@ -106,6 +108,7 @@ def test_lines_survive_a_grey_printer_and_the_margin_is_white(pattern, tmp_path)
 
 
 @needs_poppler
+@pytest.mark.slow
 def test_neighbours_show_the_same_in_their_overlap(pattern, tmp_path):
     """Oracle: pixels: the 10 mm that two pages share differ nowhere by more than a hair."""
     content = tiled_pdf(pattern, Paper.A4)

@@ -83,6 +83,7 @@ def fresh(strip: Robot) -> Iterator[Studio]:
     studio.session.close()
 
 
+@pytest.mark.slow
 def test_what_is_found_is_what_design_cables_returns(done: Studio, strip: Robot, unchecked: None) -> None:
     expected = design_cables(strip, [strip.pose("up")], winches=1, cables=2, options=FAST)
     best = done.designer.candidates[0]
@@ -159,6 +160,7 @@ def test_candidates_are_forgotten_when_cleared(done: Studio) -> None:
     done.designer._all = kept
 
 
+@pytest.mark.slow
 def test_stopped_it_returns_the_best_so_far(fresh: Studio, strip: Robot) -> None:
     designer = fresh.designer
     designer.design()
@@ -223,6 +225,7 @@ def test_the_end_of_one_design_does_not_end_the_next(strip: Robot) -> None:
     assert designer.outcome == "stopped before there was a network"
 
 
+@pytest.mark.slow
 def test_what_the_search_refuses_is_told(fresh: Studio) -> None:
     fresh.designer.wish(winches=1, cables=1, mirror="y")
     fresh.designer.design()

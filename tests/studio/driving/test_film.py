@@ -81,6 +81,7 @@ def test_what_cannot_be_filmed_is_told_at_once(starfish: Robot, monkeypatch: pyt
     assert film_kinds() == [*FilmKind]
 
 
+@pytest.mark.slow
 def test_a_film_is_made_in_another_process(starfish: Robot) -> None:
     document = Document(Bell())
     document.open(Work(robot=starfish, timeline=SHORT))

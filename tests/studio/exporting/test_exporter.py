@@ -85,6 +85,7 @@ def finished(exporter: Exporter) -> None:
         assert done.wait(LONGEST)
 
 
+@pytest.mark.slow
 def test_a_kit_is_the_files_of_the_library_in_one_zip(
     kit: tuple[KitMade, Told], starfish: Robot, plush_kit: hs.Kit
 ) -> None:
@@ -139,6 +140,7 @@ def test_results_belong_to_the_robot_they_were_made_of(exporter: Exporter) -> No
     assert exporter.pictures
 
 
+@pytest.mark.slow
 def test_failed_work_says_why(exporter: Exporter) -> None:
     exporter.options = replace(exporter.options, motor="none such")
     exporter.make_kit()
@@ -187,6 +189,7 @@ def test_the_robot_reads_back_the_same(exporter: Exporter, tmp_path: Path) -> No
     assert exporter.robot_zip().content == download.content
 
 
+@pytest.mark.slow
 def test_pictures_open_and_the_same_robot_gives_the_same(waving: Robot) -> None:
     pictures = make_pictures(Told(), waving)
     names = [picture.name for picture in pictures]
