@@ -5,9 +5,8 @@ from hydrostat.ik.objectives.centre_goal import CentreGoal
 from hydrostat.ik.objectives.closeness import Closeness, ClosenessKind
 from hydrostat.ik.objectives.effort import Effort, EffortKind
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term, moves_at, posture_at
 from hydrostat.ik.objectives.point_goal import PointGoal
-from hydrostat.ik.objectives.postures import moves_at, posture_at
 from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.problem import InverseOptions

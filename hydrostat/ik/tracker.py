@@ -7,11 +7,8 @@ from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
-from hydrostat.ik.search.answer import reached_pose
-from hydrostat.ik.search.descend import Descent
-from hydrostat.ik.search.inverse_search import InverseSearch
+from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, reached_pose, try_step
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
-from hydrostat.ik.search.trust_region import EXCESS, StepRules, ends, try_step
 from hydrostat.ik.solve_ik import Targets, as_pose, wishes
 from hydrostat.robot import Pose
 from hydrostat.simulation import Simulation, SolvedPose

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear, nnls
 
-from hydrostat.ik.search.least_squares import least_squares
+from hydrostat.ik.search.linear_model import least_squares
 
 
 def problem(seed: int) -> tuple[np.ndarray, np.ndarray]:

@@ -16,8 +16,7 @@ from hydrostat.ik.objectives.centre_goal import CentreGoal
 from hydrostat.ik.objectives.closeness import Closeness
 from hydrostat.ik.objectives.effort import Effort
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
-from hydrostat.ik.objectives.objective import Objective, Posture, checked_objectives
-from hydrostat.ik.objectives.postures import posture_at
+from hydrostat.ik.objectives.objective import Objective, Posture, checked_objectives, posture_at
 from hydrostat.ik.objectives.shape_goal import ShapeGoal
 from hydrostat.ik.reached_pose import InverseReason
 from hydrostat.ik.solve_ik import solve_ik

@@ -6,8 +6,8 @@ from wishes import BENT, FLAT, SPACE
 
 from hydrostat.errors import InputError
 from hydrostat.ik.objectives.marker_goal import MarkerGoal
+from hydrostat.ik.objectives.objective import posture_at
 from hydrostat.ik.objectives.point_goal import PointGoal
-from hydrostat.ik.objectives.postures import posture_at
 from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.ik.tracker import Tracker
 from hydrostat.testing import check_objective

@@ -8,7 +8,7 @@ from builders import strip_robot
 
 from hydrostat.ik import Effort, EffortKind, InverseOptions, Limits, MarkerGoal, solve_ik
 from hydrostat.ik.limits import bounds
-from hydrostat.ik.objectives.postures import moves_at, posture_at, posture_of
+from hydrostat.ik.objectives.objective import moves_at, posture_at, posture_of
 from hydrostat.ik.search.inverse_search import InverseSearch
 from hydrostat.ik.search.linear_model import channels, slopes
 from hydrostat.ik.search.problem import InverseProblem, _full_tension

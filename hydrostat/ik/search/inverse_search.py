@@ -1,14 +1,18 @@
-"""`InverseSearch`: from state to state of an inverse problem, with equilibria only as sharp as they must be."""
+"""`InverseSearch`: from state to state of an inverse problem, by trust-region steps; `reached_pose`: what it found."""
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import NotConvergedError
+from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.linear_model import channels
-from hydrostat.ik.search.problem import InverseProblem, InverseState
+from hydrostat.ik.search.problem import InverseProblem, InverseState, ModelStep
 from hydrostat.mechanics import NewtonResult
+from hydrostat.robot import Pose
 from hydrostat.simulation import SolvedPose
 
 
@@ -146,3 +150,136 @@ _HARDLY = 1e-3
 def _sound(result: NewtonResult) -> bool:
     """Whether it is a stable equilibrium."""
     return result.converged and result.stable
+
+
+EXCESS = 1e-6
+"""A tension may exceed its limit by this share."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepRules:
+    """When a step is taken.
+
+    Attributes:
+        mends: a step that mends a tension too large must bring down what exceeds the limit at least so far, as a share.
+        far: share of a tension's limit by which a step may lead beyond it, for the next one to mend.
+    """
+
+    mends: float
+    far: float
+
+
+class StepTried(NamedTuple):
+    """Where a step led.
+
+    Attributes:
+        trial: the state there; None where no equilibrium was found.
+        ratio: what it gained, as a share of what it promised; minus infinity where nothing is known.
+        accepted: whether it is better than before by the rules.
+    """
+
+    trial: InverseState | None
+    ratio: float
+    accepted: bool
+
+
+def ends(problem: InverseProblem, state: InverseState, step: ModelStep, objective: float, radius: float) -> bool:
+    """Tell whether a step promises too little to be tried: within its limits the state is optimal to first order.
+
+    What a model promises is concave in its radius, so a smaller radius must not end the search sooner; `objective` is
+    that of the state times the progress below which it is not worth a step.
+    """
+    least = objective * min(radius / problem.options.largest_step, 1.0)
+    return step.promise <= least and state.excess <= EXCESS
+
+
+def try_step(
+    problem: InverseProblem,
+    state: InverseState,
+    step: ModelStep,
+    weight: float,
+    move: Callable[[InverseState, Vector], InverseState | None],
+    rules: StepRules,
+) -> StepTried:
+    """Try a step of the linear model and judge it.
+
+    Args:
+        problem: what is sought.
+        state: where the step begins.
+        step: where it leads, and its promise.
+        weight: of the effort.
+        move: finds the state at other contractions.
+        rules: when it is taken.
+    """
+    trial = move(state, step.values)
+    if trial is None:
+        return StepTried(None, -np.inf, False)
+    gain = problem.objective(state, weight) - problem.objective(trial, weight)
+    ratio = gain / step.promise if step.promise > 0 else -np.inf
+    if state.excess > EXCESS:
+        return StepTried(trial, ratio, trial.excess < rules.mends * state.excess)
+    return StepTried(trial, ratio, gain > 0 and trial.excess <= rules.far)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Descent:
+    """Where a descent ended.
+
+    Attributes:
+        state: an equilibrium, the best within the limits.
+        reason: why.
+        iterations: steps tried.
+        weight: of the effort at the end.
+    """
+
+    state: InverseState
+    reason: InverseReason
+    iterations: int
+    weight: float
+
+    @property
+    def allowed(self) -> bool:
+        """Whether all tensions are within their limits."""
+        return self.state.excess <= EXCESS
+
+    def after(self, iterations: int) -> "Descent":
+        """The same, counted with what was tried before."""
+        return replace(self, iterations=iterations)
+
+
+def reached_pose(search: InverseSearch, found: Descent, target: Pose | None) -> ReachedPose:
+    """Pose that was found, with how near it is to an optimum and the limits that hold."""
+    state, problem = found.state, search.problem
+    pose = problem.simulation.posed(problem.bounds.spread @ state.values, state.result)
+    return ReachedPose(
+        target=target,
+        pose=pose,
+        errors=state.errors,
+        reason=found.reason,
+        iterations=found.iterations,
+        solves=search.solves,
+        optimality=problem.slope(state, found.weight),
+        held=() if found.reason is InverseReason.REACHED else limits_that_hold(search, found),
+    )
+
+
+def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
+    """Limits that hold, in words: winches at their ends, cables at their largest tension."""
+    state, bounds, robot = found.state, search.problem.bounds, search.problem.simulation.robot
+    words = []
+    hair = _HAIR * bounds.span
+    for channel, value in enumerate(state.values):
+        winches = [winch.name for winch, own in zip(robot.winches, bounds.channels, strict=True) if own == channel]
+        name = " and ".join(winches)
+        if value >= bounds.high[channel] - hair[channel]:
+            words.append(f"{name}: taken in as far as it may, {1e3 * value:.4g} mm")
+        elif value <= bounds.low[channel] + hair[channel] and state.posture.tensions[bounds.cables == channel].any():
+            words.append(f"{name}: let out as far as it may, {abs(round(1e3 * value, 3)):g} mm")
+    full = state.posture.tensions >= (1.0 - _HAIR) * bounds.tension
+    pulling = {robot.cables[cable].winch: bounds.tension[cable] for cable in np.flatnonzero(full)}
+    words.extend(f"{name}: pulls as hard as it may, {most:.4g} N" for name, most in pulling.items())
+    return tuple(words)
+
+
+_HAIR = 1e-6
+"""A limit holds within this share of it."""

@@ -9,10 +9,8 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.limits import Bounds
-from hydrostat.ik.objectives.objective import Moves, Posture, Rows, Slopes, Term
-from hydrostat.ik.objectives.postures import follows, posture_of
-from hydrostat.ik.search.least_squares import least_squares
-from hydrostat.ik.search.linear_model import LinearModel, channels, slopes
+from hydrostat.ik.objectives.objective import Moves, Posture, Rows, Slopes, Term, follows, posture_of
+from hydrostat.ik.search.linear_model import LinearModel, channels, least_squares, slopes
 from hydrostat.mechanics import NewtonResult
 from hydrostat.simulation import Simulation
 
