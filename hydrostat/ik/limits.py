@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.ik.checks import above_zero, by_name, describe, numbers
+from hydrostat.ik.objectives.objective import above_zero, by_name, describe, numbers
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.ik.checks import not_negative, place
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, not_negative, place
 from hydrostat.robot import Point
 from hydrostat.simulation import Simulation
 

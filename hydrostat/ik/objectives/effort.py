@@ -6,8 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.closed_set import make_member
-from hydrostat.ik.checks import above_zero, not_negative
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, above_zero, not_negative
 from hydrostat.simulation import Simulation
 
 

@@ -9,8 +9,18 @@ from jaxtyping import Bool, Float
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import Anchors
-from hydrostat.ik.checks import by_name, describe, not_negative, place
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import (
+    Moves,
+    Objective,
+    Posture,
+    Rows,
+    Slopes,
+    Term,
+    by_name,
+    describe,
+    not_negative,
+    place,
+)
 from hydrostat.robot import Point, Pose, Robot
 from hydrostat.simulation import Simulation
 

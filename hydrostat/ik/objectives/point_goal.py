@@ -7,9 +7,8 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
-from hydrostat.ik.checks import by_name, not_negative, place
 from hydrostat.ik.objectives.marker_goal import MarkerTerm
-from hydrostat.ik.objectives.objective import Objective, Term
+from hydrostat.ik.objectives.objective import Objective, Term, by_name, not_negative, place
 from hydrostat.robot import Point
 from hydrostat.simulation import Simulation
 

@@ -14,8 +14,7 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Curve, Outline
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
 from hydrostat.geometry.surface import Surface
-from hydrostat.ik.checks import describe, not_negative
-from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
+from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, describe, not_negative
 from hydrostat.robot import Robot, Source
 from hydrostat.simulation import Simulation
 

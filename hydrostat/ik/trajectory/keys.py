@@ -7,10 +7,9 @@ from numbers import Real
 import numpy as np
 
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik.checks import describe
 from hydrostat.ik.limits import Limits
 from hydrostat.ik.objectives.effort import Effort, EffortKind
-from hydrostat.ik.objectives.objective import Objective
+from hydrostat.ik.objectives.objective import Objective, describe
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.problem import InverseOptions
 from hydrostat.ik.solve_ik import Targets, as_pose, solve_ik
