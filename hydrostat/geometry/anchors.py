@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 from itertools import chain
 
 import numpy as np
@@ -15,11 +16,8 @@ from hydrostat.geometry.mesh import Mesh
 _HAIR = 1e-9
 """A point this little outside counts as inside, in heights of its element."""
 
-_MARGIN = 1e-6
-"""How much the box around an element is widened, in its longest side: far more than a hair and rounding."""
-
 _AT_ONCE = 3_000_000
-"""Pairs of point and box that are tried one by one; more are looked for in a tree."""
+"""Pairs of point and facet whose distances are looked at together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,22 +115,16 @@ def _firsts(rising: Int[np.ndarray, " pairs"]) -> Bool[np.ndarray, " pairs"]:
 def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], Int[np.ndarray, " pairs"]]:
     """Every pair of a point and an element in whose box it lies."""
     low, high = mesh.boxes
-    longest = (high - low).max(axis=1)
-    low, high = low - _MARGIN * longest[:, None], high + _MARGIN * longest[:, None]
-    if len(points) * len(low) <= _AT_ONCE:
-        along = int(np.argmax(np.ptp(mesh.nodes, axis=0)))  # most pairs are apart along the body
-        asked, elements = np.nonzero(
-            (points[:, along, None] >= low[:, along]) & (points[:, along, None] <= high[:, along])
-        )
-        inside = ((points[asked] >= low[elements]) & (points[asked] <= high[elements])).all(axis=1)
-        return asked[inside], elements[inside]
-    # Imported here: few points do without, and start sooner.
-    from scipy.spatial import KDTree
-
-    near = KDTree(points).query_ball_point(0.5 * (low + high), (0.5 + 2 * _MARGIN) * longest, p=np.inf)
-    elements = np.repeat(np.arange(len(low)), [len(some) for some in near])
-    asked = np.fromiter(chain.from_iterable(near), np.int64, len(elements))
-    inside = ((points[asked] >= low[elements]) & (points[asked] <= high[elements])).all(axis=1)
+    (corner, size, counts), starts, members = mesh.cells
+    place = np.clip(np.floor((points - corner) / size), 0, counts - 1).astype(np.int64)
+    cell = np.ravel_multi_index(tuple(place.T), tuple(counts))
+    found = starts[cell + 1] - starts[cell]
+    asked = np.repeat(np.arange(len(points)), found)
+    first = np.cumsum(found) - found
+    elements = members[np.arange(len(asked)) + np.repeat(starts[cell] - first, found)]
+    near = points[asked]
+    within = (near >= low[elements]) & (near <= high[elements])
+    inside = reduce(np.logical_and, within.T)
     return asked[inside], elements[inside]
 
 

@@ -1,8 +1,8 @@
 """`Mesh`: triangles in the plane or tetrahedra in space, and how good they are."""
 
 from dataclasses import dataclass
-from functools import cached_property
-from itertools import combinations
+from functools import cached_property, reduce
+from itertools import combinations, product
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -73,9 +73,33 @@ class Mesh:
 
     @cached_property
     def boxes(self) -> tuple[Float[np.ndarray, "elements dim"], Float[np.ndarray, "elements dim"]]:
-        """Lowest and highest corner of the box around each element [m]."""
-        corners = self.nodes[self.elements]
-        return corners.min(axis=1), corners.max(axis=1)
+        """Lowest and highest corner of the box around each element, a millionth of its longest side wider [m]."""
+        corners = [self.nodes[corner] for corner in self.elements.T]
+        low, high = reduce(np.minimum, corners), reduce(np.maximum, corners)
+        margin = 1e-6 * (high - low).max(axis=1)[:, None]
+        return low - margin, high + margin
+
+    @cached_property
+    def cells(self) -> tuple[tuple[np.ndarray, float, np.ndarray], np.ndarray, np.ndarray]:
+        """Grid in which elements are found: lowest corner, side [m] and counts; where each cell begins; its elements.
+
+        An element stands in all cells that its box touches, rising in each; cells are as wide as the largest box.
+        """
+        low, high = self.boxes
+        corner, size = low.min(axis=0), float((high - low).max()) * (1 + 1e-9)
+        counts = np.floor((high.max(axis=0) - corner) / size).astype(np.int64) + 1
+        first, last = (
+            np.clip(np.floor((ends - corner) / size), 0, counts - 1).astype(np.int64) for ends in (low, high)
+        )
+        cells, owners = [], []
+        for steps in product((0, 1, 2), repeat=self.dim):
+            touched = np.flatnonzero((first + steps <= last).all(axis=1))
+            cells.append(np.ravel_multi_index(tuple((first[touched] + steps).T), tuple(counts)))
+            owners.append(touched)
+        cell, owner = np.concatenate(cells), np.concatenate(owners)
+        order = np.lexsort((owner, cell))
+        starts = np.searchsorted(cell[order], np.arange(int(np.prod(counts)) + 1))
+        return (corner, size, counts), starts, owner[order]
 
     @cached_property
     def inverse_spans(self) -> Float[np.ndarray, "elements dim dim"]:

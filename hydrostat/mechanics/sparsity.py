@@ -21,7 +21,6 @@ class SparsityPattern:
 
     Attributes:
         stencils: of each energy.
-        entries: of the pairs of nodes that meet, column x nodes + row, rising; the diagonal is there.
         shape: (nodes, dim).
         rest: rest positions of the nodes [m].
     """
@@ -33,13 +32,6 @@ class SparsityPattern:
         """
         self.stencils, self.shape = tuple(stencils), rest.shape
         self.rest, self._base = rest, base
-        if base is None:
-            keys = np.arange(len(rest), dtype=np.int64) * (len(rest) + 1)
-            self.entries = np.unique(np.concatenate([keys, *map(self._keys, self.stencils)]))
-        else:
-            shared = {id(own) for own in base.stencils}
-            keys = [self._keys(own) for own in self.stencils if id(own) not in shared]
-            self.entries = _joined(base.entries, np.sort(np.concatenate([base.entries[:0], *keys])))
 
     def extended(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
         """Pattern of these stencils behind those of this one."""
@@ -51,6 +43,16 @@ class SparsityPattern:
         if len(other.entries) == len(self.entries):
             other.__dict__["analysis"] = self.analysis
         return other
+
+    @cached_property
+    def entries(self) -> np.ndarray:
+        """Pairs of nodes that meet, column x nodes + row, rising; the diagonal is there."""
+        if self._base is None:
+            keys = np.arange(len(self.rest), dtype=np.int64) * (len(self.rest) + 1)
+            return np.unique(np.concatenate([keys, *map(self._keys, self.stencils)]))
+        shared = {id(own) for own in self._base.stencils}
+        keys = [self._keys(own) for own in self.stencils if id(own) not in shared]
+        return _joined(self._base.entries, np.sort(np.concatenate([self._base.entries[:0], *keys])))
 
     @cached_property
     def analysis(self) -> Analysis:
