@@ -88,10 +88,11 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
 
     if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
-    if typed.fibres is not None and not trees:
-        raise InputError("--fibres is for --method trees; routes need no muscle fibres")
     if typed.fibres is not None:
-        return TreeOptions(fibres=member(FibreKind, typed.fibres, what="--fibres"))
+        kind = member(FibreKind, typed.fibres, what="--fibres")
+        if not trees:
+            raise InputError("--fibres is for --method trees; routes need no muscle fibres")
+        return TreeOptions(fibres=kind)
     if typed.tolerance is not None and not trees:
         return RouteOptions(tolerance=positive("--tolerance", typed.tolerance, LENGTH))
     return None

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from nicegui import Client, core, events, helpers, ui
@@ -138,4 +139,5 @@ def at_desk(robot: Robot | None, act: Callable[[Desk], Awaitable[None]]) -> None
             desk.page.close()
             session.close()
 
-    asyncio.run(run())
+    with ThreadPoolExecutor(1) as apart:  # a browser test before this one may have left a loop running in this thread
+        apart.submit(lambda: asyncio.run(run())).result()
