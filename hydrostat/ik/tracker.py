@@ -15,7 +15,7 @@ from hydrostat.simulation import Simulation, SolvedPose
 
 
 class Tracker:
-    """Any-time inverse kinematics: each update is one step nearer, and a pose of its own (R34).
+    """Any-time inverse kinematics: each update is one trust-region step nearer, and a pose of its own (R34).
 
     Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once. Slack
     cables are kept just short of taut, so that they can join without a delay.

@@ -1,4 +1,4 @@
-"""`CableEnergy`: all cables of a robot, taut or slack."""
+"""`CableEnergy`: all cables (tendons) of a robot, taut or slack."""
 
 import math
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ class CableSegments:
 
 
 class CableEnergy(Energy):
-    """Sum of U(s) over frictionless cables, s = l(x) - l(X) + ratio a - slack [m] (R23 to R27, E1, E11, E12).
+    """Sum of U of frictionless cables, elongation s = l(x) - l(X) + ratio a - slack [m] (R23 to R27, E1, E11, E12).
 
     A term is a segment of a cable that is not sheathed: a sheathed one keeps its rest length, so it is left out of l.
     The span of a segment is d = sum of weights x nodes + offset: between two anchors in the body, or from a point fixed
@@ -85,7 +85,7 @@ class CableEnergy(Energy):
         return self.ratios * controls[self.winches]
 
     def elongations(self, nodes: Nodes, controls: Vector) -> Vector:
-        """S [m]: how much longer each cable is than it should be; negative when slack."""
+        """Elongations s [m]: how much longer each cable is than it should be; negative when slack."""
         return self.lengths(nodes) - self.rest_lengths + self.taken(controls) - self.slack
 
     def tensions(self, nodes: Nodes, controls: Vector) -> Vector:
@@ -113,13 +113,13 @@ class CableEnergy(Energy):
         return float(self.tensions(nodes, controls).max(initial=0.0))
 
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
-        """dl/dx of each cable."""
+        """Slopes dl/dx of the length of each cable."""
         columns = np.zeros((nodes.size, len(self.winches)))
         _spread(self.stencils, self.cables, self.length_gradients(nodes), columns)
         return columns
 
     def length_gradients(self, nodes: Nodes) -> Blocks:
-        """Dl/dx of each segment at its stencil's nodes."""
+        """Slopes dl/dx of each segment at its stencil's nodes."""
         return self._pull(nodes, np.ones(len(self.winches)))
 
     def bends(self, nodes: Nodes, tensions: Vector) -> HessianBlocks:

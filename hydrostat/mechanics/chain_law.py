@@ -1,4 +1,4 @@
-"""`ChainLaw`: the tensions along a cable that rubs."""
+"""`ChainLaw`: the tensions along a cable (tendon) with capstan friction."""
 
 import math
 from dataclasses import dataclass

@@ -164,7 +164,7 @@ class Energy(ABC):
 
 
 def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
-    """Symmetric blocks with their negative eigenvalues set to zero."""
+    """Projection on semidefinite matrices: symmetric blocks with their negative eigenvalues set to zero."""
     values, vectors = np.linalg.eigh(blocks)
     bad = values[:, 0] < 0
     if not bad.any():

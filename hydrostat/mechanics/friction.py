@@ -1,4 +1,4 @@
-"""`FrictionCableEnergy`: cables that rub at their via points."""
+"""`FrictionCableEnergy`: cables (tendons) with capstan friction at their via points."""
 
 from copy import copy
 from dataclasses import replace
@@ -15,7 +15,7 @@ from hydrostat.mechanics.turns import Turns
 
 
 class FrictionCableEnergy(Energy):
-    """Cables that rub at the points where they turn: E14, F4.
+    """Cables with capstan friction (Euler-Eytelwein) at the points where they turn: E14, F4.
 
     A cable with friction is a chain of springs of its own material, a span for every segment that is not sheathed; one
     without friction is a single span, as in `CableEnergy`. Cable slips over the point between two spans against a force

@@ -1,4 +1,4 @@
-"""Newton's method with a safeguarded step: the statics solver."""
+"""Projected Newton with a line search: the statics solver."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -96,7 +96,7 @@ def minimise(
     stiffness: Stiffness | None = None,
     exact: bool = False,
 ) -> NewtonResult:
-    """Nodes of least energy near `start` at fixed controls (R15, R17, R19).
+    """Projected Newton: nodes of least energy near `start` at fixed controls (R15, R17, R19).
 
     The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). The
     step follows arcs and knows that a cable can go slack; it goes no further than all energies admit, and is halved

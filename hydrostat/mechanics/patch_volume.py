@@ -1,4 +1,4 @@
-"""`PatchVolume`: resistance to a change of volume that is measured in patches of elements."""
+"""`PatchVolume`: resistance to a change of volume over patches of elements (F-bar), against volumetric locking."""
 
 import math
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from hydrostat.mechanics.neo_hookean import NeoHookean, _displacement_gradient, 
 
 
 class PatchVolume(Energy):
-    """Sum over patches of V lambda/2 (ln J)^2, with J the deformed volume of the patch over its rest volume V.
+    """F-bar patches: sum of V lambda/2 (ln J)^2, with J the deformed volume of the patch over its rest volume V.
 
     It takes the place of that term in `NeoHookean`, which then has lame = 0. There every linear element would have to
     keep its own volume when lambda is large, which leaves too few ways to move: the body locks. A patch asks for one
@@ -155,7 +155,7 @@ def _gradient(displacements, moduli, blocks, stencils, starts, places, gradients
 
 @njit(cache=True, error_model="numpy")
 @no_type_check
-def _hessian(displacements, moduli, lift, blocks, stencils, starts, places, gradients, shares, axes):
+def _hessian(displacements, moduli, projection, blocks, stencils, starts, places, gradients, shares, axes):
     """V lambda ((1 - ln J) / J^2 dJ dJ^T + ln J / J d2J) of each patch.
 
     d2J is made element by element: with h = dx/dx, the gradient in the deformed shape, it is (tr h)^2 - tr(h h) = (1 -
@@ -175,7 +175,7 @@ def _hessian(displacements, moduli, lift, blocks, stencils, starts, places, grad
         log_j, J, block = math.log1p(change), 1.0 + change, blocks[patch]
         straight = moduli[patch] * (1.0 - log_j) / (J * J)
         if straight < 0.0:
-            straight -= lift * straight
+            straight -= projection * straight
         for a in range(width):
             for i in axes:
                 for b in range(width):
@@ -184,9 +184,9 @@ def _hessian(displacements, moduli, lift, blocks, stencils, starts, places, grad
         for member in range(first, starts[patch + 1]):
             spatial = spatials[member - first]
             bend = moduli[patch] * log_j / J * spatial[0, 3]
-            along = bend - lift * bend * (1.0 / dim if bend > 0.0 else 1.0 - 1.0 / dim)
-            crossed = 0.5 * lift * bend - bend
-            plain = 0.5 * lift * abs(bend)
+            along = bend - projection * bend * (1.0 / dim if bend > 0.0 else 1.0 - 1.0 / dim)
+            crossed = 0.5 * projection * bend - bend
+            plain = 0.5 * projection * abs(bend)
             for a in range(places.shape[1]):
                 row = places[member, a] * dim
                 for b in range(places.shape[1]):

@@ -1,4 +1,4 @@
-"""`grow_patches`: the elements of a mesh in small groups that lie close together."""
+"""`grow_patches`: small groups of elements that lie close together, for F-bar patches against volumetric locking."""
 
 from collections import defaultdict
 from itertools import combinations

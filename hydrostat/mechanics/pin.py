@@ -1,4 +1,4 @@
-"""`PinEnergy`: springs of zero length between points of the body and points of the world."""
+"""`PinEnergy`: boundary conditions (Dirichlet, by penalty), as springs of zero length between body and world."""
 
 from collections.abc import Mapping
 from copy import copy
@@ -11,7 +11,7 @@ from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 
 
 class PinEnergy(Energy):
-    """Sum of k/2 |y - y_pin|^2 over anchors y = sum of weights x nodes (R29, E10)."""
+    """Penalty of boundary conditions: sum of k/2 |y - y_pin|^2 over anchors y = sum of weights x nodes (R29, E10)."""
 
     quadratic = True
 

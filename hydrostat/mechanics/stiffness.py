@@ -1,4 +1,4 @@
-"""`Stiffness`: the Hessian of the energy, factorised."""
+"""`Stiffness`: the Hessian (tangent stiffness matrix) of the energy, factorised, with its part of low rank."""
 
 from copy import copy
 

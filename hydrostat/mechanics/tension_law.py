@@ -14,7 +14,7 @@ from hydrostat.mechanics.energy import Small
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TensionLaw:
-    """The unilateral spring, shifted so that a cable at rest has no tension (R25, E1, E2, E3).
+    """Unilateral spring by its elongation, shifted so that a cable at rest has no tension (R25, E1, E2, E3).
 
     T(s) = 0 for s <= 0; k s^2 / (4 eps) for 0 <= s <= 2 eps; k (s - eps) above. Its integral is C2.
     All is a row per cable.
@@ -54,11 +54,10 @@ class TensionLaw:
         return np.where(share > eps, share + eps, 2 * np.sqrt(eps * share))
 
     def balance(self, elongations: Vector, compliance: Small) -> Vector | None:
-        """Tensions at which cables on a linear body come to rest; None if that is not found.
+        """Tensions of cables on a linear body at rest, as a complementarity problem; None if they are not found.
 
         The body gives way by compliance @ tensions, so T = law(elongations - compliance @ T): the least of a convex
-        function of one number a cable. This complementarity problem knows, as a linear law does not, that a slack cable
-        does not push.
+        function of one number a cable. This knows, as a linear law does not, that a slack cable does not push.
 
         Args:
             elongations: of each cable on a body that does not yet feel them [m].

@@ -14,7 +14,7 @@ from hydrostat.mechanics.factorisation import Analysis
 
 
 class Warp:
-    """Follows a step of Newton along arcs.
+    """Step of Newton that follows arcs (rotation-strain warping).
 
     A straight step that turns a limb by an angle t lengthens it by 1/cos t, so far from equilibrium Newton on a
     slender body creeps. Here the step's gradient in each element is split into a stretch S and a spin W; the element

@@ -1,4 +1,4 @@
-"""`Body`: the soft part of a robot, its file and its mesh."""
+"""`Body`: the soft part of a robot, its file and its mesh, and how volumetric locking is avoided."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -16,7 +16,7 @@ LARGEST_FRICTION = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Cable:
-    """A cable; without friction it has one tension along its run (R23, R25, R28).
+    """A cable (tendon); without friction it has one tension along its run (R23, R25, R28).
 
     Attributes:
         winch: name of the winch that pulls it.

@@ -1,4 +1,4 @@
-"""`Pin`: where the robot is held."""
+"""`Pin`: where the robot is held, a boundary condition."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""`Winch`: a motor with a spool that takes in cable."""
+"""`Winch`: an actuator, a motor with a spool that takes in cable (tendon)."""
 
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,4 +1,4 @@
-"""`sensitivity`: how a number that depends on a pose changes with all that the robot is made of, by the adjoint."""
+"""`sensitivity`: sensitivities of a number that depends on a pose to all that the robot is made of, by the adjoint."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ Response = Callable[[Float[np.ndarray, "dofs columns"]], Float[np.ndarray, "dofs
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sensitivity:
-    """Slopes of a number L of a pose, in units of L for each unit of what changes.
+    """Sensitivities: slopes of a number L of a pose, in units of L for each unit of what changes.
 
     Attributes:
         contractions: of each winch [1/m].
@@ -148,7 +148,7 @@ def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, 
 def by_routes(
     points: RoutePoints, cables: CableEnergy, nodes: Nodes, field: Nodes, by_elongation: Vector, pulls: Vector
 ) -> Points:
-    """By the rest position of every point of every cable.
+    """Slopes by the rest position of every point of every cable.
 
     A segment with span d, at rest D, has the length l = sqrt(d^2 + r^2), at rest L, with r in proportion to |D|: all
     of these move, and so does the part of the field along it, q = e . d / l with e the difference of the field between

@@ -1,4 +1,4 @@
-"""`approaches_to`: different ways to bring a robot to the same contractions (E20)."""
+"""`approaches_to`: different loading paths that bring a robot to the same contractions (E20)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from hydrostat.simulation.solved_pose import SolvedPose
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Approach:
-    """How a robot is brought to its contractions.
+    """Loading path that brings a robot to its contractions.
 
     Attributes:
         name: in words.
@@ -33,7 +33,7 @@ class Approach:
 
 
 def approaches_to(simulation: Simulation, goal: Vector, count: int, seed: int) -> list[Approach]:
-    """So many ways to contractions `goal` [m], the plain ones first.
+    """Loading paths to contractions `goal` [m], so many, the plain ones first.
 
     From rest at once, all winches together, back from full travel, and from full release where there is any; then in
     turn: one winch after the other, pushed aside and let go, from other contractions. Orders and pushes that are drawn

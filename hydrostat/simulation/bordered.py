@@ -1,4 +1,4 @@
-"""`Bordered`: equilibrium with the share of the way as one more unknown, and one more equation."""
+"""`Bordered`: equilibrium with one more unknown and equation, the corrector of pseudo-arclength continuation."""
 
 from dataclasses import dataclass, replace
 

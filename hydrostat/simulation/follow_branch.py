@@ -1,4 +1,4 @@
-"""`follow_branch`: equilibria from one pose on, without a jump to others (E20)."""
+"""`follow_branch`: numerical continuation (pseudo-arclength) of equilibria, without a jump to others (E20)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -66,7 +66,7 @@ def follow_branch(
     around_folds: bool = False,
     options: BranchOptions | None = None,
 ) -> Branch:
-    """The branch of equilibria from a pose on, while the contractions go straight to others.
+    """Branch of equilibria from a pose on, by numerical continuation, while contractions go straight to others.
 
     Unlike `Simulation.solve` it never falls to another branch: it goes by pseudo-arclength (Keller 1977), with the
     predictor dx/da and steps that are shortened until the equilibrium is where it was predicted.

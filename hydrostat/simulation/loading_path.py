@@ -1,4 +1,4 @@
-"""`LoadingPath`: equilibria one after the other, where the way to contractions decides where a robot ends."""
+"""`LoadingPath`: incremental loading, where the way to contractions decides where a robot ends."""
 
 from dataclasses import dataclass, replace
 from math import ceil

@@ -1,4 +1,4 @@
-"""`path_dependence`: whether contractions alone decide the pose, or also the way there (E20)."""
+"""`path_dependence`: whether contractions alone decide the pose, or also the loading path (E20)."""
 
 from collections import Counter
 from collections.abc import Callable

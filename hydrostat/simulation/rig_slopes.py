@@ -1,4 +1,4 @@
-"""`rig_slopes`: how markers and tensions of a pose change with all that a cable is made of."""
+"""`rig_slopes`: sensitivities of markers and tensions of a pose to all that a cable is made of."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from hydrostat.simulation.solved_pose import SolvedPose
 
 @dataclass(frozen=True, eq=False)
 class RigSlopes:
-    """Slopes of some numbers: a row for each coordinate of each marker asked for, then one for each tension.
+    """Sensitivities of some numbers: a row for each coordinate of each marker asked for, then one for each tension.
 
     Attributes:
         contractions: by the contraction of each winch [m/m, N/m].

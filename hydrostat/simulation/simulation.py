@@ -1,4 +1,4 @@
-"""`Simulation`: the physics of one robot."""
+"""`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property, partial
@@ -151,7 +151,7 @@ class Simulation:
             raise InputError("start must be a pose of this robot with friction; it remembers no slips of its cables")
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
-        """D nodes / d contractions at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
+        """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
 
         Cables with friction go on slipping where they are at the limit of it, and stick elsewhere.
 
@@ -173,7 +173,7 @@ class Simulation:
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
 
     def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
-        """Slopes of a number L of an equilibrium by contractions, slack, routes and material, with one solve (E16).
+        """Sensitivities of a number L of an equilibrium to contractions, slack, routes, material, by one solve (E16).
 
         Args:
             pose: an equilibrium.
@@ -371,7 +371,7 @@ class Simulation:
         )
 
     def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
-        """DE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
+        """Residual forces dE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
         return self.assembly.near(nodes).gradient(nodes, contractions)
 
     def allowed(self, nodes: Nodes, contractions: Vector) -> float:

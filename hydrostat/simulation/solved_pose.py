@@ -1,4 +1,4 @@
-"""`SolvedPose`: a robot at rest under given contractions."""
+"""`SolvedPose`: a robot in quasi-static equilibrium under given contractions."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -115,7 +115,7 @@ def follows(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
 
 
 def moves_at(simulation: Simulation, pose: SolvedPose) -> Moves:
-    """Derivatives of that posture: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da (R33).
+    """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da (R33).
 
     Cables that rub are not covered: their tension differs along the cable.
 

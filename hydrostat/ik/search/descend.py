@@ -83,7 +83,7 @@ _POOR = 0.1
 
 
 def descend(search: InverseSearch, state: InverseState, *, weight: float | None = None) -> Descent:
-    """Steps until a goal is reached or nothing is left to gain.
+    """Trust-region steps until a goal is reached or nothing is left to gain.
 
     Args:
         search: the problem.

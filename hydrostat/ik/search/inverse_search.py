@@ -158,7 +158,7 @@ EXCESS = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class StepRules:
-    """When a step is taken.
+    """When a trust-region step is taken.
 
     Attributes:
         mends: a step that mends a tension too large must bring down what exceeds the limit at least so far, as a share.
@@ -201,7 +201,7 @@ def try_step(
     move: Callable[[InverseState, Vector], InverseState | None],
     rules: StepRules,
 ) -> StepTried:
-    """Try a step of the linear model and judge it.
+    """Try a trust-region step of the linear model and judge it.
 
     Args:
         problem: what is sought.

@@ -50,7 +50,7 @@ def channels(cables: CableEnergy, posture: Posture, values: Vector, bounds: Boun
 
 
 def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut: np.ndarray) -> Moves:
-    """Derivatives with respect to contractions, by the implicit function theorem: H dx/da = -d2E/dx da (R33, E16).
+    """Sensitivities to contractions, by the implicit function theorem: H dx/da = -d2E/dx da (R33, E16).
 
     A slack cable has none (E15); those in `taut` are taken as if they had just become taut.
     """
