@@ -73,7 +73,9 @@ class _PoseLoads:
         self._simulation = Simulation(robot)
         self._rough = any(cable.friction for cable in robot.cables)
         cables = tuple(replace(cable, friction=0.0) for cable in robot.cables)
-        self._smooth = Simulation(robot.with_network(robot.winches, cables)) if self._rough else self._simulation
+        self._smooth = self._simulation
+        if self._rough:
+            self._smooth = Simulation(robot.with_network(robot.winches, cables), body=self._simulation.body)
         self.solved: dict[str, SolvedPose] = {}
         self._missed: list[str] = []
         self._far: list[str] = []
@@ -84,7 +86,8 @@ class _PoseLoads:
         try:
             reached = solve_ik(self._smooth, pose, options=_ONCE)
             taken = reached.pose.contractions
-            self.solved[name] = self._simulation.solve(taken) if self._rough else reached.pose
+            solved = self._simulation.solve(taken) if self._rough else reached.pose
+            self.solved[name] = solved.without_factors()
         except (InputError, NotConvergedError) as error:
             self._missed.append(f"{name}: {error}")
             return
@@ -98,7 +101,7 @@ class _PoseLoads:
         """One winch to its full travel."""
         name = f'winch "{winch.name}" at its full travel'
         try:
-            self.solved[name] = self._simulation.solve({winch.name: winch.travel})
+            self.solved[name] = self._simulation.solve({winch.name: winch.travel}).without_factors()
         except NotConvergedError as error:
             self._missed.append(f"{name}: {error}")
 

@@ -1,7 +1,7 @@
 """`ReachedPose`: what inverse kinematics found for one pose."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -46,6 +46,10 @@ class ReachedPose:
     solves: int
     optimality: float = 0.0
     held: tuple[str, ...] = ()
+
+    def without_factors(self) -> "ReachedPose":
+        """The same with a pose that keeps no factorised Hessian, to be kept with many others."""
+        return replace(self, pose=self.pose.without_factors())
 
     @property
     def wanted(self) -> Pose:

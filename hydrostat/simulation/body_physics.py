@@ -54,14 +54,18 @@ class BodyPhysics:
             energies.append(WeightEnergy(mesh.nodes, self.masses[:, None] * np.array(robot.gravity)))
         self.assembly = Assembly(energies, rest=mesh.nodes, control_count=0)
 
+    def fits(self, robot: Robot) -> bool:
+        """Tell whether this is the physics of the body of a robot: the same body, equal pins and gravity."""
+        body, pins, gravity = self._given
+        return robot.body is body and robot.pins == pins and robot.gravity == gravity
+
     def check(self, robot: Robot) -> None:
-        """Whether this is the physics of the body of a robot.
+        """Check that this is the physics of the body of a robot.
 
         Raises:
             InputError: it is that of another body, of other pins or of another gravity.
         """
-        body, pins, gravity = self._given
-        if not (robot.body is body and robot.pins == pins and robot.gravity == gravity):
+        if not self.fits(robot):
             raise InputError("these body physics are of another body, other pins or another gravity; make new ones")
 
     @cached_property

@@ -159,7 +159,7 @@ def _sort(
         if largest_distance(known.nodes, pose.nodes) <= near:
             names.append(way.name)
             return
-    groups.append((pose, [way.name]))
+    groups.append((pose.without_factors(), [way.name]))
 
 
 def _marker_spread(simulation: Simulation, poses: tuple[FoundPose, ...]) -> dict[str, float]:

@@ -52,7 +52,8 @@ def solve_torch(
     """Equilibrium as `Simulation.solve` finds it; `backward` costs one solve with the factorised Hessian.
 
     Tensors of any float type and device are taken; all is computed in float64 on the CPU. What is left out stays as
-    in the robot; what is given takes its place, for which the simulation is built anew. Second derivatives are refused.
+    in the robot; what is given takes its place, for which a simulation is built anew, on the same body physics unless
+    `young` or `poisson` is given. Second derivatives are refused.
 
     Args:
         simulation: of the robot.
@@ -93,7 +94,9 @@ class _Equilibrium(torch.autograd.Function):
             raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
         if any(value is not None for value in others):
             numbers = (None if value is None else value.detach().numpy() for value in others)
-            simulation = Simulation(_altered(simulation.robot, *numbers), options=simulation.options)
+            robot = _altered(simulation.robot, *numbers)
+            body = simulation.body if simulation.body.fits(robot) else None
+            simulation = Simulation(robot, options=simulation.options, body=body)
         pose = simulation.solve(contractions.detach().numpy(), start=start)
         ctx.simulation, ctx.pose = simulation, pose
         ctx.shapes = [None if value is None else value.shape for value in (contractions, *others)]

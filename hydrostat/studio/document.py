@@ -1,14 +1,13 @@
 """`Document`: the open robot, with all that was done to it."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from threading import RLock
 
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
@@ -21,7 +20,7 @@ KEPT = 2
 """So many states before, and after, keep the physics that were made for them."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Change:
     """A state of the work, with what led to it.
 
@@ -29,16 +28,13 @@ class Change:
         label: what was done, such as "move marker tip".
         work: after that.
         merge: changes in a row with the same word are one, such as those of one drag; "": a change of its own.
+        simulation: physics of the robot as it was then; None: not made yet, or forgotten.
     """
 
     label: str
     work: Work
     merge: str = ""
-
-    @cached_property
-    def simulation(self) -> Simulation:
-        """Physics of the robot as it was then."""
-        return Simulation(self.work.robot)
+    simulation: Simulation | None = None
 
 
 class Document:
@@ -63,6 +59,7 @@ class Document:
         self._past: list[Change] = []
         self._future: list[Change] = []
         self._saved: Work | None = None
+        self._body: BodyPhysics | None = None
 
     @property
     def is_open(self) -> bool:
@@ -94,7 +91,22 @@ class Document:
         Raises:
             InputError: no robot is open.
         """
-        return self._now.simulation
+        now = self._now
+        made = now.simulation
+        if made is None:
+            made = now.simulation = self._made(now.work.robot)
+        return made
+
+    def simulation_of(self, robot: Robot) -> Simulation:
+        """Physics of a robot such as the open one; on a body whose physics were made last, they are soon made."""
+        return self.simulation if self.is_open and self.robot is robot else self._made(robot)
+
+    def _made(self, robot: Robot) -> Simulation:
+        """New physics of a robot, sharing those of its body where only its network was changed."""
+        body = self._body
+        simulation = Simulation(robot, body=body if body is not None and body.fits(robot) else None)
+        self._body = simulation.body
+        return simulation
 
     @property
     def saved(self) -> bool:
@@ -125,6 +137,7 @@ class Document:
         """
         with self._lock:
             self._past, self._future = [Change("open", work)], []
+            self._body = None
             self.folder, self._saved, self.text = folder, work if saved else None, text
             self.stamp = "" if folder is None else folder_stamp(folder) if stamp is None else stamp
             self.serial += 1
@@ -156,7 +169,7 @@ class Document:
             parts = {key: value for key, value in given.items() if value is not None}
             change = Change(label, replace(self.work, **parts), merge)
             if robot is None:
-                _share_simulation(self._now, change)
+                change.simulation = self._now.simulation
             if merge and len(self._past) > 1 and self._past[-1].merge == merge:
                 self._past.pop()
             self._past.append(change)
@@ -171,8 +184,7 @@ class Document:
         with self._lock:
             if self._past and self._past[-1].merge:
                 last = self._past[-1]
-                self._past[-1] = Change(last.label, last.work)
-                _share_simulation(last, self._past[-1])
+                self._past[-1] = Change(last.label, last.work, simulation=last.simulation)
 
     def undo(self) -> bool:
         """Take back the last change; whether there was one."""
@@ -203,7 +215,7 @@ class Document:
     def _forget_physics(self) -> None:
         """Physics take megabytes: only the last few states keep theirs."""
         for change in (*self._past[:-KEPT], *self._future[:-KEPT]):
-            change.__dict__.pop("simulation", None)
+            change.simulation = None
 
     @property
     def _now(self) -> Change:
@@ -211,9 +223,3 @@ class Document:
         if not past:
             raise InputError("no robot is open; choose one of the gallery, open a folder or bring a drawing")
         return past[-1]
-
-
-def _share_simulation(before: Change, after: Change) -> None:
-    """The same robot has the same physics."""
-    if "simulation" in before.__dict__:
-        after.__dict__["simulation"] = before.__dict__["simulation"]

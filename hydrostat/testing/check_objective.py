@@ -44,7 +44,8 @@ def check_objective(
         ConformanceError: the first check that failed, how far it is off and where.
         NotConvergedError: there is no equilibrium at one of these contractions.
     """
-    sharp = Simulation(simulation.robot, options=replace(simulation.options, tolerance=solver))
+    options = replace(simulation.options, tolerance=solver)
+    sharp = Simulation(simulation.robot, options=options, body=simulation.body)
     check = _ObjectiveCheck(objective, sharp, sharp.solve(contractions), tolerance)
     check.shapes()
     random = np.random.default_rng(seed)

@@ -98,6 +98,15 @@ def test_the_physics_is_shared_by_changes_that_leave_the_robot_as_it_is(document
     assert document.simulation is before
 
 
+def test_another_network_keeps_the_physics_of_the_body(document: Document, starfish: Robot) -> None:
+    body = document.simulation.body
+    document.change("cut", robot=starfish.with_network(starfish.winches, starfish.cables[1:]))
+    assert document.simulation.body is body
+    assert document.simulation_of(starfish).body is body
+    document.change("float", robot=replace(starfish, gravity=(0.0, -1.0)))
+    assert document.simulation.body is not body
+
+
 @pytest.mark.slow
 def test_the_past_does_not_grow_without_end(document: Document, starfish: Robot) -> None:
     for step in range(MOST_STEPS + 50):

@@ -195,7 +195,7 @@ class KeySearch:
                 name: tuple(((1 - share) * begin.markers[name] + share * end.markers[name]).tolist()) for name in names
             }
             last = self._solve(places, last, rough).pose
-            poses.append(last)
+            poses.append(last.without_factors())
         return (*poses, end)
 
 

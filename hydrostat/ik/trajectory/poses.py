@@ -49,6 +49,9 @@ def follow(
         jump: the largest distance from the prediction [m].
         tell: is told how far the work is.
 
+    Returns:
+        The poses, of which only the last one keeps its factorised Hessian; and the snaps.
+
     Raises:
         NotConvergedError: no equilibrium is found at some time.
     """
@@ -63,10 +66,10 @@ def follow(
             )
         if distance > jump:
             snaps.append(Snap(time=float(time), distance=distance))
-        poses.append(pose)
+        poses.append(pose.without_factors())
         if tell is not None:
             tell("following the way", index + 1, len(times))
-    return tuple(poses), tuple(snaps)
+    return (*poses[:-1], pose), tuple(snaps)
 
 
 def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, halvings: int) -> tuple[SolvedPose, float]:

@@ -114,6 +114,7 @@ def solve_ik_trajectory(
     contractions, speeds, accelerations = course.at(times)
     contractions[samples] = _exact(begin, found, hold)  # as they were found, without rounding
     poses, snaps = follow(simulation, begin, times, contractions, jump=near, tell=tell)
+    poses = (*poses[:-1], poses[-1].without_factors())
     return Trajectory(
         path=kind,
         times=times,
@@ -249,7 +250,7 @@ def _keys(
                 time=float(times[sample]),
                 index=sample,
                 target=target,
-                found=one.reached,
+                found=one.reached.without_factors() if one.reached else None,
                 pose=pose,
                 errors=errors,
                 stray=stray(places),

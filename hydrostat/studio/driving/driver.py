@@ -9,7 +9,6 @@ from hydrostat.arrays import Vector
 from hydrostat.control import Link, Motors, SimulatedLink, read_timeline, timeline_table
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
-from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.film import Recorder
@@ -242,8 +241,9 @@ class Driver(Stage):
             InputError: there is no such pose, or it cannot be reached for.
             NotConvergedError: the robot has no equilibrium to begin at.
         """
-        robot = self._document.robot
-        found = solve_ik(Simulation(robot), robot.pose(name))  # physics of its own: the shown ones are at work
+        simulation = self._document.simulation
+        robot = simulation.robot
+        found = solve_ik(simulation, robot.pose(name))
         if self._document.robot is not robot:
             raise InputError("the robot was changed meanwhile; ask again")
         with self._lock:

@@ -41,7 +41,7 @@ def solve_poses(report: Report, robot: Robot) -> SolvedPoses:
     for done, pose in enumerate(poses):
         report.progress(f"Pose {pose.name}", done, len(poses))
         try:
-            reached.append(solve_ik(simulation, pose))
+            reached.append(solve_ik(simulation, pose).without_factors())
         except (InputError, NotConvergedError) as error:
             missed.append(f"{pose.name}: {error}")
     return SolvedPoses(robot=robot, reached=tuple(reached), missed=tuple(missed))

@@ -58,7 +58,8 @@ class CableMover(Mover):
         """
         self.robot, self.tension, self._notes = simulation.robot, tension, notes
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
-        self._rough = Simulation(simulation.robot, options=replace(simulation.options, tolerance=ROUGH))
+        options = replace(simulation.options, tolerance=ROUGH)
+        self._rough = Simulation(simulation.robot, options=options, body=simulation.body)
         self._begin(start or simulation.rest)
 
     @property

@@ -56,8 +56,8 @@ class Movers:
     def _simulation(self, robot: Robot) -> Simulation:
         """Physics of the robot; without friction, for with it no contractions belong to a pose."""
         if _rubs(robot):
-            return Simulation(replace(robot, cables=tuple(replace(cable, friction=0.0) for cable in robot.cables)))
-        return self._document.simulation if self._document.robot is robot else Simulation(robot)
+            robot = replace(robot, cables=tuple(replace(cable, friction=0.0) for cable in robot.cables))
+        return self._document.simulation_of(robot)
 
 
 def same_body(first: Robot, second: Robot) -> bool:
