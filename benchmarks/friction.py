@@ -45,7 +45,7 @@ def row(name: str, friction: float) -> str:
     assert simulation.friction is not None
     back = simulation.solve(0.5 * goal, start=held, strict=False)
     there = simulation.solve(0.5 * goal, strict=False)
-    ends = simulation.friction.resumed(held.slips, held.nodes, goal).span_tensions(held.nodes, goal)
+    ends = simulation.friction.resumed(held.history, held.nodes, goal).span_tensions(held.nodes, goal)
     apart = max(float(np.linalg.norm(held.markers[marker] - free.markers[marker])) for marker in free.markers)
     loop = max(float(np.linalg.norm(back.markers[marker] - there.markers[marker])) for marker in free.markers)
     failed = sum(not pose.result.converged for pose in (free, held, back, there))

@@ -68,7 +68,8 @@ def play(
     except (KeyboardInterrupt, SystemExit) as stop:
         newline()
         _say(f"stopped at {player.time:.2f} s; the motors hold at {_places(motors)}")
-        raise typer.Exit(130 if isinstance(stop, KeyboardInterrupt) else int(stop.code or 0)) from None
+        code = 130 if isinstance(stop, KeyboardInterrupt) else stop.code
+        raise typer.Exit(code if isinstance(code, int) else 1) from None
     except HydrostatError as error:
         newline()
         raise HydrostatError(f"simulated: the motors stopped at {player.time:.2f} s: {error}") from None

@@ -3,7 +3,7 @@
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
 from hydrostat.mechanics.chain_law import ChainLaw
-from hydrostat.mechanics.energy import Energy, nearest_semidefinite
+from hydrostat.mechanics.energy import Compliance, Coupling, Energy, Law, nearest_semidefinite
 from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
 from hydrostat.mechanics.fibre import FibreEnergy
 from hydrostat.mechanics.friction import FrictionCableEnergy
@@ -22,10 +22,13 @@ __all__ = [
     "CableEnergy",
     "CableSegments",
     "ChainLaw",
+    "Compliance",
+    "Coupling",
     "Energy",
     "Factorisation",
     "FibreEnergy",
     "FrictionCableEnergy",
+    "Law",
     "NeoHookean",
     "NewtonOptions",
     "NewtonResult",

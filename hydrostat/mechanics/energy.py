@@ -118,7 +118,10 @@ class Energy(ABC):
         return 0.0
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
-        """Largest share of a straight move [m] that is admissible, above 0, at most 1: up to the first touch."""
+        """Largest share of a straight move [m] that is admissible, above 0, at most 1: up to the first touch.
+
+        It is asked of the energy near the start, and must look at all terms that the move may bring near.
+        """
         return 1.0
 
     def near(self, nodes: Nodes) -> "Energy":

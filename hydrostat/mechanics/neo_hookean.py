@@ -201,12 +201,12 @@ def _hessian(blocks, share, displacements, stencils, gradients, volumes, mu, lam
                         block[a * dim + i, b * dim + j] = entry
                         block[b * dim + j, a * dim + i] = entry
         if share > 0.0:
-            _lift(G, 1.0 + change, rest, share * volume, mu, lame, axes, block, V, stretches, vectors, local, column)
+            _project(G, 1.0 + change, rest, share * volume, mu, lame, axes, block, V, stretches, vectors, local, column)
 
 
 @njit(**INNER)
 @no_type_check
-def _lift(F, J, gradients, weight, mu, lame, axes, block, V, stretches, vectors, local, column):
+def _project(F, J, gradients, weight, mu, lame, axes, block, V, stretches, vectors, local, column):
     """Take the negative eigenvalues, times a weight, out of one element's Hessian block.
 
     The eigenvectors of d2Psi/dF2 are known from the singular value decomposition F = U diag(s) V^T (Smith, de Goes and

@@ -215,7 +215,10 @@ class _EnergyDescent:
         """What is known of the Hessian, with the springs as they are now; None if that is not definite."""
         if known is None or known.singular or known.token is not self.assembly.token:
             return None
-        stiffness = known.with_weights(place.assembly.coupling(place.nodes, self.controls).weights)
+        weights = place.assembly.coupling(place.nodes, self.controls).weights
+        if weights.shape != known.weights.shape:  # springs came or went since
+            return None
+        stiffness = known.with_weights(weights)
         return stiffness if stiffness.definite else None
 
     def _definite(self, place: _Iterate) -> Stiffness | None:
@@ -260,7 +263,7 @@ class _EnergyDescent:
                 found = self._arrive(*trial[:3])
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
                     return found
-            length *= 0.5
+            length *= 0.5 * trial.share
         return None
 
     def bend(self, nodes: Nodes, step: Vector) -> Nodes:

@@ -42,6 +42,8 @@ class SparsityPattern:
         other = SparsityPattern(stencils, self.rest, base=self)
         if len(other.entries) == len(self.entries):
             other.__dict__["analysis"] = self.analysis
+        _ = other.analysis, other._places  # then what it was made from can be forgotten
+        other._base = None
         return other
 
     @cached_property

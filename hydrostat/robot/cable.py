@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import LONGEST_NAME, Point, check_not_negative, check_point, check_positive
+from hydrostat.robot.checks import LONGEST_NAME, Point, check_name, check_not_negative, check_point, check_positive
 
 LARGEST_FRICTION = 2.0
 """No coefficient of friction is larger: one half turn would then hold 500 times the tension."""
@@ -46,6 +46,8 @@ class Cable:
     name: str = ""
 
     def __post_init__(self) -> None:
+        if self.name:
+            check_name(self.name)
         count = len(self.points)
         if count < 2:
             raise InputError(f"points must hold at least 2 points, not {count}")

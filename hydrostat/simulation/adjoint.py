@@ -9,7 +9,8 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import Assembly, CableEnergy
-from hydrostat.robot import Material, Robot
+from hydrostat.robot import Material
+from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
 from hydrostat.simulation.solved_pose import SolvedPose
 
@@ -46,7 +47,7 @@ class Sensitivity:
 
 
 def sensitivity(
-    robot: Robot,
+    body: BodyPhysics,
     assembly: Assembly,
     cables: CableEnergy,
     pose: SolvedPose,
@@ -62,7 +63,7 @@ def sensitivity(
     and dL/dT dT/dtheta to the slopes.
 
     Args:
-        robot: whose pose it is.
+        body: that of the robot whose pose it is.
         assembly: its energies.
         cables: those of its cables.
         pose: an equilibrium.
@@ -76,22 +77,26 @@ def sensitivity(
     """
     if not isinstance(pose, SolvedPose):
         raise InputError(f"an adjoint needs a SolvedPose, as solve() returns it, not a {type(pose).__name__}")
-    if pose.nodes.shape != assembly.shape or pose.tensions.shape != (len(robot.cables),):
+    if pose.nodes.shape != assembly.shape or pose.tensions.shape != cables.winches.shape:
         raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {assembly.shape}")
     assembly = assembly.near(pose.nodes)
     nodes = _checked("nodes", nodes, assembly.shape)
-    tensions = _checked("tensions", np.zeros(len(robot.cables)) if tensions is None else tensions, pose.tensions.shape)
+    tensions = _checked(
+        "tensions", np.zeros(len(cables.winches)) if tensions is None else tensions, pose.tensions.shape
+    )
     elongations = cables.elongations(pose.nodes, pose.contractions)
     tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
     columns = cables.columns(pose.nodes)
     right = nodes.ravel() + columns @ (tangents * tensions)
     field = response(right[:, None])[:, 0]
+    taken = np.bincount(cables.winches, cables.ratios * tangents * tensions, assembly.control_count).astype(float)
+    by_controls = taken - assembly.control_derivative(pose.nodes, pose.contractions).T @ field
     by_tension = tensions - columns.T @ field
     by_elongation = tangents * by_tension
     field = field.reshape(assembly.shape)
-    young, poisson, density, thickness, pins = _by_body(robot, assembly, pose, field)
+    young, poisson, density, thickness, pins = _by_body(body, pose, field)
     return Sensitivity(
-        contractions=np.bincount(cables.winches, cables.ratios * by_elongation, len(robot.winches)).astype(float),
+        contractions=by_controls,
         slack=-by_elongation,
         routes=points.by_cable(by_routes(points, cables, pose.nodes, field, by_elongation, pulls)),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
@@ -113,23 +118,21 @@ def _checked(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray
     return values
 
 
-def _by_body(
-    robot: Robot, assembly: Assembly, pose: SolvedPose, field: Nodes
-) -> tuple[float, float, float, float | None, Vector]:
+def _by_body(body: BodyPhysics, pose: SolvedPose, field: Nodes) -> tuple[float, float, float, float | None, Vector]:
     """By Young's modulus, Poisson's ratio, density, thickness and the stiffness of pins."""
-    body = robot.body
+    material = body.material
     works: dict[str, Vector] = {}
-    for energy in assembly.energies:
+    for energy in body.assembly.energies:
         for name, work in energy.parameter_work(pose.nodes, field).items():
             works[name] = works[name] + work if name in works else work
     shear, squeeze, load, whole = (float(works.get(name, np.zeros(1))[0]) for name in _BODY)
-    (mu_by_young, lame_by_young), (mu_by_poisson, lame_by_poisson) = _lame_slopes(body.material)
+    (mu_by_young, lame_by_young), (mu_by_poisson, lame_by_poisson) = _lame_slopes(material)
     return (
         -(mu_by_young * shear + lame_by_young * squeeze),
         -(mu_by_poisson * shear + lame_by_poisson * squeeze),
-        -load / body.material.density,
+        -load / material.density,
         None if body.thickness is None else -whole / body.thickness,
-        -works.get("support_stiffness", np.zeros(len(robot.pins))),
+        -works["support_stiffness"],
     )
 
 

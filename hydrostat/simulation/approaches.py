@@ -147,7 +147,7 @@ def _pushed(simulation: Simulation, pose: SolvedPose, step: Nodes) -> Nodes:
     """Nodes moved by a step along arcs; by less where an element would be inverted."""
     for _ in range(_HALVINGS):
         nodes = simulation.body.warp(pose.nodes, step)
-        if np.isfinite(simulation.assembly.value(nodes, pose.contractions)):
+        if np.isfinite(simulation.assembly.near(nodes).value(nodes, pose.contractions)):
             return nodes
         step = 0.5 * step
     return pose.nodes

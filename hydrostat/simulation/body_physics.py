@@ -30,6 +30,8 @@ class BodyPhysics:
         elastic: the body's resistance to being deformed; to a change of volume too, unless patches measure that.
         pins: what holds it, a support for each pin.
         assembly: all of its energies together; they read no control.
+        material: of the body.
+        thickness: of a flat body [m]; None in space.
         masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
     """
 
@@ -41,6 +43,7 @@ class BodyPhysics:
         """
         body = robot.body
         self._given = body, robot.pins, robot.gravity
+        self.material, self.thickness = body.material, body.thickness
         mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.material.lame
         patched = body.volume is Volume.PATCH
         self.elastic = NeoHookean(mesh.nodes, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness)

@@ -210,7 +210,7 @@ class Dynamics:
         assembly = self._assembly.with_energies(energies)
         flown = base.nodes + step * base.velocities
         guesses = [flown + step**2 * acceleration, flown, before]
-        values = [assembly.value(guess, controls) for guess in guesses]
+        values = [assembly.near(guess).value(guess, controls) for guess in guesses]
         start = guesses[int(np.argmin(values))]
 
         return minimise(

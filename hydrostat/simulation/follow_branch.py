@@ -82,7 +82,7 @@ def follow_branch(
         InputError: a start that is no equilibrium, contractions that do not fit, or cables with friction.
     """
     goal = simulation.contractions(contractions)
-    if simulation.friction is not None:
+    if simulation.assembly.has_history:
         raise InputError(
             "with friction equilibria are no branch, for every way ends elsewhere; set friction = 0 to follow one, or "
             "compare ways by path_dependence"

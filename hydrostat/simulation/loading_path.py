@@ -68,7 +68,7 @@ class LoadingPath:
 
     def resumed(self, pose: SolvedPose) -> Assembly:
         """Physics that remember how a pose was reached."""
-        return self._rest.assembly.resumed(pose.history, pose.nodes, pose.contractions)
+        return self._rest.assembly.near(pose.nodes).resumed(pose.history, pose.nodes, pose.contractions)
 
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 4) -> _PathState:
         """The next equilibrium, by way of more if it is not found: so often is the increment halved."""
@@ -88,6 +88,7 @@ class LoadingPath:
         while True:
             result = replace(self._solver, assembly=assembly).relax(nodes, goal, stiffness)
             nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
+            assembly = assembly.near(nodes)
             allowed = max(_TOLERANCE * assembly.largest_force(nodes, goal), self._solver.round_off.force)
             if assembly.imbalance(nodes, goal) <= allowed or not result.converged:
                 break

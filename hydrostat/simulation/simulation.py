@@ -147,8 +147,11 @@ class Simulation:
             raise InputError(
                 f"start has {len(start.contractions)} contractions, the robot {len(self.robot.winches)} winches"
             )
-        if len(start.history) != len(self.assembly.history):
-            raise InputError("start must be a pose of this robot with friction; it remembers no slips of its cables")
+        if self.assembly.has_history and len(start.history) != len(self.assembly.history):
+            raise InputError(
+                "start must be a pose of these physics, which remember the way, such as slips of cables with friction: "
+                f"{len(self.assembly.history)} numbers, not {len(start.history)}"
+            )
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
         """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
@@ -156,20 +159,19 @@ class Simulation:
         Cables with friction go on slipping where they are at the limit of it, and stick elsewhere.
 
         Raises:
+            InputError: other energies that remember the way, or others beside cables with friction.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
-        if self.friction is None:
+        if not self.assembly.has_history:
             right = -self.assembly.near(pose.nodes).control_derivative(pose.nodes, pose.contractions).toarray()
             return self.response(pose, right).reshape(*pose.nodes.shape, -1)
+        if self.friction is None or not self._plain:
+            raise InputError("physics that remember the way have a derivative only for cables with friction alone")
         stiffness = self.stiffness(pose)
         if stiffness.singular:
             raise NotConvergedError("the pose has no derivative: its Hessian is singular", pose.result)
-        index = self.assembly.energies.index(self.friction)
-        slips = len(self.friction.history)
-        begin = sum(len(energy.history) for energy in self.assembly.energies[:index])
-        history = pose.history[begin : begin + slips]
-        cables = self.friction.resumed(history, pose.nodes, pose.contractions)
-        compliance = stiffness.compliance_of(slice(0, slips))
+        cables = self.friction.resumed(pose.history, pose.nodes, pose.contractions)
+        compliance = stiffness.compliance_of(slice(0, len(pose.history)))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
 
     def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
@@ -185,7 +187,7 @@ class Simulation:
             NotConvergedError: as for `jacobian`.
         """
         return sensitivity(
-            self.robot,
+            self.body,
             self.assembly,
             self.cables,
             pose,
@@ -209,7 +211,10 @@ class Simulation:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
         if self.assembly.has_history:
-            raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
+            raise InputError(
+                "a pose with friction has no adjoint, as it depends on the way there; set friction = 0 and leave out "
+                "other energies that remember the way"
+            )
         stiffness = self.stiffness(pose)
         if stiffness.singular:
             raise NotConvergedError(
@@ -287,6 +292,7 @@ class Simulation:
         Raises:
             InputError, NotConvergedError: as for `step`.
         """
+        self.contractions(profile.values[0])
         return self.dynamics.play(profile, seconds, dt, start or self.still(), options or StepOptions())
 
     @cached_property
@@ -309,7 +315,8 @@ class Simulation:
     def tensions(self, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Vector:
         """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""
         if self.friction is not None and history is not None:
-            return self.friction.resumed(history, nodes, contractions).tensions(nodes, contractions)
+            slips = history[: len(self.friction.history)]  # the cables come first among what has a history
+            return self.friction.resumed(slips, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
 
     def stiffness(self, pose: SolvedPose) -> Stiffness:
@@ -319,9 +326,9 @@ class Simulation:
         return self.stiffness_of(pose) or self.assembly.near(pose.nodes).stiffness(pose.nodes, pose.contractions)
 
     def stiffness_of(self, pose: SolvedPose) -> Stiffness | None:
-        """The Hessian that a pose of this simulation brings along; None if it is of another one or brings none."""
-        known = pose.result.stiffness
-        return known if known is not None and known.token is self.assembly.token else None
+        """The Hessian that a pose of this simulation brings along; None if it brings none, or its nodes were moved."""
+        known, unmoved = pose.result.stiffness, pose.nodes is pose.result.nodes
+        return known if known is not None and unmoved and known.token is self.assembly.token else None
 
     @cached_property
     def rest(self) -> SolvedPose:

@@ -63,7 +63,9 @@ class StaticSolver:
 
     def allowed(self, nodes: Nodes, controls: Vector) -> float:
         """Nodal force left over [N] at which nodes count as at rest."""
-        return max(self.options.tolerance * self.assembly.largest_force(nodes, controls), self.round_off.force)
+        return max(
+            self.options.tolerance * self.assembly.near(nodes).largest_force(nodes, controls), self.round_off.force
+        )
 
     def solve(
         self,

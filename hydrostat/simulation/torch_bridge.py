@@ -90,7 +90,7 @@ class _Equilibrium(torch.autograd.Function):
     @staticmethod
     def forward(ctx: Any, *given: Any) -> tuple[Tensor, Tensor, SolvedPose]:
         simulation, start, contractions, *others = given
-        if simulation.friction is not None and any(ctx.needs_input_grad):
+        if simulation.assembly.has_history and any(ctx.needs_input_grad):
             raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
         if any(value is not None for value in others):
             numbers = (None if value is None else value.detach().numpy() for value in others)

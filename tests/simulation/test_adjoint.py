@@ -214,7 +214,7 @@ def test_the_projected_hessian_or_a_wrong_sign_would_fail() -> None:
     simulation, pose = loss.simulation, loss.pose
     lifted = simulation.assembly.stiffness(pose.nodes, pose.contractions, projection=1.0)
     wrong = sensitivity(
-        loss.robot,
+        simulation.body,
         simulation.assembly,
         simulation.cables,
         pose,

@@ -1,12 +1,16 @@
 """Energies that the house does not know plug in by list. Oracles: their contract, balance, finite differences."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import strip_robot
 from toy_energies import Floor, Magnet, YieldingTie
 
-from hydrostat.mechanics import Assembly, Energy
-from hydrostat.simulation import Simulation
+from hydrostat.errors import InputError
+from hydrostat.ik import solve_ik
+from hydrostat.mechanics import Assembly, Energy, WeightEnergy
+from hydrostat.simulation import Profile, Simulation
 from hydrostat.testing import check_energy
 
 ROBOT = strip_robot(columns=12, rows=3)
@@ -111,3 +115,77 @@ def test_a_tie_that_yields_remembers_the_way() -> None:
     assert np.linalg.norm(there.history) > 1e-3
     assert np.linalg.norm(back.nodes[TIP] - simulation.rest.nodes[TIP]) > 1e-4
     assert (simulation.rest.history == 0).all()
+
+
+def test_the_adjoint_counts_the_controls_of_all_energies() -> None:
+    """Oracle: the Jacobian; the density of a robot without weight moves nothing, whatever hangs at its tip."""
+    forces = np.zeros_like(NODES)
+    forces[TIP] = [0.0, -0.01]
+    simulation = Simulation(ROBOT, energies=[toys()["magnet"], WeightEnergy(NODES, forces)])
+    pose, cotangent = simulation.solve(PULL), np.random.default_rng(0).standard_normal(NODES.shape)
+    slopes = simulation.adjoint(pose, cotangent)
+    expected = np.einsum("nd,ndw->w", cotangent, simulation.jacobian(pose))
+    assert slopes.contractions == pytest.approx(expected, rel=1e-8)
+    assert slopes.density == 0.0
+
+
+def test_what_remembers_and_what_comes_and_goes_go_together() -> None:
+    """Oracle: the same with a floor whose terms are always there."""
+    down = np.array([0.0, 0.02])
+    poses = []
+    for every in (False, True):
+        floor = Floor(FLOOR, reach=0.01, stiffness=1e-2, every=every, count=len(NODES))
+        simulation = Simulation(ROBOT, energies=[toys()["tie"], floor])
+        pose = simulation.solve(down)
+        poses.append((pose, simulation.stiffness(pose).solve(np.arange(NODES.size, dtype=float))))
+    (one, moved), (other, expected) = poses
+    assert np.abs(one.nodes - other.nodes).max() < 1e-8
+    assert one.energy == pytest.approx(other.energy, rel=1e-6)
+    assert moved == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+
+
+def test_friction_and_another_memory_go_together() -> None:
+    """Oracle: the slips of the cables come first in what is remembered; a derivative of both is refused."""
+    rubbing = replace(ROBOT, cables=tuple(replace(cable, friction=0.3) for cable in ROBOT.cables))
+    alone, both = Simulation(rubbing), Simulation(rubbing, energies=[toys()["tie"]])
+    pose = both.solve(PULL)
+    assert pose.result.converged
+    assert len(pose.history) == len(alone.solve(PULL).history) + 2
+    assert (pose.tensions > 0).any()
+    with pytest.raises(InputError, match="remember the way"):
+        both.jacobian(pose)
+
+
+def test_inverse_kinematics_refuses_what_it_does_not_know() -> None:
+    for name, words in (("magnet", "follows winches"), ("tie", "end in another pose")):
+        with pytest.raises(InputError, match=words):
+            solve_ik(Simulation(ROBOT, energies=[toys()[name]]), {"tip": (0.19, 0.02)})
+
+
+def test_a_guess_beneath_the_floor_is_no_guess() -> None:
+    """Oracle: motion with a floor whose terms are always there."""
+    ends = []
+    for every in (False, True):
+        floor = Floor(FLOOR, reach=5e-3, stiffness=1e-2, every=every, count=len(NODES))
+        simulation = Simulation(ROBOT, energies=[floor])
+        profile = Profile(times=np.array([0.0, 0.1]), values=np.array([[0.0, 0.0], [0.0, 0.02]]))
+        *_, last = simulation.play(profile, 0.2, 0.05)
+        ends.append(last.nodes)
+    assert np.abs(ends[0] - ends[1]).max() < 1e-6
+
+
+def test_a_pose_whose_nodes_were_moved_brings_no_factors() -> None:
+    """Oracle: factors made anew at the moved nodes."""
+    simulation = Simulation(ROBOT)
+    pose = simulation.solve(PULL)
+    moved = replace(pose, nodes=pose.nodes + 1e-3 * np.sin(40 * pose.nodes))
+    right = np.arange(NODES.size, dtype=float)
+    expected = simulation.assembly.stiffness(moved.nodes, moved.contractions).solve(right)
+    assert simulation.stiffness(moved).solve(right) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("columns", [1, 3])
+def test_a_profile_of_other_winches_is_refused(columns: int) -> None:
+    profile = Profile(times=np.array([0.0, 1.0]), values=np.zeros((2, columns)))
+    with pytest.raises(InputError, match=f"{columns} contractions given for 2 winches"):
+        list(Simulation(ROBOT).play(profile, 0.1, 0.05))

@@ -120,10 +120,17 @@ class InverseProblem:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
-        if simulation.friction is not None:
+        if simulation.assembly.has_history:
             raise InputError(
                 "cables with friction end in another pose for every way there, so no contractions belong to a pose; "
                 "set friction = 0 to find some, then simulate them with friction"
+            )
+        others = [energy for energy in simulation.assembly.energies if energy is not simulation.cables]
+        idle = simulation.robot.body.mesh.nodes, np.zeros(len(robot.winches))
+        if any(energy.controls is not None or energy.coupling(*idle) is not None for energy in others):
+            raise InputError(
+                "inverse kinematics knows no energy beside the cables that follows winches or couples many nodes; "
+                "leave it out of the simulation's energies"
             )
         self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
         size = robot.body.mesh.size

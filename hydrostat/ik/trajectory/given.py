@@ -13,7 +13,7 @@ def check_robot(simulation: Simulation) -> None:
     Raises:
         InputError: cables with friction.
     """
-    if simulation.friction is not None:
+    if simulation.assembly.has_history:
         raise InputError(
             "cables with friction end in another pose for every way there, so a trajectory cannot be found; "
             "set friction = 0 to find one, then simulate it with friction"
