@@ -176,9 +176,9 @@ class Assembly:
         rows, columns, data = [], [], []
         for energy in self.energies:
             if energy.controls is not None:
-                dofs = (energy.stencils[:, :, None] * self.shape[1] + np.arange(self.shape[1])).reshape(
-                    len(energy.stencils), -1
-                )
+                terms, corners = energy.stencils.shape
+                dofs = energy.stencils[:, :, None] * self.shape[1] + np.arange(self.shape[1])
+                dofs = dofs.reshape(terms, corners * self.shape[1])
                 rows.append(dofs.ravel())
                 columns.append(np.repeat(energy.controls, dofs.shape[1]))
                 data.append(energy.control_gradient(nodes, controls).ravel())

@@ -143,10 +143,9 @@ class Simulation:
         shape = self.robot.body.mesh.nodes.shape
         if not (start.nodes.shape == shape and np.isfinite(start.nodes).all()):
             raise InputError(f"start must be a pose of this robot with finite nodes, {shape}, not {start.nodes.shape}")
-        if len(start.contractions) != len(self.robot.winches):
-            raise InputError(
-                f"start has {len(start.contractions)} contractions, the robot {len(self.robot.winches)} winches"
-            )
+        given, winches = len(start.contractions), len(self.robot.winches)
+        if given != winches:
+            raise InputError(f"start has {given} contractions, the robot {winches} winches")
         if self.assembly.has_history and len(start.history) != len(self.assembly.history):
             raise InputError(
                 "start must be a pose of these physics, which remember the way, such as slips of cables with friction: "
@@ -221,8 +220,7 @@ class Simulation:
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
         assembly = self.assembly.near(pose.nodes)
-        body = assembly.hessian(pose.nodes, pose.contractions)
-        springs = assembly.coupling(pose.nodes, pose.contractions)
+        body, springs = (part(pose.nodes, pose.contractions) for part in (assembly.hessian, assembly.coupling))
         columns, weights = springs.columns, springs.weights
         allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
         rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
