@@ -29,8 +29,8 @@ Contractions = Mapping[str, float] | Vector
 class Simulation:
     """Quasi-static equilibrium of a tendon-driven robot: where it rests when its winches take in cable (R17, R23-R29).
 
-    It holds no pose and is never changed by a solve: threads may share it, and it can be sent to other processes. What
-    is known of a pose, its factorised Hessian included, travels with the pose.
+    It is never changed by a solve: threads may share it, and it can be sent to other processes. What is known of a
+    pose, its factorised Hessian included, travels with the pose.
 
     Attributes:
         robot: whose physics it is.
@@ -240,9 +240,8 @@ class Simulation:
             pose: where the nodes are, and the contractions there.
             velocities: of the nodes [m/s]; none if left out.
         """
-        if pose is None:
-            return self.dynamics.still(self.robot.body.mesh.nodes, self.contractions({}), velocities)
-        return self.dynamics.still(pose.nodes, pose.contractions, velocities)
+        rest = self.robot.body.mesh.nodes, self.contractions({})
+        return self.dynamics.still(*(rest if pose is None else (pose.nodes, pose.contractions)), velocities)
 
     def step(
         self,

@@ -37,15 +37,30 @@ def place(page: "Page", key: str) -> tuple[float, float]:
 
 
 def drag(page: "Page", key: str, dx: float, dy: float) -> None:
-    """Take hold of a sign, move it, let go; each move waits until the screen has painted what the one before did."""
-    x, y = place(page, key)
-    page.mouse.move(x, y)
-    page.mouse.down()
-    for step in range(1, 9):
-        before = page.evaluate("__app.painted")
-        page.mouse.move(x + dx * step / 8, y + dy * step / 8)
-        page.wait_for_function("painted => window.__app.painted > painted", arg=before)
+    """Take hold of a sign, move it, let go; each move waits until the screen has painted."""
+    for _ in range(12):  # the page may still have been moving things about when the sign was pressed: press again
+        x, y = place(page, key)
+        page.mouse.move(x, y)
+        page.mouse.down()
+        if moved(page, x + dx / 8, y + dy / 8, seconds=20):
+            break
+        page.mouse.up()
+    for step in range(2, 9):
+        assert moved(page, x + dx * step / 8, y + dy * step / 8, seconds=300)
     page.mouse.up()
+
+
+def moved(page: "Page", x: float, y: float, *, seconds: float) -> bool:
+    """Move the pointer; whether the screen painted anew within some time."""
+    from playwright.sync_api import TimeoutError as LateError
+
+    before = page.evaluate("__app.painted")
+    page.mouse.move(x, y)
+    try:
+        page.wait_for_function("painted => window.__app.painted > painted", arg=before, timeout=1e3 * seconds)
+    except LateError:
+        return False
+    return True
 
 
 def seek(page: "Page", time: float) -> None:
