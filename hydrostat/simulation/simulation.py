@@ -220,13 +220,13 @@ class Simulation:
                 "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
             )
         assembly = self.assembly.near(pose.nodes)
-        body, springs = (part(pose.nodes, pose.contractions) for part in (assembly.hessian, assembly.coupling))
-        columns, weights = springs.columns, springs.weights
+        body = assembly.hessian(pose.nodes, pose.contractions)
+        springs = assembly.coupling(pose.nodes, pose.contractions)
         allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
         rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
         moves = stiffness.solve(forces)
         for _ in range(_REFINEMENTS):  # the factors may be those of a state close by
-            missing = forces - body @ moves - columns @ (weights @ (columns.T @ moves))
+            missing = forces - body @ moves - springs.columns @ (springs.weights @ (springs.columns.T @ moves))
             hidden = rounding * np.abs(moves).max(axis=0, initial=0.0)
             if (np.abs(missing).max(axis=0, initial=0.0) <= allowed + hidden).all():
                 return moves
