@@ -10,6 +10,7 @@ from numba import njit
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
 from hydrostat.kernel import KERNEL
 from hydrostat.mechanics.energy import Coupling, Energy
 from hydrostat.mechanics.sparsity import SparsityPattern
@@ -44,6 +45,11 @@ class Assembly:
 
     def extended(self, energies: Sequence[Energy], *, control_count: int) -> "Assembly":
         """Sum with more energies; all that is known of the pattern of this one serves it too."""
+        for energy in energies:
+            if not (isinstance(energy, Energy) and hasattr(energy, "stencils")):
+                raise InputError(f"{energy!r:.60} is no Energy with stencils; see hydrostat.mechanics.Energy")
+            if energy.stencils.size and not 0 <= energy.stencils.min() <= energy.stencils.max() < self.shape[0]:
+                raise InputError(f"stencils of {type(energy).__name__} must be nodes from 0 to {self.shape[0] - 1}")
         pattern = self.pattern.extended([energy.stencils for energy in energies])
         return Assembly(
             [*self.energies, *energies], rest=self.pattern.rest, control_count=control_count, pattern=pattern

@@ -215,10 +215,10 @@ class _EnergyDescent:
         """What is known of the Hessian, with the springs as they are now; None if that is not definite."""
         if known is None or known.singular or known.token is not self.assembly.token:
             return None
-        weights = place.assembly.coupling(place.nodes, self.controls).weights
-        if weights.shape != known.weights.shape:  # springs came or went since
+        springs = place.assembly.coupling(place.nodes, self.controls)
+        if springs.weights.shape != known.weights.shape:  # springs came or went since
             return None
-        stiffness = known.with_weights(weights)
+        stiffness = known.with_coupling(springs)
         return stiffness if stiffness.definite else None
 
     def _definite(self, place: _Iterate) -> Stiffness | None:
@@ -282,7 +282,7 @@ class _EnergyDescent:
     def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
         """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
         if stiffness.body_definite and stiffness.columns.size:
-            springs = place.assembly.coupling(place.nodes, self.controls)
+            springs = stiffness.coupling
             if springs.law is not None and springs.elongations is not None:
                 pulled = stiffness.columns @ springs.law.tension(springs.elongations)
                 free = -stiffness.solve_body(place.gradient - pulled)

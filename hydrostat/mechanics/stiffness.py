@@ -20,6 +20,7 @@ class Stiffness:
         definite: whether H is positive definite.
         singular: whether K or H cannot be solved with.
         factors: of K.
+        coupling: springs as they were when it was made.
         columns: G.
         weights: D.
         token: what the assembly is known by that it is the Hessian of; factors serve no other one.
@@ -29,12 +30,18 @@ class Stiffness:
 
     def __init__(self, factors: Factorisation, coupling: Coupling, *, token: object = None) -> None:
         """Take the factors of K, and G and D."""
-        self.factors, self.token = factors, token
+        self.factors, self.token, self.coupling = factors, token, coupling
         self.columns = columns = coupling.columns
         if not factors.singular:
             self.moves = factors.solve(columns) if columns.size else columns
             self.compliance = columns.T @ self.moves
         self._weigh(coupling.weights)
+
+    def with_coupling(self, coupling: Coupling) -> "Stiffness":
+        """The same with the springs as they are now: their D, their elongations and law, but the G that it has."""
+        other = self.with_weights(coupling.weights)
+        other.coupling = coupling
+        return other
 
     def with_weights(self, weights: Small) -> "Stiffness":
         """The same with another D, for next to nothing."""

@@ -189,3 +189,10 @@ def test_a_profile_of_other_winches_is_refused(columns: int) -> None:
     profile = Profile(times=np.array([0.0, 1.0]), values=np.zeros((2, columns)))
     with pytest.raises(InputError, match=f"{columns} contractions given for 2 winches"):
         list(Simulation(ROBOT).play(profile, 0.1, 0.05))
+
+
+@pytest.mark.parametrize("wrong", [["gravity"], [Magnet(0, 9999, strength=1.0, control=0)]])
+@pytest.mark.usefixtures("unchecked")
+def test_what_is_no_energy_of_this_body_is_refused(wrong: list) -> None:
+    with pytest.raises(InputError, match=r"no Energy|nodes from 0 to"):
+        Simulation(ROBOT, energies=wrong)
