@@ -40,7 +40,7 @@ class Simulation:
         cables: energy of the cables, as if they had no friction.
         friction: energy of the cables as they rub, in its place; None if none does.
         assembly: the sum of all energies.
-        solver: Newton's method on it.
+        solver: Newton's method on it; `solver.relax` is for those who follow a pose step by step.
     """
 
     def __init__(
@@ -348,31 +348,6 @@ class Simulation:
     def _path(self) -> LoadingPath:
         """Incremental loading; only for energies with a history."""
         return LoadingPath(self.robot, self.solver)
-
-    def relax(
-        self,
-        nodes: Nodes,
-        contractions: Vector,
-        stiffness: Stiffness | None = None,
-        *,
-        iterations: int | None = None,
-        tolerance: float | None = None,
-        exact: bool = False,
-    ) -> NewtonResult:
-        """Newton from some nodes on, for those who follow a pose step by step; `solve` is what others want.
-
-        Args:
-            nodes: where to begin [m].
-            contractions: cable taken in by each winch [m].
-            stiffness: the Hessian near there, such as that of the last result; then the first step is the prediction
-                dx/da and costs no factorisation.
-            iterations: most steps, if fewer than the simulation's options allow.
-            tolerance: if looser than theirs.
-            exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
-        """
-        return self.solver.relax(
-            nodes, contractions, stiffness, iterations=iterations, tolerance=tolerance, exact=exact
-        )
 
     def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
         """Residual forces dE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""

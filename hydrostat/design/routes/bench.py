@@ -105,7 +105,7 @@ class Bench:
         simulation = Simulation(layout.robot(), body=self.body)
         found = []
         for pulled, pose in zip(contractions, before.poses, strict=True):
-            result = simulation.relax(pose.nodes, pulled, iterations=15)
+            result = simulation.solver.relax(pose.nodes, pulled, iterations=15)
             if not (result.converged and result.stable):
                 return None
             found.append(simulation.posed(pulled, result))
@@ -117,7 +117,7 @@ class Bench:
         pulled = np.zeros(len(simulation.robot.winches))
         shared = min(len(pulled), len(pose.contractions))
         pulled[:shared] = pose.contractions[:shared]
-        result = simulation.relax(pose.nodes, pulled, iterations=15)
+        result = simulation.solver.relax(pose.nodes, pulled, iterations=15)
         return simulation.posed(pulled, result) if result.converged and result.stable else None
 
     def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[SolvedPose]) -> Trial:

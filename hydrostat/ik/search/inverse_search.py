@@ -67,7 +67,7 @@ class InverseSearch:
         for _ in range(_RELAXATIONS):
             before = result.nodes
             iterations, tolerance = (_ITERATIONS, _LOOSE) if far else (1, None)
-            result = self.problem.simulation.relax(
+            result = self.problem.simulation.solver.relax(
                 before, contractions, result.stiffness, iterations=iterations, tolerance=tolerance
             )
             if not result.stable:
@@ -94,7 +94,9 @@ class InverseSearch:
             return state
         self.solves += 1
         contractions = self.problem.bounds.spread @ state.values
-        result = self.problem.simulation.relax(state.result.nodes, contractions, state.result.stiffness, exact=True)
+        result = self.problem.simulation.solver.relax(
+            state.result.nodes, contractions, state.result.stiffness, exact=True
+        )
         return self.problem.state(state.values, result) if _sound(result) else None
 
     def tidied(self, state: InverseState) -> InverseState:
@@ -122,7 +124,7 @@ class InverseSearch:
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> InverseState | None:
         """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
-        result = self.problem.simulation.relax(
+        result = self.problem.simulation.solver.relax(
             start.nodes, self.problem.bounds.spread @ values, start.stiffness, iterations=_ITERATIONS
         )
         return self.problem.idle(self.problem.state(values, result)) if _sound(result) else None

@@ -80,7 +80,7 @@ def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, hal
     if (pose.contractions == goal).all():
         return pose, 0.0
     predicted = _predicted(simulation, pose, goal)
-    result = simulation.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
+    result = simulation.solver.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
     distance = largest_distance(result.nodes, predicted)
     if result.converged and result.stable and distance <= jump:
         return simulation.posed(goal, result), 0.0

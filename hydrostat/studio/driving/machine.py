@@ -67,7 +67,7 @@ class Follower:
         if last is None or simulation.friction is not None:
             return None
         near = simulation.stiffness(last)
-        found = simulation.relax(last.nodes, contractions, near, iterations=FEW, tolerance=ROUGH)
+        found = simulation.solver.relax(last.nodes, contractions, near, iterations=FEW, tolerance=ROUGH)
         return simulation.posed(contractions, found) if found.converged else None
 
 
