@@ -68,9 +68,9 @@ class CountingSolver(StaticSolver):
 
     def relax(self, *given: Any, **options: Any) -> NewtonResult:
         """Find what `StaticSolver.relax` does, and remember it."""
-        calls = self.__dict__["calls"]
-        calls.append(super().relax(*given, **options))
-        return calls[-1]
+        result = super().relax(*given, **options)
+        self.__dict__.get("calls", []).append(result)
+        return result
 
 
 class CountingSimulation(hs.Simulation):
