@@ -17,11 +17,8 @@ if TYPE_CHECKING:
     from hydrostat.plot import Film, Stop
     from hydrostat.simulation import Simulation
 
-LONGEST = 60.0
-"""Longest film [s]."""
-
-EACH_WAY, USUAL, LEAST_WAY = 2.0, 12.0, 0.5
-"""Time from one pose to the next, most of a whole film, and least of a way in it [s], unless told otherwise."""
+LONGEST = 60.0  # longest film [s]
+EACH_WAY, USUAL, LEAST_WAY = 2.0, 12.0, 0.5  # time of a way, most of a whole film, least of a way [s]
 
 
 class Format(StrEnum):

@@ -18,8 +18,7 @@ from hydrostat.units import counted
 if TYPE_CHECKING:
     from hydrostat.design import Network
 
-STOPPING = "stopping: the best network so far is solved and written ..."
-"""Said when Ctrl-C ends a search."""
+STOPPING = "stopping: the best network so far is solved and written ..."  # said when Ctrl-C ends a search
 
 
 def design(

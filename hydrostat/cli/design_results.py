@@ -11,8 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.ik import ReachedPose
     from hydrostat.robot import Robot
 
-STALE = r"alternatives/\d+_\d+_winches_\d+_cables"
-"""Folders of alternatives of an earlier design."""
+STALE = r"alternatives/\d+_\d+_winches_\d+_cables"  # folders of alternatives of an earlier design
 
 
 def write_results(network: "Network", folder: Path) -> None:

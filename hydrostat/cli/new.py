@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 
-LONGEST = 20.0
-"""No length that is asked for is longer [m]."""
+LONGEST = 20.0  # no length that is asked for is longer [m]
 
 
 def new(

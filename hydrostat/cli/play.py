@@ -19,8 +19,7 @@ from hydrostat.units import counted
 if TYPE_CHECKING:
     from hydrostat.control import Motors, Player
 
-SHOWN, LISTED = 0.1, 2.0
-"""Time from one word on the progress to the next [s]: on a terminal, and where lines are kept."""
+SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
 
 
 def play(

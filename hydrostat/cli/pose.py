@@ -150,8 +150,5 @@ def _taken(loaded: "Robot", reached: "ReachedPose") -> dict[str, float]:
     return {winch.name: float(a) for winch, a in zip(loaded.winches, reached.pose.contractions, strict=True)}
 
 
-_APART = 1e-3
-"""Poses that differ by more than this share of the body's size are different."""
-
-_STEEP = 1e-3
-"""An optimality above this is told: there was more to gain."""
+_APART = 1e-3  # poses that differ by more than this share of the body's size are different
+_STEEP = 1e-3  # an optimality above this is told: there was more to gain

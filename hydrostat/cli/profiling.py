@@ -42,8 +42,7 @@ PARTS = {
 }
 """Parts of the work by the files of hydrostat; the time of anything else counts to the parts that called for it."""
 
-Place = tuple[str, int, str]
-"""File, line and name of a function."""
+Place = tuple[str, int, str]  # file, line and name of a function
 
 
 @contextmanager

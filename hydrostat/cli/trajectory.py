@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Simulation
 
 
-REST = "rest"
-"""Name of the pose without contractions, unless the robot has a pose of this name."""
+REST = "rest"  # name of the pose without contractions, unless the robot has a pose of this name
 
 
 def trajectory(

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
 
-PATIENCE = 3.0
-"""Seconds after which a person is told what takes so long."""
+PATIENCE = 3.0  # seconds after which a person is told what takes so long
 
 
 @contextmanager

@@ -4,8 +4,7 @@ from abc import ABC, abstractmethod
 
 from hydrostat.arrays import Vector
 
-SILENCE = 0.5
-"""Motors that are told nothing for so long [s] stop where they are (watchdog)."""
+SILENCE = 0.5  # motors that are told nothing for so long [s] stop where they are (watchdog)
 
 
 class Link(ABC):

@@ -12,14 +12,9 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
 from hydrostat.simulation import ProfileTable
 
-FASTEST = 0.15
-"""Largest speed of the cables [m/s] unless told otherwise: brisk for a small geared motor, and knobs feel direct."""
-
-SPEEDS = (1e-3, 1.0)
-"""Slowest and fastest that motors may be told to turn [m/s]."""
-
-NEAR = 1e-7
-"""Contractions this close [m] are the same."""
+FASTEST = 0.15  # largest speed of the cables [m/s] unless told otherwise: brisk for a small motor; knobs feel direct
+SPEEDS = (1e-3, 1.0)  # slowest and fastest that motors may be told to turn [m/s]
+NEAR = 1e-7  # contractions this close [m] are the same
 
 
 class Motors:

@@ -11,14 +11,9 @@ from hydrostat.control.motors import Motors
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.simulation import Profile
 
-SPEEDS = (0.1, 4.0)
-"""Slowest and fastest, as times the timeline's own."""
-
-TICK = 1 / 60
-"""Motors that play are told and read once in this time [s]."""
-
-LATE = 2.0
-"""Motors may take so much longer [s] to where they shall be than at their largest speed."""
+SPEEDS = (0.1, 4.0)  # slowest and fastest, as times the timeline's own
+TICK = 1 / 60  # motors that play are told and read once in this time [s]
+LATE = 2.0  # motors may take so much longer [s] to where they shall be than at their largest speed
 
 
 class Player:

@@ -92,11 +92,6 @@ class Timeline:
         return self.without(index).with_key(replace(self.keys[index], time=time))
 
 
-SHORTEST, LONGEST = 0.1, 600.0
-"""No timeline is shorter, none longer [s]."""
-
-SAME = 5e-3
-"""Keys closer in time than this [s] are one."""
-
-MOST_KEYS = 2000
-"""No timeline has more."""
+SHORTEST, LONGEST = 0.1, 600.0  # no timeline is shorter, none longer [s]
+SAME = 5e-3  # keys closer in time than this [s] are one
+MOST_KEYS = 2000  # no timeline has more

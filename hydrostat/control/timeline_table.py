@@ -10,11 +10,8 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Profile, ProfileTable, profile_text
 
-STEP = 0.02
-"""A table is read along lines, so a smooth timeline is written in steps of this time [s]."""
-
-LARGEST = 4_000_000
-"""No table has more bytes."""
+STEP = 0.02  # a table is read along lines, so a smooth timeline is written in steps of this time [s]
+LARGEST = 4_000_000  # no table has more bytes
 
 
 def timeline_table(robot: Robot, timeline: Timeline) -> bytes:

@@ -6,18 +6,13 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
-Spots = Float[np.ndarray, "_ 3"]
-"""Points in space, or as a camera sees them: to the right, up and towards the eye."""
-
-ELEVATION = 22.0
-"""How far above the horizon the eye of a three-quarter view is [degree]; more for a body that lies flat."""
-
+Spots = Float[np.ndarray, "_ 3"]  # points in space, or as a camera sees them: to the right, up and towards the eye
+ELEVATION = 22.0  # angle of the eye of a three-quarter view above the horizon [degree]; more for a body that lies flat
 TURN = 58.0
 """Angle from the long axis of a body to the eye of a three-quarter view, from above [degree]: its sine is what is left
 of the length, its cosine shows that there is depth."""
 
-FROM_ABOVE = 0.97
-"""What a view from above is worth beside one from the side that shows as much: there, up is not to be seen."""
+FROM_ABOVE = 0.97  # worth of a view from above beside one from the side that shows as much: there, up is not seen
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,23 +10,12 @@ from jaxtyping import Float
 from hydrostat.drawing.line_drawing import LineDrawing
 from hydrostat.drawing.svg import NAMESPACE, Html, number, path, shape, tag
 
-Spot = tuple[float, float]
-"""A place on the canvas [mm]: to the right, down."""
-
-Box = tuple[float, float, float, float]
-"""Left, top, right, bottom [mm]."""
-
-THICK, MIDDLE, THIN = 0.5, 0.32, 0.18
-"""Widths of lines [mm]."""
-
-POINT = 25.4 / 72
-"""Millimetres of a typographic point."""
-
-PIXELS = 10
-"""For each millimetre of paper, to know what is hidden: a tenth of a millimetre is less than a line."""
-
-FONT = "Libertinus Serif"
-"""Comes with typst, so that a sheet is the same on every machine."""
+Spot = tuple[float, float]  # a place on the canvas [mm]: to the right, down
+Box = tuple[float, float, float, float]  # left, top, right, bottom [mm]
+THICK, MIDDLE, THIN = 0.5, 0.32, 0.18  # widths of lines [mm]
+POINT = 25.4 / 72  # millimetres of a typographic point
+PIXELS = 10  # for each millimetre of paper, to know what is hidden: a tenth of a millimetre is less than a line
+FONT = "Libertinus Serif"  # comes with typst, so that a sheet is the same on every machine
 
 
 @dataclass(frozen=True)

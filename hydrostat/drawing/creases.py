@@ -10,8 +10,7 @@ from numba import njit
 from hydrostat.geometry.healing.mend import sides_of
 from hydrostat.kernel import KERNEL
 
-Segments = Float[np.ndarray, "segments 2 3"]
-"""Straight pieces of lines by both ends [mm]."""
+Segments = Float[np.ndarray, "segments 2 3"]  # straight pieces of lines by both ends [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -11,11 +11,8 @@ from numba import njit
 
 from hydrostat.kernel import KERNEL
 
-Polyline = Float[np.ndarray, "_ 2"]
-"""A line on a picture: to the right, up [mm]."""
-
-_RIM = 4
-"""Pixels of nothing round the picture."""
+Polyline = Float[np.ndarray, "_ 2"]  # a line on a picture: to the right, up [mm]
+_RIM = 4  # pixels of nothing round the picture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

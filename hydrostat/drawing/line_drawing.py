@@ -15,14 +15,9 @@ from hydrostat.drawing.depth import DepthBuffer, Polyline
 _LAMP = np.array([-0.40, 0.75, 0.55]) / np.linalg.norm([-0.40, 0.75, 0.55])
 """Where the light comes from as seen: from above, from the left, from behind the shoulder."""
 
-_SHADES = ((0.6, 0.93), (0.05, 0.84))
-"""Below which light a side is grey, and how bright that grey is: pale enough to write on."""
-
-_JUMP = 0.02
-"""A line is thick where what lies behind it is so much deeper, as a share of the picture."""
-
-_SMOOTH = 0.6
-"""How far rings may pass beside what they enclose [pixels]."""
+_SHADES = ((0.6, 0.93), (0.05, 0.84))  # below which light a side is grey, and how bright: pale enough to write on
+_JUMP = 0.02  # a line is thick where what lies behind it is so much deeper, as a share of the picture
+_SMOOTH = 0.6  # how far rings may pass beside what they enclose [pixels]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -12,12 +12,8 @@ from hydrostat.drawing.depth import DepthBuffer, Polyline
 from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, MESH, PAPER, SEAM, SHADE, STITCH, channels, mix
 from hydrostat.drawing.shades import paint, sky_shares
 
-FINER = 2
-"""Samples along each side of a pixel."""
-
-CREASE = 42.0
-"""A sharper bend than this between two facets is drawn as an edge [degree]."""
-
+FINER = 2  # samples along each side of a pixel
+CREASE = 42.0  # a sharper bend than this between two facets is drawn as an edge [degree]
 RAMP = ((0.0, SHADE), (0.30, SEAM), (0.52, mix(SEAM, FELT, 0.62)), (0.74, FELT), (0.92, FELT_LIGHT), (1.0, STITCH))
 """Colours of felt from deep shade to full light."""
 

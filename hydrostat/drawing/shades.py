@@ -7,8 +7,7 @@ from numba import njit
 
 from hydrostat.kernel import INNER, KERNEL
 
-SAMPLES = 40
-"""Neighbours that are asked how much of the sky they take."""
+SAMPLES = 40  # neighbours that are asked how much of the sky they take
 
 
 @njit(**KERNEL)

@@ -6,8 +6,7 @@ from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation
 
-_SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01
-"""Travels to try for a first pose, in shares of all; how near a pose is reached that is, in sizes of the body."""
+_SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; how near is near, in sizes of the body
 
 
 def with_first_pose(robot: Robot) -> Robot:

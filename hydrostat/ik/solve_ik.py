@@ -18,8 +18,7 @@ from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseS
 from hydrostat.robot import Point, Pose
 from hydrostat.simulation import Simulation, SolvedPose
 
-Targets = Pose | Mapping[str, Point]
-"""Where markers should go [m]: a pose, or points by name."""
+Targets = Pose | Mapping[str, Point]  # where markers should go [m]: a pose, or points by name
 
 
 def solve_ik(
@@ -168,14 +167,7 @@ def _same(first: InverseState, second: InverseState) -> bool:
     return bool(np.abs(first.result.nodes - nodes).max() < _APART * np.ptp(nodes, axis=0).max())
 
 
-_FAILURES = 6
-"""Jumps that lead to no pose, after which there are no more."""
-
-_NEAR = 0.03
-"""How far contractions near the best ones are from them: a share of the range, in the root of the mean square."""
-
-_CONCERNED = 0.3
-"""Channels that act on what is missed at least this well, beside the one that does so best."""
-
-_APART = 1e-6
-"""Poses that differ by less, in sizes of the body, are one."""
+_FAILURES = 6  # jumps that lead to no pose, after which there are no more
+_NEAR = 0.03  # distance of contractions near the best ones: a share of the range, in the root of the mean square
+_CONCERNED = 0.3  # channels that act on what is missed at least this well, beside the one that does so best
+_APART = 1e-6  # poses that differ by less, in sizes of the body, are one

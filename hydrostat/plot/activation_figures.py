@@ -19,8 +19,7 @@ from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
 from hydrostat.units import counted
 
-PALE = 0.62
-"""How far felt fades behind muscles."""
+PALE = 0.62  # how far felt fades behind muscles
 
 
 def draw_activation(robot: Robot, activation: Activation, *, title: str | None = None, width: float = WIDTH) -> Figure:

@@ -16,20 +16,11 @@ from hydrostat.plot.gif import Palette, gif_bytes
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot, replace_file
 
-Tell = Callable[[str, int, int], None]
-"""Is told the stage, how much of it is done, and how much there is."""
-
-COLOURS = 72
-"""Colours of a GIF, all frames together: what lies between two of felt is not to be told."""
-
-SAMPLES = 10
-"""So many frames, evenly chosen, tell which colours are needed."""
-
-WIDTHS = (160, 1920)
-"""Least and largest width of a picture [pixels]."""
-
-SHORTEST = 0.02
-"""Shortest time of a frame [s]: browsers play shorter ones of a GIF slowly."""
+Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is done, and how much there is
+COLOURS = 72  # colours of a GIF, all frames together: what lies between two of felt is not to be told
+SAMPLES = 10  # so many frames, evenly chosen, tell which colours are needed
+WIDTHS = (160, 1920)  # least and largest width of a picture [pixels]
+SHORTEST = 0.02  # shortest time of a frame [s]: browsers play shorter ones of a GIF slowly
 
 
 def save_gif(

@@ -20,17 +20,10 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Branch, PathDependence, SolvedPose
 from hydrostat.units import counted
 
-MOST_MARKERS = 4
-"""So many markers have a chart: those that differ most between the poses, or move most."""
-
-TOLD = 0.25
-"""Markers that differ less, or move less, than this share of the first have no chart."""
-
-ROW = 2.3
-"""Height of a row of charts [inch]."""
-
-EDGES = 0.75
-"""Of that for words and numbers [inch]."""
+MOST_MARKERS = 4  # so many markers have a chart: those that differ most between the poses, or move most
+TOLD = 0.25  # markers that differ less, or move less, than this share of the first have no chart
+ROW = 2.3  # height of a row of charts [inch]
+EDGES = 0.75  # of that for words and numbers [inch]
 
 
 def draw_branches(

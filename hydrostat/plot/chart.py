@@ -8,11 +8,8 @@ from matplotlib.ticker import MaxNLocator
 from hydrostat.drawing.palette import GRID, INK, MUTED
 from hydrostat.plot.sheet import WIDTH
 
-EDGES = (0.62, 0.2, 0.5, 0.16)
-"""Left, right, lower and upper border [inch]."""
-
-DASHES = ("-", "--", ":", "-.")
-"""Lines of one colour, one after the other."""
+EDGES = (0.62, 0.2, 0.5, 0.16)  # left, right, lower and upper border [inch]
+DASHES = ("-", "--", ":", "-.")  # lines of one colour, one after the other
 
 
 def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0) -> tuple[Figure, Axes]:

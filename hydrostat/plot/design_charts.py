@@ -15,8 +15,7 @@ from hydrostat.plot.report_tables import millimetres
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.units import counted
 
-_WIDE = 30.0
-"""Errors that differ by this factor are drawn on a logarithmic scale."""
+_WIDE = 30.0  # errors that differ by this factor are drawn on a logarithmic scale
 
 
 def draw_growth(

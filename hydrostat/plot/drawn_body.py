@@ -9,11 +9,8 @@ from hydrostat.drawing.camera import Camera
 from hydrostat.drawing.render import Render
 from hydrostat.plot.sheet import MILLIMETRES, Place, Places, Spread
 
-STEP = 1.0
-"""Length of the pieces into which a run is cut to see which of them are covered, in pixels."""
-
-LEVELS = 8
-"""Steps from what is just covered to what is deep inside."""
+STEP = 1.0  # length of the pieces into which a run is cut to see which of them are covered, in pixels
+LEVELS = 8  # steps from what is just covered to what is deep inside
 
 
 @dataclass(frozen=True, eq=False)

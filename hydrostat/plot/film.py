@@ -16,14 +16,9 @@ from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Simulation, SolvedPose
 
-STILL = 0.25
-"""Share of the time from one stop to the next in which the robot stays there."""
-
-FEWEST = 4
-"""Frames from one stop to the next."""
-
-LEAST_LEFT = 0.7
-"""No winch is taken in so far that less than this share of its shortest cable is left."""
+STILL = 0.25  # share of the time from one stop to the next in which the robot stays there
+FEWEST = 4  # frames from one stop to the next
+LEAST_LEFT = 0.7  # no winch is taken in so far that less than this share of its shortest cable is left
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -159,14 +154,9 @@ def _upright(robot: Robot, pose: SolvedPose) -> bool:
     return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())
 
 
-MOST = 240
-"""Frames of a long trajectory."""
-
-STEP = 0.04
-"""Time of a frame of a short trajectory [s]."""
-
-END = 0.6
-"""How long the last pose is shown [s]."""
+MOST = 240  # frames of a long trajectory
+STEP = 0.04  # time of a frame of a short trajectory [s]
+END = 0.6  # how long the last pose is shown [s]
 
 
 def trajectory_frames(trajectory: Trajectory) -> tuple[list[Frame], float]:

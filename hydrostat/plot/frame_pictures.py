@@ -21,14 +21,9 @@ from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
 
-Picture = UInt8[np.ndarray, "_ _ 3"]
-"""Red, green and blue of each pixel, the top row first."""
-
-INCHES = 6.4
-"""Width of the drawing, whatever its pixels: words and lines keep their share of it."""
-
-FINER = 1.25
-"""Pixels of the image of a body for one of the picture: edges of its parts stay smooth as they move."""
+Picture = UInt8[np.ndarray, "_ _ 3"]  # red, green and blue of each pixel, the top row first
+INCHES = 6.4  # width of the drawing, whatever its pixels: words and lines keep their share of it
+FINER = 1.25  # pixels of the image of a body for one of the picture: edges of its parts stay smooth as they move
 
 
 class FramePictures:

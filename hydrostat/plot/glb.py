@@ -8,11 +8,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-FLOAT, UNSIGNED = 5126, 5125
-"""Kinds of numbers in glTF: 32 bits each."""
-
-VERTICES, INDICES = 34962, 34963
-"""What an array is used for."""
+FLOAT, UNSIGNED = 5126, 5125  # kinds of numbers in glTF: 32 bits each
+VERTICES, INDICES = 34962, 34963  # what an array is used for
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -14,8 +14,7 @@ from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places
 from hydrostat.robot import Mount, Robot, Winch
 
-SHARES = np.linspace(0.3, 0.9, 13)
-"""Shares of a cable's length where its number may stand."""
+SHARES = np.linspace(0.3, 0.9, 13)  # shares of a cable's length where its number may stand
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,14 +17,9 @@ from hydrostat.geometry.surface import Surface
 from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
 
-LINE, HEAD, LETTERS = 11.0, 28.0, 92
-"""Height of a line of notes and of what stands above the views [pt], and letters of a line on a page of usual width."""
-
-REDNESS = 0.72
-"""How red the inside of a surface is drawn where it is seen."""
-
-WELD = 1e-6
-"""Vertices nearer than this, in sizes of the surface, are drawn as one."""
+LINE, HEAD, LETTERS = 11.0, 28.0, 92  # height of a line of notes and of what is above the views [pt]; letters of a line
+REDNESS = 0.72  # how red the inside of a surface is drawn where it is seen
+WELD = 1e-6  # vertices nearer than this, in sizes of the surface, are drawn as one
 
 
 def draw_healing(

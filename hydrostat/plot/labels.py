@@ -6,14 +6,9 @@ import shapely
 from hydrostat.drawing.palette import INK, LIGHT
 from hydrostat.plot.sheet import PictureSheet, Place, Places
 
-LONGEST = 26
-"""Most letters of a name that a picture shows."""
-
-HALO = "halo"
-"""Group name of words that need a border of paper around their letters."""
-
-RAYS = 16
-"""Directions in which a label is tried."""
+LONGEST = 26  # most letters of a name that a picture shows
+HALO = "halo"  # group name of words that need a border of paper around their letters
+RAYS = 16  # directions in which a label is tried
 
 
 class Labels:

@@ -14,17 +14,10 @@ from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
-STEPS = 6
-"""Equilibria from rest to a pose."""
-
-STILL = 4
-"""Steps that it rests in a pose, and at rest."""
-
-SCALE = 0.7
-"""Millimetres to a point in this picture: it shows true millimetres, about so large on a page."""
-
-STEP = 0.16
-"""Time of a step [s]."""
+STEPS = 6  # equilibria from rest to a pose
+STILL = 4  # steps that it rests in a pose, and at rest
+SCALE = 0.7  # millimetres to a point in this picture: it shows true millimetres, about so large on a page
+STEP = 0.16  # time of a step [s]
 
 
 def motion_frames(robot: Robot, poses: Iterable[Vector], *, steps: int = STEPS) -> list[Nodes]:

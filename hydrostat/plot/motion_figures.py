@@ -14,8 +14,7 @@ from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.robot import Robot
 from hydrostat.simulation import MotionTable
 
-MOST_NAMES = 12
-"""So many lines are named; of more, the others are only drawn."""
+MOST_NAMES = 12  # so many lines are named; of more, the others are only drawn
 
 
 def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, width: float = WIDTH) -> Figure:

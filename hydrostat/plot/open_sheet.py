@@ -17,9 +17,7 @@ ROOM = (34.0, 34.0, 40.0, 20.0)
 """Free border around the three-quarter view [pt], on its left, right, lower and upper side: there is place for words,
 below for the compass."""
 
-BARE = 12.0
-"""Free border around a view that stands alone [pt]: half a winch on its plate, that stands at the edge."""
-
+BARE = 12.0  # free border around a view that stands alone [pt]: half a winch on its plate, that stands at the edge
 RULES = (28.0, 12.0, 20.0, 14.0)
 """Free border around the view along an axis [pt], on its left, right, lower and upper side: there are numbers."""
 
@@ -163,12 +161,8 @@ def _joined(first: Place, second: Place, beside: bool) -> Place:
     return size
 
 
-ARM = 15.0
-"""Length of an axis of the compass [pt]."""
-
-
-SIDES = np.array([112.0, 38.0])
-"""Room that compass and bar take [pt]."""
+ARM = 15.0  # length of an axis of the compass [pt]
+SIDES = np.array([112.0, 38.0])  # room that compass and bar take [pt]
 
 
 def draw_compass(sheet: PictureSheet, camera: Camera, low: Place) -> None:

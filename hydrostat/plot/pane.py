@@ -16,11 +16,8 @@ from hydrostat.plot.sheet import BODY, MILLIMETRES, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 
-DPI = 200
-"""Pixels of an image of a body to an inch."""
-
-MOST_PIXELS = 1.0e6
-"""Pixels of a larger image grow, so that no image takes long."""
+DPI = 200  # pixels of an image of a body to an inch
+MOST_PIXELS = 1.0e6  # pixels of a larger image grow, so that no image takes long
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,12 +50,8 @@ def report_text(network: Network, *, title: str | None = None, facts: Mapping[st
     return page(name, _hero(network, name), *chapters(network), footer(network, facts or {}))
 
 
-PORTRAIT = 4.6
-"""Width of a portrait [inch]."""
-
-MOST_POSES = 5
-"""So many poses of a body in space have a portrait."""
-
+PORTRAIT = 4.6  # width of a portrait [inch]
+MOST_POSES = 5  # so many poses of a body in space have a portrait
 HOW = ", by its own winches, in simulation"
 
 

@@ -13,14 +13,9 @@ from hydrostat.plot.report_tables import millimetres
 from hydrostat.plot.robot_figures import draw_stage, stage_frame
 from hydrostat.units import counted
 
-MOST_STAGES = 8
-"""So many stages have a picture."""
-
-MOST_ALTERNATIVES = 12
-"""So many alternatives have a picture."""
-
-CHART = 7.2
-"""Width of a chart [inch]."""
+MOST_STAGES = 8  # so many stages have a picture
+MOST_ALTERNATIVES = 12  # so many alternatives have a picture
+CHART = 7.2  # width of a chart [inch]
 
 
 def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:

@@ -9,8 +9,7 @@ from matplotlib.figure import Figure
 from hydrostat.drawing.svg import Html, tag
 from hydrostat.plot.picture_file import inline_svg
 
-NARROW = 4.9
-"""Width of pictures that stand side by side [inch]: the narrower, the larger their letters."""
+NARROW = 4.9  # width of pictures that stand side by side [inch]: the narrower, the larger their letters
 
 
 class Chapter(NamedTuple):

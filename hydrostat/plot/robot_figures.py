@@ -113,8 +113,7 @@ def _draw_parts(
     return drawn[0], drawn[0].labels(sheet, np.array(list(panes[0].named(rest).values())).reshape(-1, 2))
 
 
-SMALL = 2.7
-"""Width of such a picture [inch]."""
+SMALL = 2.7  # width of such a picture [inch]
 
 
 def draw_stage(robot: Robot, *, like: Robot, frame: Spread, width: float = SMALL) -> Figure:

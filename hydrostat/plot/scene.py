@@ -22,20 +22,13 @@ from hydrostat.plot.targets import target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Pose, Robot, replace_file
 
-MOST_KEYS = 120
-"""A film of more different frames has every second, third ... of them as a key: programs hold them all at once."""
-
-SAME = 1e-5
-"""Two frames are one key where no node differs by more than this, in sizes of the body."""
-
+MOST_KEYS = 120  # of a film of more different frames every second, third ... is a key: programs hold them all at once
+SAME = 1e-5  # two frames are one key where no node differs by more than this, in sizes of the body
 CABLE, MARKER, TARGET = 0.0045, 0.011, 0.05
 """Radius of a cable and of a marker, and length of a target's cross, in sizes of the body."""
 
-SPOOL = (0.012, 0.045)
-"""Least and largest radius of a spool that is shown, in sizes of the body."""
-
-OPACITY = 0.72
-"""Of a body that has cables: they run inside, mostly."""
+SPOOL = (0.012, 0.045)  # least and largest radius of a spool that is shown, in sizes of the body
+OPACITY = 0.72  # of a body that has cables: they run inside, mostly
 
 
 def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float) -> Path:

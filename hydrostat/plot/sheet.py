@@ -13,27 +13,13 @@ from matplotlib.path import Path
 
 from hydrostat.drawing.palette import GRID, INK, MUTED
 
-Place = Float[np.ndarray, " 2"]
-"""One place, in millimetres unless its function says otherwise."""
-
-Places = Float[np.ndarray, "_ 2"]
-"""Places, one row each, in millimetres unless their function says otherwise."""
-
-Spread = Float[np.ndarray, "_ dim"]
-"""Points or nodes of a robot [m], any number of them in one call."""
-
-
-MILLIMETRES = 1e3
-"""Pictures are drawn in millimetres."""
-
-WIDTH = 6.4
-"""Width of a picture [inch]."""
-
-BODY = "body"
-"""Label of an image of a body in space, by which it is known when the picture is written."""
-
-TALLEST = 1.15
-"""Greatest height of a picture, as a multiple of its width."""
+Place = Float[np.ndarray, " 2"]  # one place, in millimetres unless its function says otherwise
+Places = Float[np.ndarray, "_ 2"]  # places, one row each, in millimetres unless their function says otherwise
+Spread = Float[np.ndarray, "_ dim"]  # points or nodes of a robot [m], any number of them in one call
+MILLIMETRES = 1e3  # pictures are drawn in millimetres
+WIDTH = 6.4  # width of a picture [inch]
+BODY = "body"  # label of an image of a body in space, by which it is known when the picture is written
+TALLEST = 1.15  # greatest height of a picture, as a multiple of its width
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,7 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.plot.sheet import Places, Spread
 from hydrostat.robot import Body
 
-RING_POINTS = 320
-"""Points on a ring as long as the body's whole boundary."""
+RING_POINTS = 320  # points on a ring as long as the body's whole boundary
 
 
 @dataclass(frozen=True, eq=False)

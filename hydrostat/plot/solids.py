@@ -9,15 +9,10 @@ from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.render import CREASE
 from hydrostat.geometry.mesh import Mesh
 
-Places = Float[np.ndarray, "_ _ 3"]
-"""Places of points in every key [m]."""
-
+Places = Float[np.ndarray, "_ _ 3"]  # places of points in every key [m]
 Triangles = Int[np.ndarray, "_ 3"]
-Solid = tuple[Triangles, Places, Places]
-"""Triangles, and places and normals of the vertices in every key."""
-
-SIDES = 8
-"""Sides of a tube and meridians of a sphere."""
+Solid = tuple[Triangles, Places, Places]  # triangles, and places and normals of the vertices in every key
+SIDES = 8  # sides of a tube and meridians of a sphere
 
 
 def skin(mesh: Mesh, nodes: Places) -> Solid:

@@ -10,8 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.drawing.palette import INK, MUTED, TENSION
 from hydrostat.plot.sheet import PictureSheet
 
-LEVELS = 16
-"""Lines are drawn in so many steps of tension; the eye tells no more."""
+LEVELS = 16  # lines are drawn in so many steps of tension; the eye tells no more
 
 
 @dataclass(frozen=True)

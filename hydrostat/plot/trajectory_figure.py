@@ -19,17 +19,10 @@ from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.robot import Robot
 from hydrostat.simulation import SolvedPose
 
-MOST_POSES = 5
-"""So many keyframes are drawn: the first ones."""
-
-PORTRAIT = 2.4
-"""Width at which a portrait is drawn [inch]; then it is made smaller, its lines too."""
-
-TALLEST = 1.7
-"""Greatest height of a portrait in the figure [inch]."""
-
-CHART = 1.45
-"""Height of a chart [inch]."""
+MOST_POSES = 5  # so many keyframes are drawn: the first ones
+PORTRAIT = 2.4  # width at which a portrait is drawn [inch]; then it is made smaller, its lines too
+TALLEST = 1.7  # greatest height of a portrait in the figure [inch]
+CHART = 1.45  # height of a chart [inch]
 
 
 def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None = None, width: float = WIDTH) -> Figure:

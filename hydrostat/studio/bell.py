@@ -16,8 +16,7 @@ class Topic(StrEnum):
     NOTE = "note"
 
 
-Listener = Callable[[Topic], None]
-"""Told what has changed, in the thread that changed it; it must return at once and never raise."""
+Listener = Callable[[Topic], None]  # told what has changed, in the thread that did; returns at once and never raises
 
 
 class Bell:

@@ -13,11 +13,8 @@ from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import folder_stamp
 
-MOST_STEPS = 500
-"""So many changes can be undone; older ones are forgotten."""
-
-KEPT = 2
-"""So many states before, and after, keep the physics that were made for them."""
+MOST_STEPS = 500  # so many changes can be undone; older ones are forgotten
+KEPT = 2  # so many states before, and after, keep the physics that were made for them
 
 
 @dataclass(eq=False)

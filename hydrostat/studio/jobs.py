@@ -15,8 +15,7 @@ from hydrostat.studio.work_process import Report, run_work
 
 __all__ = ["JobState", "Jobs", "Report"]
 
-PATIENCE = 5.0
-"""A process that has told what came of its work is given so long to end [s]."""
+PATIENCE = 5.0  # a process that has told what came of its work is given so long to end [s]
 
 
 @dataclass(frozen=True, kw_only=True)

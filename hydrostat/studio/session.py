@@ -25,8 +25,7 @@ from hydrostat.studio.view.picture import Show, Shown
 from hydrostat.studio.view.things import rest_shape
 from hydrostat.studio.work_folder import open_note, save_work
 
-MOST_NOTES = 50
-"""So many notes are kept."""
+MOST_NOTES = 50  # so many notes are kept
 
 
 class Tone(StrEnum):

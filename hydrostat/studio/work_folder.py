@@ -21,8 +21,7 @@ from hydrostat.studio.records.work import Work
 
 STUDIO_FILE = "studio.json"
 
-LARGEST = 20_000_000
-"""The file may have this many bytes."""
+LARGEST = 20_000_000  # the file may have this many bytes
 
 
 class StudioFile(BaseModel):
@@ -89,8 +88,7 @@ def _with_names(content: bytes, cables: Sequence[str]) -> bytes:
     return json.dumps(read).encode()
 
 
-MOST_TOLD = 5
-"""So many lost comments are told one by one."""
+MOST_TOLD = 5  # so many lost comments are told one by one
 
 
 def open_work(folder: Path) -> Work:

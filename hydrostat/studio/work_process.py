@@ -13,11 +13,8 @@ from typing import Any, Protocol, runtime_checkable
 
 from hydrostat.errors import HydrostatError
 
-SHORTEST = 0.03
-"""Progress of one stage is not told more often than each so many seconds."""
-
-AGAIN = 0.02
-"""A stop that was not heard is said again after so many seconds."""
+SHORTEST = 0.03  # progress of one stage is not told more often than each so many seconds
+AGAIN = 0.02  # a stop that was not heard is said again after so many seconds
 
 
 @runtime_checkable

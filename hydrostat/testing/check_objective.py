@@ -138,8 +138,7 @@ class _ObjectiveCheck:
         return np.asarray(term.slopes(self.at, moves_at(self.simulation, self.pose)))
 
 
-_REACH = 0.1
-"""Steps of contractions begin with a thousandth of this fraction of the body's size."""
+_REACH = 0.1  # steps of contractions begin with a thousandth of this fraction of the body's size
 
 
 def _place(array: np.ndarray) -> tuple[int, ...]:

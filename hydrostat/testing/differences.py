@@ -5,8 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from jaxtyping import Float
 
-RELATIVE_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 1e-6)
-"""Steps to try, as fractions of a natural scale: the first is right for all but steep or kinked functions."""
+RELATIVE_STEPS = (1e-3, 1e-4, 1e-2, 1e-5, 1e-6)  # fractions of a natural scale; the first is right for most functions
 
 
 def central_differences(

@@ -58,8 +58,7 @@ def keeps_taut(objective: Objective) -> bool:
     return isinstance(objective, Effort) and objective.of == EffortKind.SLACK
 
 
-_TENSION = 10.0
-"""A pull that winches of small robots bear with ease [N]."""
+_TENSION = 10.0  # a pull that winches of small robots bear with ease [N]
 
 
 class _Contraction(Term):

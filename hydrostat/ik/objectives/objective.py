@@ -211,8 +211,5 @@ def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"
     return found
 
 
-_LONGEST = 60
-"""As many letters of what is given are told."""
-
-_FARTHEST = 100.0
-"""Sizes of its body that a target may be away; in millimetres it is a thousand."""
+_LONGEST = 60  # as many letters of what is given are told
+_FARTHEST = 100.0  # sizes of its body that a target may be away; in millimetres it is a thousand

@@ -90,8 +90,7 @@ _FEWEST = 3
 _MOST = 1_000_000
 _SAMPLES = 200
 
-_LARGEST = 10.0
-"""A body does not get so many times longer or shorter."""
+_LARGEST = 10.0  # a body does not get so many times longer or shorter
 
 
 class _Shape(Term):
@@ -162,8 +161,7 @@ def _over(surface: Surface, count: int) -> Points:
     return np.einsum("pc,pcd->pd", weights, surface.vertices[surface.triangles[owners]])
 
 
-_EVEN = (0.7548776662466927, 0.5698402909980532)
-"""Multiples of these spread evenly over a square (Roberts 2018)."""
+_EVEN = (0.7548776662466927, 0.5698402909980532)  # multiples of these spread evenly over a square (Roberts 2018)
 
 
 def _check(name: str, shell: Shell, mesh: Mesh) -> None:

@@ -75,11 +75,8 @@ def _updated(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndar
     return known + (outer + outer.T) / along - float(step @ miss) / along**2 * np.outer(total, total)
 
 
-_FALLS = 0.25
-"""Where squares fall to less than this share in a step, Gauss-Newton is on its way to a target in reach."""
-
-_POOR = 0.1
-"""Gauss-Newton is poor if it misses the fall of the objective by this share."""
+_FALLS = 0.25  # where squares fall to less than this share in a step, Gauss-Newton is on its way to a target in reach
+_POOR = 0.1  # Gauss-Newton is poor if it misses the fall of the objective by this share
 
 
 def descend(search: InverseSearch, state: InverseState, *, weight: float | None = None) -> Descent:
@@ -199,17 +196,10 @@ class _TrustRegionDescent:
         return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
 
 
-_STEEP = 1e-3
-"""Where the residual's length still falls faster than this [m/m], it is no optimum."""
-
-_ROUGH = 1e-2
-"""Progress at which a descent with a fixed weight of the effort ends: it is a stage on the way."""
-
-_RULES = StepRules(mends=0.995, far=0.1)
-"""When a descent takes a step."""
-
-_SMALLEST_RADIUS = 1e-7
-"""Steps of less than this fraction of the range are not worth a solve."""
+_STEEP = 1e-3  # where the residual's length still falls faster than this [m/m], it is no optimum
+_ROUGH = 1e-2  # progress at which a descent with a fixed weight of the effort ends: it is a stage on the way
+_RULES = StepRules(mends=0.995, far=0.1)  # when a descent takes a step
+_SMALLEST_RADIUS = 1e-7  # steps of less than this fraction of the range are not worth a solve
 
 
 def _next_radius(radius: float, ratio: float, used: float) -> float:
@@ -219,5 +209,4 @@ def _next_radius(radius: float, ratio: float, used: float) -> float:
     return 2 * radius if ratio > 0.75 and used > 0.9 * radius else radius
 
 
-_WEIGHTS = (1.0, 0.1, 1e-2, 1e-3)
-"""Of the effort, one after the other."""
+_WEIGHTS = (1.0, 0.1, 1e-2, 1e-3)  # of the effort, one after the other

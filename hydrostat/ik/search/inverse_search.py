@@ -130,23 +130,12 @@ class InverseSearch:
         return self.problem.idle(self.problem.state(values, result)) if _sound(result) else None
 
 
-_RELAXATIONS = 6
-"""Steps of Newton towards an equilibrium before stronger means are used."""
-
-_ITERATIONS = 30
-"""Steps of Newton before an equilibrium is given up."""
-
-_FAR = 0.02
-"""A step of more than this share of a channel's range is far: it takes more than one step of Newton."""
-
-_LOOSE = 0.1
-"""Force left over after these, as a share of the largest tension."""
-
-_LEFT = 0.2
-"""An equilibrium is near enough when what is left is this share of the last step of Newton."""
-
-_HARDLY = 1e-3
-"""A channel whose tautest cable pulls less than this share of the largest tension may as well be slack."""
+_RELAXATIONS = 6  # steps of Newton towards an equilibrium before stronger means are used
+_ITERATIONS = 30  # steps of Newton before an equilibrium is given up
+_FAR = 0.02  # a step of more than this share of a channel's range is far: it takes more than one step of Newton
+_LOOSE = 0.1  # force left over after these, as a share of the largest tension
+_LEFT = 0.2  # an equilibrium is near enough when what is left is this share of the last step of Newton
+_HARDLY = 1e-3  # a channel whose tautest cable pulls less than this share of the largest tension may as well be slack
 
 
 def _sound(result: NewtonResult) -> bool:
@@ -154,8 +143,7 @@ def _sound(result: NewtonResult) -> bool:
     return result.converged and result.stable
 
 
-EXCESS = 1e-6
-"""A tension may exceed its limit by this share."""
+EXCESS = 1e-6  # a tension may exceed its limit by this share
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -283,5 +271,4 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
     return tuple(words)
 
 
-_HAIR = 1e-6
-"""A limit holds within this share of it."""
+_HAIR = 1e-6  # a limit holds within this share of it

@@ -194,13 +194,8 @@ class LinearModel:
 _SHARES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0)
 """How much of what exceeds a limit one step is asked to take back; the first that is possible within its radius."""
 
-_FLAT = 1e-12
-"""Least curvature of a model, as a share of the largest."""
-
-_HOLDS = 1e-9
-"""A limit holds when less than this share of what the channels' ranges could use of it is left."""
-
-
+_FLAT = 1e-12  # least curvature of a model, as a share of the largest
+_HOLDS = 1e-9  # a limit holds when less than this share of what the channels' ranges could use of it is left
 Matrix = Float[np.ndarray, "rows size"]
 
 

@@ -245,17 +245,10 @@ class InverseProblem:
         return result.nodes - result.stiffness.solve(gradient).reshape(result.nodes.shape)
 
 
-_EDGE = 1e-9
-"""A channel this near to taut, in shares of its range, is at the edge of it."""
-
-_IDLE = 1e-3
-"""A change that moves less than this share of what the best one moves counts as none."""
-
-_SHARE = 0.1
-"""Weight of the effort, as a share of the error in sizes of the body."""
-
-_LEAST_WEIGHT = 1e-8
-"""Of the effort; enough to keep the linearised problem well posed."""
+_EDGE = 1e-9  # a channel this near to taut, in shares of its range, is at the edge of it
+_IDLE = 1e-3  # a change that moves less than this share of what the best one moves counts as none
+_SHARE = 0.1  # weight of the effort, as a share of the error in sizes of the body
+_LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearised problem well posed
 
 
 def _full_tension(simulation: Simulation) -> float:

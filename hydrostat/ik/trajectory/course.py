@@ -97,11 +97,8 @@ class Course:
         return self.keys[:-1], p, 10 * way - 6 * p - 4 * q, 8 * p + 7 * q - 15 * way, 6 * way - 3 * p - 3 * q
 
 
-SPEED_OF_REST = 15 / 8
-"""Largest speed of a leg from rest to rest, in ways for each length of the leg."""
-
-ACCELERATION_OF_REST = 10 / np.sqrt(3)
-"""Largest acceleration of a leg from rest to rest, in ways for each square of the length of the leg."""
+SPEED_OF_REST = 15 / 8  # largest speed of a leg from rest to rest, in ways for each length of the leg
+ACCELERATION_OF_REST = 10 / np.sqrt(3)  # largest acceleration of a leg from rest to rest, in ways / its length^2
 
 
 def passing_speeds(times: Vector, keys: Keys) -> Float[np.ndarray, "inner winches"]:

@@ -70,5 +70,4 @@ def _check_own(simulation: Simulation, name: str, pose: SolvedPose) -> None:
         )
 
 
-_HAIR = 1e-9
-"""A contraction may be out of its limits by this much, for rounding [m]."""
+_HAIR = 1e-9  # a contraction may be out of its limits by this much, for rounding [m]

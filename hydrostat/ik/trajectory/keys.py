@@ -199,17 +199,8 @@ class KeySearch:
         return (*poses, end)
 
 
-_TAUT = Effort(of=EffortKind.SLACK, weight=0.0)
-"""Slack cables are kept just short of taut, so that they join without a jump of their contraction."""
-
-_STEPS = 20
-"""Of a way that is followed to contractions found from rest; each is cut into smaller ones as need be."""
-
-_ITERATIONS = 15
-"""Most Gauss-Newton steps to a pose on a straight way."""
-
-_BETTER = 0.01
-"""A search from rest is better when its error is smaller by this share,"""
-
-_TELL = 1e-5
-"""and by this share of the body's size."""
+_TAUT = Effort(of=EffortKind.SLACK, weight=0.0)  # slack cables stay just short of taut, to join without a jump
+_STEPS = 20  # of a way that is followed to contractions found from rest; each is cut into smaller ones as need be
+_ITERATIONS = 15  # most Gauss-Newton steps to a pose on a straight way
+_BETTER = 0.01  # a search from rest is better when its error is smaller by this share,
+_TELL = 1e-5  # and by this share of the body's size

@@ -11,8 +11,7 @@ from hydrostat.ik.limits import limit_by_winch
 from hydrostat.ik.trajectory.course import ACCELERATION_OF_REST, SPEED_OF_REST, Course, Keys, Peaks
 from hydrostat.robot import Robot
 
-ByWinch = float | Mapping[str, float]
-"""One number for all winches, or numbers by name."""
+ByWinch = float | Mapping[str, float]  # one number for all winches, or numbers by name
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,5 +89,4 @@ def _times(lengths: Vector) -> Vector:
 
 _ROUNDS = 60
 
-_HAIR = 1e-9
-"""Limits hold to this share of them."""
+_HAIR = 1e-9  # limits hold to this share of them

@@ -9,8 +9,7 @@ from hydrostat.ik.trajectory.course import Samples
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.simulation.solved_pose import largest_distance
 
-Tell = Callable[[str, int, int], None]
-"""Is told the stage, how much of it is done, and how much there is."""
+Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is done, and how much there is
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,8 +101,5 @@ def _predicted(simulation: Simulation, pose: SolvedPose, goal: Vector) -> Nodes:
         return pose.nodes
 
 
-_HALVINGS = 10
-"""A snap is one that is still there when a step is 2 to the power of so many times smaller."""
-
-_ITERATIONS = 20
-"""Steps of Newton; near a branch a few are enough."""
+_HALVINGS = 10  # a snap is one that is still there when a step is 2 to the power of so many times smaller
+_ITERATIONS = 20  # steps of Newton; near a branch a few are enough

@@ -261,11 +261,6 @@ def _keys(
     return tuple(keys)
 
 
-_ACCELERATION = 0.2
-"""The most that a winch accelerates, unless told otherwise [m/s^2]."""
-
-_HAIR = 1e-9
-"""Limits hold to this share of them."""
-
-_MOST_SAMPLES = 100_000
-"""A trajectory of more samples is a slip: each is an equilibrium."""
+_ACCELERATION = 0.2  # the most that a winch accelerates, unless told otherwise [m/s^2]
+_HAIR = 1e-9  # limits hold to this share of them
+_MOST_SAMPLES = 100_000  # a trajectory of more samples is a slip: each is an equilibrium

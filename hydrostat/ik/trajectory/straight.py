@@ -96,11 +96,6 @@ def _peaks(leg: Course) -> tuple[Peaks, Peaks]:
     return np.abs(speeds).max(axis=0, keepdims=True), np.abs(accelerations).max(axis=0, keepdims=True)
 
 
-_LEAST = 0.01
-"""A step of the way has at least this share of it."""
-
-_PLACES = 400
-"""Places for each knot where speed and acceleration are looked at."""
-
-_ROOM = 1.0005
-"""A leg takes so many times as long as the limits ask at these places."""
+_LEAST = 0.01  # a step of the way has at least this share of it
+_PLACES = 400  # places for each knot where speed and acceleration are looked at
+_ROOM = 1.0005  # a leg takes so many times as long as the limits ask at these places

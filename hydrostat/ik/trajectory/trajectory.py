@@ -190,5 +190,4 @@ def legs_of(indices: list[int]) -> list[slice]:
     return [slice(first, last + 1) for first, last in pairwise(indices)]
 
 
-_HAIR = 1e-3
-"""A tension may exceed its limit by this share before it is told."""
+_HAIR = 1e-3  # a tension may exceed its limit by this share before it is told

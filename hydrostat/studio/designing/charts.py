@@ -9,8 +9,7 @@ from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.run import DesignRun, Mark
 from hydrostat.units import counted
 
-LEFT, RIGHT, TOP, BOTTOM = 34.0, 10.0, 20.0, 32.0
-"""Room for the numbers and words around a chart."""
+LEFT, RIGHT, TOP, BOTTOM = 34.0, 10.0, 20.0, 32.0  # room for the numbers and words around a chart
 
 
 @dataclass(frozen=True, kw_only=True)

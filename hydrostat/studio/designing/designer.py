@@ -35,12 +35,8 @@ from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 TITLE = "Designing cables"
 
-MOST = 60
-"""So many candidates are kept; the oldest go."""
-
-MOST_RINGS = 12
-"""More targets than these at once say nothing."""
-
+MOST = 60  # so many candidates are kept; the oldest go
+MOST_RINGS = 12  # more targets than these at once say nothing
 MODULE = "hydrostat.studio.designing.design_work"
 
 

@@ -4,8 +4,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 
-DURATION = 0.45
-"""Time from one shape to the next [s]."""
+DURATION = 0.45  # time from one shape to the next [s]
 
 
 class Ease:

@@ -12,17 +12,10 @@ from hydrostat.studio.records.wishes import Paint
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
 
-COLOURS = {Paint.KEEP_OUT: "#c8243f", Paint.WINCH_ZONES: "#00795f", Paint.STILL: "#5a3da6"}
-"""Of each paint."""
-
-LABELS = {Paint.KEEP_OUT: "no cable", Paint.WINCH_ZONES: "winches", Paint.STILL: "still"}
-"""Written in a zone."""
-
-LEAST = 0.015
-"""The smallest radius of a painted zone, as a share of the body."""
-
-COARSE = 0.006
-"""A line drawn by hand is made this much simpler, as a share of the body."""
+COLOURS = {Paint.KEEP_OUT: "#c8243f", Paint.WINCH_ZONES: "#00795f", Paint.STILL: "#5a3da6"}  # of each paint
+LABELS = {Paint.KEEP_OUT: "no cable", Paint.WINCH_ZONES: "winches", Paint.STILL: "still"}  # written in a zone
+LEAST = 0.015  # the smallest radius of a painted zone, as a share of the body
+COARSE = 0.006  # a line drawn by hand is made this much simpler, as a share of the body
 
 
 def disc(middle: Point, rim: Point, size: float) -> Zone:
@@ -76,8 +69,7 @@ def rim_handle(zone: Zone) -> Point:
 WORDS = {Paint.KEEP_OUT: "no cable here", Paint.WINCH_ZONES: "winches only here", Paint.STILL: "keep this still"}
 """What a paint says."""
 
-NEAR = 0.02
-"""A click so near the first corner closes a polygon, as a share of the body."""
+NEAR = 0.02  # a click so near the first corner closes a polygon, as a share of the body
 
 
 class Painter:

@@ -9,14 +9,10 @@ from hydrostat.arrays import Points
 from hydrostat.drawing.palette import winch_colours
 from hydrostat.robot import Body, Robot
 
-EDGE = 200.0
-"""Longest side of a picture, in units of its drawing."""
-
+EDGE = 200.0  # longest side of a picture, in units of its drawing
 MARGIN = 12.0
 
-SPECK = 12.0
-"""A hole of less area is none: triangles that are seen edge-on leave such."""
-
+SPECK = 12.0  # a hole of less area is none: triangles that are seen edge-on leave such
 SIGHT = np.array([[0.905, -0.426, 0.0], [0.168, 0.357, 0.919]])
 """A body in space is seen from the front, a little from the right and from above: picture axes, (2, 3)."""
 

@@ -18,11 +18,8 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.driving.machine import upright
 from hydrostat.studio.jobs import Jobs, JobState, Report
 
-LONGEST_FILM = 60.0
-"""No film is longer [s]."""
-
-WIDTH = 640
-"""Width of its pictures [pixels]."""
+LONGEST_FILM = 60.0  # no film is longer [s]
+WIDTH = 640  # width of its pictures [pixels]
 
 
 class FilmKind(StrEnum):
@@ -33,8 +30,7 @@ class FilmKind(StrEnum):
     GLB = "glb"
 
 
-STEPS = {FilmKind.GIF: 0.05, FilmKind.MP4: 0.04, FilmKind.GLB: 0.05}
-"""Time of a frame [s]; a GIF counts in hundredths of a second."""
+STEPS = {FilmKind.GIF: 0.05, FilmKind.MP4: 0.04, FilmKind.GLB: 0.05}  # time of a frame [s]; a GIF counts in hundredths
 
 
 def check_film(timeline: Timeline, kind: FilmKind) -> None:

@@ -10,8 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.document import Document
 
-APART = 0.5
-"""A copy of a key is put so much later [s]."""
+APART = 0.5  # a copy of a key is put so much later [s]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,8 +12,7 @@ from hydrostat.studio.editing.mirror import Mirror
 from hydrostat.studio.editing.place import add_cable, add_winch
 from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
 
-NEAR_WINCH = 0.03
-"""A first point so near to a winch, as a share of the body, means that winch."""
+NEAR_WINCH = 0.03  # a first point so near to a winch, as a share of the body, means that winch
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,8 +71,7 @@ def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> 
     return add_cable(laid, twin.removeprefix("winch:"), tuple(mirror.point(point) for point in draft.points[1:]))
 
 
-BEYOND = 0.06
-"""The line of the mirror goes so far beyond the body, as a share of it."""
+BEYOND = 0.06  # the line of the mirror goes so far beyond the body, as a share of it
 
 
 def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[Thing]:

@@ -131,8 +131,7 @@ def sheaths(segments: Collection[int]) -> tuple[tuple[int, int], ...]:
     return tuple(pairs)
 
 
-BODY_RANGE = (1e-4, 20.0)
-"""Least and most thickness and element size that a person may ask for [m]."""
+BODY_RANGE = (1e-4, 20.0)  # least and most thickness and element size that a person may ask for [m]
 
 
 def remesh(

@@ -36,18 +36,10 @@ class Tool(StrEnum):
     CABLE = "cable"
 
 
-KEYS = {"v": Tool.MOVE, "p": Tool.PIN, "m": Tool.MARKER, "w": Tool.WINCH, "c": Tool.CABLE}
-"""The key of each tool."""
-
-
-QUIET = 0.2
-"""The robot is checked when nothing was changed for so long [s]."""
-
-SAME_CLICK = 0.005
-"""A click so near to the last one, as a share of the body, ends a cable: it was a double click."""
-
-DEPTH = 0.005
-"""How deep below the skin of a body in space winches and cables are placed at first [m]."""
+KEYS = {"v": Tool.MOVE, "p": Tool.PIN, "m": Tool.MARKER, "w": Tool.WINCH, "c": Tool.CABLE}  # the key of each tool
+QUIET = 0.2  # the robot is checked when nothing was changed for so long [s]
+SAME_CLICK = 0.005  # a click so near to the last one, as a share of the body, ends a cable: it was a double click
+DEPTH = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
 
 
 class Editor(Stage):

@@ -12,8 +12,7 @@ from hydrostat.studio.editing.mirror import Mirror
 from hydrostat.studio.editing.part import Kind, find_part, place_of
 from hydrostat.studio.editing.place import insert_via
 
-DIGITS = 4
-"""Places are whole tenths of a millimetre: decimals of a metre."""
+DIGITS = 4  # places are whole tenths of a millimetre: decimals of a metre
 
 
 def inside(body: Body, at: Point) -> Point:

@@ -7,11 +7,8 @@ import numpy as np
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.editing.part import Kind, find_part, place_of
 
-SAME = 1e-3
-"""What is so near to the mirrored place, as a share of the body, is the twin."""
-
-ON_PLANE = 0.01
-"""What is placed so near to the plane, as a share of the body, is put on it."""
+SAME = 1e-3  # what is so near to the mirrored place, as a share of the body, is the twin
+ON_PLANE = 0.01  # what is placed so near to the plane, as a share of the body, is put on it
 
 
 @dataclass(frozen=True, kw_only=True)

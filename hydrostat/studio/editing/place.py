@@ -10,8 +10,7 @@ from hydrostat.robot import Cable, Marker, Pin, Point, Pose, Robot, Winch
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of
 from hydrostat.studio.records.work import fresh_name
 
-PIN_SHARE = 0.06
-"""Radius of a robot's first pin as a share of the body."""
+PIN_SHARE = 0.06  # radius of a robot's first pin as a share of the body
 
 
 def add_pin(robot: Robot, at: Point) -> Robot:

@@ -36,11 +36,8 @@ class Download:
 MEDIA_TYPES = {"zip": "application/zip", "png": "image/png", "svg": "image/svg+xml", "html": "text/html"}
 
 
-EPOCH = (1980, 1, 1, 0, 0, 0)
-"""The date of all files: the first that a zip can have."""
-
-MODE = 0o644 << 16
-"""Everybody may read what is unpacked."""
+EPOCH = (1980, 1, 1, 0, 0, 0)  # the date of all files: the first that a zip can have
+MODE = 0o644 << 16  # everybody may read what is unpacked
 
 
 def archive(files: Mapping[str, bytes], *, folder: str) -> bytes:

@@ -23,8 +23,7 @@ from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.studio.work_folder import save_work
 
-_ONCE = InverseOptions(restarts=0)
-"""A pose is shown as soon as it is found."""
+_ONCE = InverseOptions(restarts=0)  # a pose is shown as soon as it is found
 
 
 class Export(StrEnum):

@@ -81,9 +81,7 @@ def _seen(pattern: bytes) -> bytes:
     return head + THICK + end + rest
 
 
-DOTS = 110.0
-"""To the inch: fine enough to be read where a page is as wide as a window."""
-
+DOTS = 110.0  # to the inch: fine enough to be read where a page is as wide as a window
 MOST_PAGES = 12
 
 

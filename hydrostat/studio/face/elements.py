@@ -12,8 +12,7 @@ from hydrostat.robot import Robot
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
 
-SEEN = 0.05
-"""Changes smaller than this are not sent to the screen."""
+SEEN = 0.05  # changes smaller than this are not sent to the screen
 
 
 class Knob(ui.element, component="static/knob.js"):

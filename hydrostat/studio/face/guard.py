@@ -8,14 +8,9 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
-"""Names of this machine that a page may have."""
-
-COOKIE = "hydrostat_token"
-"""Followed by the port: cookies do not know ports, and two studios may run on one machine."""
-
-LARGEST = 200_000_000
-"""No request has more bytes."""
+LOOPBACK = ("127.0.0.1", "localhost", "[::1]")  # names of this machine that a page may have
+COOKIE = "hydrostat_token"  # followed by the port: cookies do not know ports, and two studios may run on one machine
+LARGEST = 200_000_000  # no request has more bytes
 
 SAFE_HEADERS = {
     "content-security-policy": (

@@ -9,8 +9,7 @@ from hydrostat.errors import InputError
 Coordinate = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False)]
 Place = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 
-LONGEST = 4096
-"""No message has more characters."""
+LONGEST = 4096  # no message has more characters
 
 
 class _Message(BaseModel):
@@ -64,8 +63,7 @@ def read_message(text: str) -> Message:
         raise InputError(f"a message is not understood: {what}") from None
 
 
-LARGEST_NUMBER = 1e9
-"""No number of a screen is larger."""
+LARGEST_NUMBER = 1e9  # no number of a screen is larger
 
 
 def sent_number(value: Any) -> float | None:

@@ -12,9 +12,7 @@ from hydrostat.studio.face.viewport import Viewport
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import StageName
 
-HEARTBEAT = 0.1
-"""Panels follow the session within this time [s]."""
-
+HEARTBEAT = 0.1  # panels follow the session within this time [s]
 COLOURS = {Tone.GOOD: "positive", Tone.PLAIN: "dark", Tone.BAD: "negative"}
 
 Refresh = Callable[[], Any]

@@ -20,8 +20,7 @@ from hydrostat.studio.face.stream import Stream
 from hydrostat.studio.face.window import build_window
 from hydrostat.studio.session import Session
 
-SWITCH = 1e-3
-"""Threads take turns so often [s]: a solver in one must not keep the pointer waiting in another."""
+SWITCH = 1e-3  # threads take turns so often [s]: a solver in one must not keep the pointer waiting in another
 
 
 def make_app(session: Session) -> FastAPI:

@@ -85,11 +85,8 @@ KEYS = (
 """Keys, and what they do."""
 
 
-SEEN = "hydrostat-tour"
-"""Where the browser keeps that it has shown the tour."""
-
-DELAY = 0.5
-"""The window is drawn before something is laid over it [s]."""
+SEEN = "hydrostat-tour"  # where the browser keeps that it has shown the tour
+DELAY = 0.5  # the window is drawn before something is laid over it [s]
 
 PLACE = """
 const [card, ring] = [getHtmlElement(%d), getHtmlElement(%d)];

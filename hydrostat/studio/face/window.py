@@ -147,9 +147,7 @@ async def _switch(dark: ui.dark_mode) -> None:
     ui.run_javascript(f"localStorage.setItem('{DARK}', {str(now).lower()})")
 
 
-DARK = "hydrostat-dark"
-"""What a browser remembers it under."""
-
+DARK = "hydrostat-dark"  # what a browser remembers it under
 SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 

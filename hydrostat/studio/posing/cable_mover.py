@@ -12,33 +12,21 @@ from hydrostat.studio.posing.held import Anchored, Held
 from hydrostat.studio.posing.mover import Mover
 from hydrostat.studio.view.things import RobotShape
 
-PATIENCE = 150
-"""So many updates are made towards targets that stay where they are."""
-
+PATIENCE = 150  # so many updates are made towards targets that stay where they are
 CALM, CALMEST = 4.0, 0.3
 """What is not held should rather stay, or all fingers of a hand move for a hair that they gain for one: a metre of the
 whole body away from rest counts beside a metre of error by so many times the error in sizes of the body, at most the
 second. So it hides no target: it fades as one is reached."""
 
-STILL = 1e-4
-"""An update that moves no node farther brings it hardly nearer, in sizes of the body."""
-
-STILLS = 3
-"""After so many of them in a row nobody waits for more."""
-
-MISSED = 0.01
-"""From this distance on a target counts as out of reach, in sizes of the body."""
-
+STILL = 1e-4  # an update that moves no node farther brings it hardly nearer, in sizes of the body
+STILLS = 3  # after so many of them in a row nobody waits for more
+MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
 ROUGH = 1e-3
 """Force that may be left over while something moves, as a share of the largest tension: nobody sees a micrometre, and
 updates take little more than half the time. What comes to rest is followed to the end."""
 
-LAST = 10
-"""So many updates are made at most where that was done roughly before."""
-
-TICK = 1 / 30
-"""Seconds that an update stands for; nothing here limits the rate."""
-
+LAST = 10  # so many updates are made at most where that was done roughly before
+TICK = 1 / 30  # seconds that an update stands for; nothing here limits the rate
 ENDS = {InverseReason.REACHED, InverseReason.OPTIMAL}
 
 

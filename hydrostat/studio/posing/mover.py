@@ -29,11 +29,8 @@ class Mover(ABC):
         """One step towards the targets; the shape, and whether there is more to gain."""
 
 
-PATIENCE = 120
-"""So many updates are made towards targets that stay where they are."""
-
-MISSED = 0.01
-"""From this distance on a target counts as out of reach, in sizes of the body."""
+PATIENCE = 120  # so many updates are made towards targets that stay where they are
+MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
 
 
 class MuscleMover(Mover):

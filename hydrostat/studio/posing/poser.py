@@ -30,15 +30,9 @@ from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import MARKER, Bar, robot_things, target_things, winch_bars
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
 
-READY = "getting ready ..."
-"""Said while the physics of a robot is made."""
-
-NEAR = 0.02
-"""A plain point so near to one that is held is that one, in sizes of the body."""
-
-FARTHEST = 1.0
-"""No target is farther from the box of the body at rest, in sizes of the body."""
-
+READY = "getting ready ..."  # said while the physics of a robot is made
+NEAR = 0.02  # a plain point so near to one that is held is that one, in sizes of the body
+FARTHEST = 1.0  # no target is farther from the box of the body at rest, in sizes of the body
 TARGET_GHOST = "#8fb4d6"
 
 

@@ -17,12 +17,8 @@ from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.view.things import Cloud
 
-COUNT = 400
-"""So many poses are tried."""
-
-PORTION = 8
-"""So many are told at once."""
-
+COUNT = 400  # so many poses are tried
+PORTION = 8  # so many are told at once
 SEED = 8
 
 

@@ -80,14 +80,9 @@ def _lock(file: IO[bytes]) -> None:
         fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-PATIENCE = 2.0
-"""Work is kept when nothing has changed for so long [s]."""
-
-LONGEST = 5.0
-"""And so often while changes go on [s]."""
-
-AGAIN = 10.0
-"""What could not be written is tried again after so long [s]."""
+PATIENCE = 2.0  # work is kept when nothing has changed for so long [s]
+LONGEST = 5.0  # and so often while changes go on [s]
+AGAIN = 10.0  # what could not be written is tried again after so long [s]
 
 
 @dataclass(frozen=True, kw_only=True)

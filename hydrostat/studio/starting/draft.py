@@ -11,21 +11,11 @@ from hydrostat.robot import Material, find_material
 from hydrostat.robot.checks import check_name
 from hydrostat.units import quote
 
-UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)
-"""Endings of files that may be brought."""
-
-MOST_BYTES = 190_000_000
-"""No file that is brought is larger; with what goes round it on the way, no request has more than 200 MB."""
-
-LONGEST, SHORTEST = 20.0, 1e-4
-"""Lengths that a person may ask for [m]."""
-
-NODES = (20, 20_000)
-"""So few and so many nodes may be asked for."""
-
-PICTURE_SIZE = 0.2
-"""Of a body from a picture, which says no size, until another is asked for [m]."""
-
+UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)  # endings of files that may be brought
+MOST_BYTES = 190_000_000  # of a file that is brought; with what goes round it, no request has more than 200 MB
+LONGEST, SHORTEST = 20.0, 1e-4  # lengths that a person may ask for [m]
+NODES = (20, 20_000)  # so few and so many nodes may be asked for
+PICTURE_SIZE = 0.2  # of a body from a picture, which says no size, until another is asked for [m]
 _LONGEST_STEM = 40
 _CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 

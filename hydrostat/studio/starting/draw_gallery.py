@@ -9,14 +9,9 @@ from hydrostat.plot import draw_portrait
 from hydrostat.plot.picture_file import drawing
 from hydrostat.robot import Robot, gallery_folder, gallery_names, load_robot, replace_file
 
-PICTURES = Path(__file__).parent / "pictures"
-"""Where the pictures are, as NAME.webp."""
-
-WIDE, HIGH = 400, 300
-"""Pixels of a picture; it is shown half as large."""
-
-BORDER = 16
-"""Pixels that are left free all round."""
+PICTURES = Path(__file__).parent / "pictures"  # where the pictures are, as NAME.webp
+WIDE, HIGH = 400, 300  # pixels of a picture; it is shown half as large
+BORDER = 16  # pixels that are left free all round
 
 
 def draw_picture(robot: Robot) -> bytes:

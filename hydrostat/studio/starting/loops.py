@@ -16,12 +16,8 @@ HANDLE = 0.35
 """Length of the handles of a curve, in distances of its ends: the one that fits circles of four to eight corners best.
 The editor on the screen has the same number."""
 
-FURTHEST = 20_000.0
-"""No corner is farther from the middle [mm]."""
-
-MOST_LOOPS, MOST_CORNERS = 50, 1000
-"""So many loops, so many corners in all."""
-
+FURTHEST = 20_000.0  # no corner is farther from the middle [mm]
+MOST_LOOPS, MOST_CORNERS = 50, 1000  # so many loops, so many corners in all
 _STATIONS = np.linspace(0.0, 1.0, 17)[:-1]
 _GOOD_FIT, _THIN, _FIRST, _MOST_KNOTS = 0.0045, 0.0003, 6, 200
 _SHARP, _WINDOW = np.deg2rad(50.0), 0.004
@@ -42,8 +38,7 @@ class LoopCorner:
     smooth: bool = False
 
 
-Loop = tuple[LoopCorner, ...]
-"""Corners in order, the last joined to the first."""
+Loop = tuple[LoopCorner, ...]  # corners in order, the last joined to the first
 
 
 def read_loops(raw: Any) -> tuple[Loop, ...]:

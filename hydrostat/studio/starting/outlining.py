@@ -14,8 +14,7 @@ from hydrostat.studio.records.work import Work, followed
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fitted, loops_svg, outline_of, read_loops
 from hydrostat.units import counted
 
-Move = Callable[[Point], Point]
-"""From a place in the old body to the same in the new."""
+Move = Callable[[Point], Point]  # from a place in the old body to the same in the new
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

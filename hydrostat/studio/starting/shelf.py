@@ -15,8 +15,7 @@ from hydrostat.robot import gallery_folder, gallery_names, replace_file
 from hydrostat.studio.starting.draw_gallery import PICTURES
 from hydrostat.units import counted
 
-MOST_SEEN, MOST_SHOWN = 500, 24
-"""So many entries of a folder are looked at, so many robots in it are shown."""
+MOST_SEEN, MOST_SHOWN = 500, 24  # so many entries of a folder are looked at, so many robots in it are shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,8 +107,7 @@ def _words(folder: Path) -> str:
     return ", ".join([kind, *(part for part in parts if not part.startswith("0 "))])
 
 
-MOST_RECENT = 12
-"""So many are remembered."""
+MOST_RECENT = 12  # so many are remembered
 
 
 class Recent:

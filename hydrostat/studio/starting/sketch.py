@@ -10,11 +10,8 @@ from hydrostat.robot import Robot, SurfaceSketch, sketch_robot, sketch_surface
 from hydrostat.studio.jobs import Report
 from hydrostat.studio.starting.draft import BodyDraft
 
-MOST_MEMORY = 6 * 2**30
-"""The process may have so much memory [bytes]; a file that needs more is refused."""
-
-WIDTH = 6.4
-"""Of pictures [inch]."""
+MOST_MEMORY = 6 * 2**30  # the process may have so much memory [bytes]; a file that needs more is refused
+WIDTH = 6.4  # of pictures [inch]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -33,8 +33,7 @@ _MODULES = (
 )
 """What a process that meshes needs; a process that has them already answers at once."""
 
-_LIGHT = {"name", "material"}
-"""What can be changed without a new mesh."""
+_LIGHT = {"name", "material"}  # what can be changed without a new mesh
 
 
 class Starter(Stage):

@@ -38,8 +38,7 @@ class Scale:
     high: str
 
 
-FULL = 0.5
-"""Strain of the last colour, if the material does not say how far it can be stretched."""
+FULL = 0.5  # strain of the last colour, if the material does not say how far it can be stretched
 
 
 def scale(robot: Robot, colouring: Colouring) -> Scale | None:

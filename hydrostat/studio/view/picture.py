@@ -16,8 +16,7 @@ from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, RobotShape, St
 
 Table = Float[np.ndarray, "rows 3"]
 
-KINDS_OF_THINGS = {Dot: "dot", Strand: "line", Ghost: "ghost", Cloud: "cloud", Area: "area"}
-"""What a screen calls each."""
+KINDS_OF_THINGS = {Dot: "dot", Strand: "line", Ghost: "ghost", Cloud: "cloud", Area: "area"}  # what a screen calls each
 
 
 class Picture:

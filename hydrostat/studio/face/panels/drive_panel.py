@@ -11,11 +11,8 @@ from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.drive_strip import drive_strip, unfocused
 from hydrostat.studio.stage import StageName
 
-STEP = 0.5
-"""Of a knob's wheel and arrow keys [mm]."""
-
-MANY = 6
-"""More winches than this have smaller knobs."""
+STEP = 0.5  # of a knob's wheel and arrow keys [mm]
+MANY = 6  # more winches than this have smaller knobs
 
 ui.add_css("body.body--dark { --lift: 38% }", shared=True)  # colours of winches are made for paper: lighter on dark
 

@@ -23,8 +23,7 @@ FILMS = {
 
 Part = TypeVar("Part", bound=ui.element)
 
-LARGEST = 4_000_000
-"""No table is larger [bytes]."""
+LARGEST = 4_000_000  # no table is larger [bytes]
 
 
 def drive_strip(page: WindowPage) -> None:

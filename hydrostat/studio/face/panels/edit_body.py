@@ -12,8 +12,7 @@ from hydrostat.studio.face.panels.edit_part import EditNumber
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
 
-OWN = "its own numbers"
-"""What a material is called that is not of the table."""
+OWN = "its own numbers"  # what a material is called that is not of the table
 
 
 def body_card(page: WindowPage) -> None:

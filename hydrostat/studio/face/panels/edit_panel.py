@@ -98,9 +98,7 @@ def _depth(page: WindowPage) -> None:
     depth.show(1e3 * editor.depth)
 
 
-HEIGHT = "188px"
-"""Of the list; longer ones are scrolled."""
-
+HEIGHT = "188px"  # of the list; longer ones are scrolled
 ICONS = {Kind.PIN: "push_pin", Kind.WINCH: "album", Kind.CABLE: "timeline", Kind.MARKER: "my_location"}
 
 

@@ -72,9 +72,7 @@ class EditNumber:
 
 
 Show = Callable[[Robot, Part], None]
-Shows = list[Show]
-"""What shows the numbers of the part as they are now."""
-
+Shows = list[Show]  # what shows the numbers of the part as they are now
 PIN = (("radius", "Radius", "mm", 1e3),)
 WINCH = (
     ("spool_radius", "Spool radius", "mm", 1e3),

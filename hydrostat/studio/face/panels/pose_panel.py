@@ -51,8 +51,7 @@ def pose_panel(page: WindowPage) -> None:
     reach_card(page)
 
 
-NEAR = 5e-4
-"""A marker so near to its target is there [m]."""
+NEAR = 5e-4  # a marker so near to its target is there [m]
 
 
 def held_card(page: WindowPage) -> None:
@@ -106,8 +105,7 @@ def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
     return figure
 
 
-FULL = 0.999
-"""A bar this full is at its limit."""
+FULL = 0.999  # a bar this full is at its limit
 
 
 def bars_card(page: WindowPage) -> None:

@@ -15,8 +15,7 @@ from hydrostat.studio.starting.sketch import Sketch
 
 LEVELS = ("Coarse", "Medium", "Fine")
 
-FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}
-"""Nodes of a coarse, a medium and a fine body, flat or not."""
+FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}  # nodes of a coarse, a medium and a fine body, flat or not
 
 
 def draft_view(page: WindowPage) -> Callable[[], None]:

@@ -22,8 +22,7 @@ STYLE = Path(__file__).parents[1] / "static" / "start.css"
 
 KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF")
 
-MOST_LEFT = 4
-"""So many works that a crash left are offered at once, the newest."""
+MOST_LEFT = 4  # so many works that a crash left are offered at once, the newest
 
 
 def shelf_view(page: WindowPage) -> Callable[[], None]:
