@@ -43,11 +43,7 @@ class TypedRequest:
 
 
 def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
-    """The request that was typed, for a robot.
-
-    Raises:
-        InputError: what cannot be asked, of anyone or of this robot.
-    """
+    """The request that was typed, for a robot (InputError: what cannot be asked, of anyone or of this robot)."""
     from hydrostat.design import DesignMethod, DesignRequest
 
     winches = _winch_count(typed.winches)

@@ -17,11 +17,7 @@ OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder fo
 
 
 def require_folder(out: Path) -> None:
-    """Before long work begins: the results can go there.
-
-    Raises:
-        InputError: something that is no folder is in the way.
-    """
+    """Before long work begins: the results can go there (InputError: something that is no folder is in the way)."""
     for folder in (out, *out.parents):
         if folder.exists() and not folder.is_dir():
             raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file; name a folder")

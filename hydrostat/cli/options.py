@@ -62,11 +62,7 @@ def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
 
 
 def check_width(width: int) -> None:
-    """Refuse pictures of an animation that are too narrow or too wide.
-
-    Raises:
-        InputError: they are.
-    """
+    """Refuse pictures of an animation that are too narrow or too wide (InputError: they are)."""
     from hydrostat.plot.animation import WIDTHS
 
     if not WIDTHS[0] <= width <= WIDTHS[1]:

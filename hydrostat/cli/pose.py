@@ -75,11 +75,7 @@ def pose(
 def _targets(
     loaded: "Robot", folder: Path, name: str | None, drawing: Path | None
 ) -> "Sequence[tuple[str, Pose | None]]":
-    """Poses with their names; None where only a drawing is given.
-
-    Raises:
-        InputError: there is nothing to reach.
-    """
+    """Poses with their names; None where only a drawing is given (InputError: there is nothing to reach)."""
     if name:
         return [(name, loaded.pose(name))]
     if drawing is not None:

@@ -91,11 +91,7 @@ def trajectory(
 
 
 def _keyframe_names(robot: Any, poses: str | None) -> list[str]:
-    """Names of the keyframes.
-
-    Raises:
-        InputError: none, or one that the robot does not have.
-    """
+    """Names of the keyframes (InputError: none, or one that the robot does not have)."""
     if poses is None:
         if not robot.poses:
             raise InputError(f"{robot.name}: the robot has no [[pose]]; add one, or give --poses rest")

@@ -66,11 +66,7 @@ class Motors:
         return bool(np.abs(self.places - self.command).max(initial=0.0) > NEAR)
 
     def set_fastest(self, speed: float) -> None:
-        """Let the cables be so fast [m/s].
-
-        Raises:
-            InputError: that is too slow or too fast.
-        """
+        """Let the cables be so fast [m/s] (InputError: that is too slow or too fast)."""
         if not SPEEDS[0] <= speed <= SPEEDS[1]:
             low, high = 1e3 * SPEEDS[0], 1e3 * SPEEDS[1]
             raise InputError(f"motors may turn from {low:g} to {high:g} mm/s, not {1e3 * speed:g}")
@@ -118,11 +114,7 @@ class Motors:
         return f"{self.names[index]} is at its limit of {limit:.1f} mm and was asked for {wanted:.1f} mm"
 
     def turn(self, name: str, contraction: float) -> None:
-        """Command one winch [m], within its limits.
-
-        Raises:
-            InputError: it is no finite number; the command stays.
-        """
+        """Command one winch [m], within its limits (InputError: it is no finite number; the command stays)."""
         command = self.command.copy()
         command[self.names.index(name)] = contraction
         self.command = self._within(command)

@@ -51,11 +51,7 @@ class Player:
         self.playing, self._seen = False, None
 
     def set_speed(self, speed: float) -> None:
-        """Run at another speed.
-
-        Raises:
-            InputError: it is too slow or too fast.
-        """
+        """Run at another speed (InputError: it is too slow or too fast)."""
         if not (isfinite(speed) and SPEEDS[0] <= speed <= SPEEDS[1]):
             raise InputError(f"the speed must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} times, not {speed:g}")
         self.speed = speed

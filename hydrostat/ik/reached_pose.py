@@ -53,11 +53,7 @@ class ReachedPose:
 
     @property
     def wanted(self) -> Pose:
-        """The targets of the markers.
-
-        Raises:
-            InputError: only objectives were asked for.
-        """
+        """The targets of the markers (InputError: only objectives were asked for)."""
         if self.target is None:
             raise InputError("this was asked for by objectives alone, there is no pose of targets")
         return self.target

@@ -76,11 +76,7 @@ def as_pose(targets: Targets | None) -> Pose | None:
 
 
 def wishes(target: Pose | None, objectives: Sequence[Objective]) -> list[Objective]:
-    """All that is wished for.
-
-    Raises:
-        InputError: nothing.
-    """
+    """All that is wished for (InputError: nothing)."""
     found = [*([MarkerGoal(targets=target.targets)] if target else []), *checked_objectives(objectives)]
     if not found:
         raise InputError("there is nothing to reach: give targets for markers, or objectives")

@@ -103,11 +103,7 @@ def save_mp4(
 
 
 def find_ffmpeg() -> str:
-    """Find the program ffmpeg; returns its path.
-
-    Raises:
-        InputError: it is not there.
-    """
+    """Find the program ffmpeg; returns its path (InputError: it is not there)."""
     import shutil
 
     program = shutil.which("ffmpeg")

@@ -65,20 +65,12 @@ class Document:
 
     @property
     def work(self) -> Work:
-        """What is worked on.
-
-        Raises:
-            InputError: no robot is open.
-        """
+        """What is worked on (InputError: no robot is open)."""
         return self._now.work
 
     @property
     def robot(self) -> Robot:
-        """The robot as it is now.
-
-        Raises:
-            InputError: no robot is open.
-        """
+        """The robot as it is now (InputError: no robot is open)."""
         return self.work.robot
 
     @property

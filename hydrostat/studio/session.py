@@ -107,11 +107,7 @@ class Session:
         return self.stages[self.stage]
 
     def go(self, name: StageName | str) -> None:
-        """Show another stage.
-
-        Raises:
-            InputError: there is none of this name, or it needs a robot, and none is open.
-        """
+        """Show another stage (InputError: there is none of this name, or it needs a robot, and none is open)."""
         name = member(StageName, name, what="stage")
         if name is not StageName.START:
             _ = self.document.work
@@ -123,11 +119,7 @@ class Session:
         self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.THINGS)
 
     def open_folder(self, folder: Path | str) -> None:
-        """Open the robot in a folder and show it.
-
-        Raises:
-            InputError: as for `load_robot`.
-        """
+        """Open the robot in a folder and show it (InputError: as for `load_robot`)."""
         self.starter.open_folder(str(folder))
         self.go(StageName.POSE)
         if self.document.folder is not None and (note := open_note(self.document.folder)):
@@ -218,11 +210,7 @@ class Session:
         return scale(self.document.robot, self.colouring) if self.document.is_open else None
 
     def colour_by(self, colouring: Colouring | str) -> None:
-        """Choose what the colours of the body mean.
-
-        Raises:
-            InputError: there is no colouring of this name.
-        """
+        """Choose what the colours of the body mean (InputError: there is no colouring of this name)."""
         self.colouring = member(Colouring, colouring, what="colouring")
         self.bell.ring(Topic.SHAPE, Topic.THINGS)
 

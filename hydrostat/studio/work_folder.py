@@ -41,11 +41,7 @@ class StudioFile(BaseModel):
 
 
 def write_studio_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
-    """Write the file whole or not at all.
-
-    Raises:
-        InputError: it cannot be written.
-    """
+    """Write the file whole or not at all (InputError: it cannot be written)."""
     text = StudioFile(timeline=timeline, wishes=wishes).model_dump_json(indent=2)
     replace_file(folder / STUDIO_FILE, text.encode() + b"\n")
 

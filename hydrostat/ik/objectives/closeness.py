@@ -37,11 +37,7 @@ class Closeness(Objective):
         make_member(self, "of", ClosenessKind, what="the kind of a closeness")
 
     def on(self, simulation: Simulation) -> Term:
-        """The wish on this robot.
-
-        Raises:
-            InputError: no solved pose or one of another robot, or a weight below 0.
-        """
+        """The wish on this robot (InputError: no solved pose or one of another robot, or a weight below 0)."""
         weight = not_negative("weight of a closeness", self.weight)
         if not isinstance(self.pose, SolvedPose):
             hint = ", give its .pose" if isinstance(getattr(self.pose, "pose", None), SolvedPose) else ""

@@ -37,11 +37,7 @@ class Effort(Objective):
         make_member(self, "of", EffortKind, what="the kind of an effort")
 
     def on(self, simulation: Simulation) -> Term:
-        """The wish on this robot.
-
-        Raises:
-            InputError: a weight below 0, or a scale not above 0.
-        """
+        """The wish on this robot (InputError: a weight below 0, or a scale not above 0)."""
         robot = simulation.robot
         travel = np.array([winch.travel for winch in robot.winches])
         weight = not_negative("weight of an effort", self.weight) * robot.body.mesh.size

@@ -73,19 +73,11 @@ class Objective(ABC):
 
     @abstractmethod
     def on(self, simulation: Simulation) -> Term:
-        """The wish on this robot.
-
-        Raises:
-            InputError: it names what the robot does not have.
-        """
+        """The wish on this robot (InputError: it names what the robot does not have)."""
 
 
 def checked_objectives(given: object) -> tuple[Objective, ...]:
-    """Objectives in a list.
-
-    Raises:
-        InputError: no list, or something in it that is no objective.
-    """
+    """Objectives in a list (InputError: no list, or something in it that is no objective)."""
     if isinstance(given, str) or not isinstance(given, Sequence):
         raise InputError(f"objectives must be a list, such as [Effort()], not {describe(given)}")
     for wish in given:
@@ -150,11 +142,7 @@ def describe(given: object) -> str:
 
 
 def not_negative(what: str, given: object) -> float:
-    """A number of 0 or more.
-
-    Raises:
-        InputError: it is anything else.
-    """
+    """A number of 0 or more (InputError: it is anything else)."""
     found = numbers(given)
     if found is None or found.ndim or not 0 <= found < np.inf:
         raise InputError(f"{what} must be 0 or more, not {describe(given)}")
@@ -162,11 +150,7 @@ def not_negative(what: str, given: object) -> float:
 
 
 def above_zero(what: str, given: object, *, unit: str = "") -> float:
-    """A number above 0; infinity is one.
-
-    Raises:
-        InputError: it is anything else.
-    """
+    """A number above 0; infinity is one (InputError: it is anything else)."""
     found = numbers(given)
     if found is None or found.ndim or not found > 0:
         raise InputError(f"{what} must be a number above 0{unit and ' '}{unit}, not {describe(given)}")
@@ -174,11 +158,7 @@ def above_zero(what: str, given: object, *, unit: str = "") -> float:
 
 
 def by_name(what: str, given: object, example: str) -> Mapping[str, Any]:
-    """Something for each name.
-
-    Raises:
-        InputError: it is anything else.
-    """
+    """Something for each name (InputError: it is anything else)."""
     if not isinstance(given, Mapping):
         raise InputError(f"{what} must be given by name, such as {example}, not {describe(given)}")
     return given

@@ -8,11 +8,7 @@ from hydrostat.simulation import Simulation, SolvedPose
 
 
 def check_robot(simulation: Simulation) -> None:
-    """Refuse a robot whose poses do not follow from contractions.
-
-    Raises:
-        InputError: cables with friction.
-    """
+    """Refuse a robot whose poses do not follow from contractions (InputError: cables with friction)."""
     if simulation.assembly.has_history:
         raise InputError(
             "cables with friction end in another pose for every way there, so a trajectory cannot be found; "

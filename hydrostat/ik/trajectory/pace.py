@@ -28,11 +28,7 @@ class Pace:
 
     @classmethod
     def of(cls, robot: Robot, speed: ByWinch | None, acceleration: ByWinch | None) -> Self:
-        """Limits on the winches of a robot.
-
-        Raises:
-            InputError: a winch that it does not have, or a limit not above 0.
-        """
+        """Limits on the winches of a robot (InputError: a winch that it does not have, or a limit not above 0)."""
         return cls(
             speed=limit_by_winch(robot, speed, "speed", "m/s"),
             acceleration=limit_by_winch(robot, acceleration, "acceleration", "m/s^2"),

@@ -115,21 +115,13 @@ class Designer(Stage):
         return next((one for one in self.candidates if one.number == self.chosen), None)
 
     def wish(self, **wishes: Any) -> None:
-        """Change what is asked for; one step to undo.
-
-        Raises:
-            InputError: a number out of its range.
-        """
+        """Change what is asked for; one step to undo (InputError: a number out of its range)."""
         wanted = replace(self.wishes, **wishes)
         if wanted != self.wishes:
             self._document.change("change wishes", wishes=wanted, merge=f"wish {' '.join(wishes)}")
 
     def wish_pose(self, name: str, wanted: bool) -> None:
-        """Whether a pose is to be reached.
-
-        Raises:
-            InputError: it would be the last one.
-        """
+        """Whether a pose is to be reached (InputError: it would be the last one)."""
         names = {pose.name for pose in wished_poses(self._document.robot, self.wishes)}
         kept = names | {name} if wanted else names - {name}
         if not kept:

@@ -34,11 +34,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
 
 
 def wished_poses(robot: Robot, wishes: Wishes) -> tuple[Pose, ...]:
-    """The poses to reach: those that are named and still there; all if none is.
-
-    Raises:
-        InputError: the robot has no pose.
-    """
+    """The poses to reach: those that are named and still there; all if none is (InputError: the robot has no pose)."""
     if not robot.poses:
         raise InputError("there is no pose to design for; drag the body in Pose and store how it should be")
     named = [pose for name, pose in robot.poses.items() if name in wishes.poses]

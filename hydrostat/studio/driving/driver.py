@@ -142,22 +142,14 @@ class Driver(Stage):
         return True
 
     def toggle(self) -> None:
-        """Play, or stop playing.
-
-        Raises:
-            InputError: there is nothing to play.
-        """
+        """Play, or stop playing (InputError: there is nothing to play)."""
         if self.player.playing:
             self.stop()
         else:
             self.play()
 
     def play(self) -> None:
-        """Play from the playhead, or from the start if that is at the end.
-
-        Raises:
-            InputError: there is nothing to play.
-        """
+        """Play from the playhead, or from the start if that is at the end (InputError: there is nothing to play)."""
         timeline = self.keyframes.timeline
         if not timeline.keys:
             raise InputError("there are no keyframes yet: turn the knobs and press Add")
@@ -175,11 +167,7 @@ class Driver(Stage):
         self._tell()
 
     def seek(self, time: float) -> None:
-        """Put the playhead to a time [s]; the winches go where the keyframes say.
-
-        Raises:
-            InputError: it is no number.
-        """
+        """Put the playhead to a time [s]; the winches go where the keyframes say (InputError: it is no number)."""
         if not isfinite(time):
             raise InputError("the playhead must be at a number of seconds")
         with self._lock:
@@ -195,20 +183,12 @@ class Driver(Stage):
         self._tell()
 
     def set_speed(self, speed: float) -> None:
-        """Play at so many times the timeline's speed.
-
-        Raises:
-            InputError: it is out of range.
-        """
+        """Play at so many times the timeline's speed (InputError: it is out of range)."""
         self.player.set_speed(speed)
         self._tell()
 
     def choose(self, index: int) -> None:
-        """Select a key, and show it.
-
-        Raises:
-            InputError: there is no such key.
-        """
+        """Select a key, and show it (InputError: there is no such key)."""
         with self._lock:
             self._machine.meet()
             self.keyframes.choose(index)
@@ -254,11 +234,7 @@ class Driver(Stage):
         return f"{name}: marker error {1e3 * found.rms_error:.1f} mm rms"
 
     def move_key(self, index: int, time: float) -> None:
-        """Drag a key to a time [s]; ends with `drop_key`.
-
-        Raises:
-            InputError: there is no such key.
-        """
+        """Drag a key to a time [s]; ends with `drop_key` (InputError: there is no such key)."""
         with self._lock:
             self._machine.halt()
             self._machine.seek(self.keyframes.move(index, time))
@@ -269,22 +245,14 @@ class Driver(Stage):
         self.keyframes.drop()
 
     def duplicate_key(self) -> None:
-        """Copy the selected key.
-
-        Raises:
-            InputError: none is selected, or there is no room.
-        """
+        """Copy the selected key (InputError: none is selected, or there is no room)."""
         with self._lock:
             self._machine.halt()
             self._machine.seek(self.keyframes.duplicate())
         self._tell()
 
     def delete_key(self) -> None:
-        """Remove the selected key.
-
-        Raises:
-            InputError: none is selected.
-        """
+        """Remove the selected key (InputError: none is selected)."""
         with self._lock:
             self.keyframes.delete()
             self._machine.mind_keys()

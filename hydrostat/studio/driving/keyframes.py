@@ -50,19 +50,11 @@ class Keyframes:
         return self.timeline.index_at(chosen[1])
 
     def choose(self, index: int | None) -> None:
-        """Select a key, or none.
-
-        Raises:
-            InputError: there is no such key.
-        """
+        """Select a key, or none (InputError: there is no such key)."""
         self._choose(None if index is None else self._key(index).time)
 
     def put(self, time: float, contractions: Mapping[str, float]) -> None:
-        """Add a key and select it; one that is at the same time is replaced.
-
-        Raises:
-            InputError: the time is out of range.
-        """
+        """Add a key and select it; one that is at the same time is replaced (InputError: the time is out of range)."""
         timeline = self.timeline.with_key(Key(time=time, contractions=dict(contractions)))
         self._document.change(f"add keyframe at {time:.2f} s", timeline=timeline)
         self._choose(time)
@@ -122,11 +114,7 @@ class Keyframes:
         return time
 
     def delete(self) -> None:
-        """Remove the key that is selected.
-
-        Raises:
-            InputError: none is.
-        """
+        """Remove the key that is selected (InputError: none is)."""
         key = self._key(self.chosen)
         assert self.chosen is not None
         self._document.change(f"delete keyframe at {key.time:.2f} s", timeline=self.timeline.without(self.chosen))

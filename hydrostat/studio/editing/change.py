@@ -100,11 +100,7 @@ def set_gravity(robot: Robot, direction: str) -> Robot:
 
 
 def check_range(name: str, value: float, least: float, most: float) -> None:
-    """Check a length that a person asks for [m].
-
-    Raises:
-        InputError: it is out of its range, or no number.
-    """
+    """Check a length that a person asks for [m] (InputError: it is out of its range, or no number)."""
     if not least <= value <= most:
         words = name.replace("_", " ")
         raise InputError(f"{words}: must be from {1e3 * least:g} mm to {most:g} m, not {1e3 * value:g} mm")

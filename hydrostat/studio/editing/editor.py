@@ -101,11 +101,7 @@ class Editor(Stage):
         self._ring()
 
     def take(self, tool: Tool | str) -> None:
-        """Take another tool; a cable that was begun is dropped.
-
-        Raises:
-            InputError: there is no tool of this name.
-        """
+        """Take another tool; a cable that was begun is dropped (InputError: there is no tool of this name)."""
         self.tool, self.draft = member(Tool, tool, what="tool"), None
         self._ring()
 
@@ -133,20 +129,12 @@ class Editor(Stage):
         self.depth = depth
 
     def place(self, key: str, at: Point) -> None:
-        """Put a part somewhere.
-
-        Raises:
-            InputError: it cannot be there.
-        """
+        """Put a part somewhere (InputError: it cannot be there)."""
         robot = self._document.robot
         self._change(f"move {title_of(key)}", move(robot, take_hold(robot, key, self.mirror).places(at)))
 
     def rename(self, key: str, name: str) -> None:
-        """Give a winch, cable or marker another name.
-
-        Raises:
-            InputError: a name that is taken or not allowed.
-        """
+        """Give a winch, cable or marker another name (InputError: a name that is taken or not allowed)."""
         before, robot = name_of(self._document.robot, key), self._document.robot
         if name == before:
             return
@@ -165,11 +153,7 @@ class Editor(Stage):
         self._change(f"change {title_of(key)}", change(robot, self._both(robot, key), **values))
 
     def delete(self) -> None:
-        """Remove what is selected, and its twin.
-
-        Raises:
-            InputError: the robot cannot do without it.
-        """
+        """Remove what is selected, and its twin (InputError: the robot cannot do without it)."""
         key = self.chosen
         if key:
             robot = self._document.robot
@@ -177,11 +161,7 @@ class Editor(Stage):
             self.choose("")
 
     def set_gravity(self, direction: str) -> None:
-        """Let weight pull in a direction such as "-y"; "": none.
-
-        Raises:
-            InputError: no direction of this body.
-        """
+        """Let weight pull in a direction such as "-y"; "": none (InputError: no direction of this body)."""
         self._change(f"gravity {direction or 'off'}", set_gravity(self._document.robot, direction))
 
     def set_body(self, **values: Any) -> None:
@@ -203,11 +183,7 @@ class Editor(Stage):
                 return
 
     def finish(self) -> None:
-        """End the cable at its last point.
-
-        Raises:
-            InputError: it has no stopper yet.
-        """
+        """End the cable at its last point (InputError: it has no stopper yet)."""
         if self.draft is None:
             return
         laid = end_cable(self._document.robot, self.draft, self.mirror)

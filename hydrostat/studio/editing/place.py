@@ -14,32 +14,20 @@ PIN_SHARE = 0.06  # radius of a robot's first pin as a share of the body
 
 
 def add_pin(robot: Robot, at: Point) -> Robot:
-    """One more pin, as wide as the last one.
-
-    Raises:
-        InputError: it would hold nothing.
-    """
+    """One more pin, as wide as the last one (InputError: it would hold nothing)."""
     radii = [pin.radius for pin in robot.pins if pin.at is not None]
     radius = radii[-1] if radii else round(PIN_SHARE * robot.body.mesh.size, 3)
     return replace(robot, pins=(*robot.pins, Pin(at=at, radius=radius)))
 
 
 def add_marker(robot: Robot, at: Point) -> Robot:
-    """One more marker, with a name of its own.
-
-    Raises:
-        InputError: it would lie outside the body.
-    """
+    """One more marker, with a name of its own (InputError: it would lie outside the body)."""
     name = fresh_name("marker", [marker.name for marker in robot.markers])
     return replace(robot, markers=(*robot.markers, Marker(name=name, at=at)))
 
 
 def add_winch(robot: Robot, at: Point) -> Robot:
-    """One more winch, like the last one, with a name of its own.
-
-    Raises:
-        InputError: it would lie outside the body.
-    """
+    """One more winch, like the last one, with a name of its own (InputError: it would lie outside the body)."""
     name = fresh_name("winch", [winch.name for winch in robot.winches])
     like = robot.winches[-1] if robot.winches else None
     if like is None:

@@ -112,27 +112,15 @@ class Exporter(Stage):
         self._start(Export.KIT, "Making the kit", make_kit, options)
 
     def make_report(self) -> None:
-        """Write the report, in a process of its own.
-
-        Raises:
-            InputError: other work is in progress.
-        """
+        """Write the report, in a process of its own (InputError: other work is in progress)."""
         self._start(Export.REPORT, "Writing the report", make_report)
 
     def make_pictures(self) -> None:
-        """Draw the pictures, in a process of its own.
-
-        Raises:
-            InputError: other work is in progress.
-        """
+        """Draw the pictures, in a process of its own (InputError: other work is in progress)."""
         self._start(Export.PICTURES, "Drawing pictures", make_pictures)
 
     def pictures_zip(self) -> Download:
-        """All pictures in one file.
-
-        Raises:
-            InputError: there are none yet.
-        """
+        """All pictures in one file (InputError: there are none yet)."""
         if not self.pictures:
             raise InputError("there are no pictures of this robot yet; draw them first")
         name = f"{file_name(self._document.robot.name)}_pictures"
@@ -140,11 +128,7 @@ class Exporter(Stage):
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Pictures")
 
     def robot_zip(self) -> Download:
-        """The folder of the robot in one file.
-
-        Raises:
-            InputError: no robot is open.
-        """
+        """The folder of the robot in one file (InputError: no robot is open)."""
         work = self._document.work
         name = file_name(work.robot.name)
         with TemporaryDirectory() as scratch:

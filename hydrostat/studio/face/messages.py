@@ -49,11 +49,7 @@ _ADAPTER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discrimina
 
 
 def read_message(text: str) -> Message:
-    """A message from its text.
-
-    Raises:
-        InputError: it is too long, no JSON, of no known kind, or has a wrong value.
-    """
+    """A message from its text (InputError: it is too long, no JSON, of no known kind, or has a wrong value)."""
     if len(text) > LONGEST:
         raise InputError(f"a message may have {LONGEST} characters, not {len(text)}")
     try:

@@ -219,21 +219,13 @@ class Poser(Stage):
         self._ring()
 
     def store(self, name: str) -> None:
-        """Keep what is held as a pose of the robot; can be undone.
-
-        Raises:
-            InputError: no name, or nothing is held.
-        """
+        """Keep what is held as a pose of the robot; can be undone (InputError: no name, or nothing is held)."""
         now = self._fit()
         changed = with_pose(now.robot, name, now.wish.held)
         self._document.change(f"store pose {name.strip()}", robot=changed)
 
     def show_pose(self, name: str) -> None:
-        """Hold the targets of a pose; the body moves there.
-
-        Raises:
-            InputError: no such pose.
-        """
+        """Hold the targets of a pose; the body moves there (InputError: no such pose)."""
         with self._lock:
             now = self._fit()
             self._now = replace(now, wish=replace(now.wish, held=held_of(now.robot, name)), ghost=None)
@@ -241,21 +233,13 @@ class Poser(Stage):
         self._ring()
 
     def rename_pose(self, old: str, new: str) -> None:
-        """Give a pose another name; can be undone.
-
-        Raises:
-            InputError: no such pose, no name, or one that is taken.
-        """
+        """Give a pose another name; can be undone (InputError: no such pose, no name, or one that is taken)."""
         work, new = self._document.work, checked_name(new)
         robot = renamed_pose(work.robot, old, new)
         self._document.change(f"rename pose {old}", robot=robot, wishes=wishes_after(work.wishes, robot, {old: new}))
 
     def delete_pose(self, name: str) -> None:
-        """Remove a pose; can be undone.
-
-        Raises:
-            InputError: no such pose.
-        """
+        """Remove a pose; can be undone (InputError: no such pose)."""
         work = self._document.work
         robot = without_pose(work.robot, name)
         self._document.change(f"delete pose {name}", robot=robot, wishes=wishes_after(work.wishes, robot))

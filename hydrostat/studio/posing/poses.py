@@ -44,11 +44,7 @@ def renamed_pose(robot: Robot, old: str, new: str) -> Robot:
 
 
 def without_pose(robot: Robot, name: str) -> Robot:
-    """A robot without a pose.
-
-    Raises:
-        InputError: no such pose.
-    """
+    """A robot without a pose (InputError: no such pose)."""
     robot.pose(name)
     return replace(robot, poses={own: pose for own, pose in robot.poses.items() if own != name})
 
@@ -66,11 +62,7 @@ def wishes_after(wishes: Wishes, robot: Robot, renamed: Mapping[str, str] | None
 
 
 def held_of(robot: Robot, name: str) -> dict[str, Held]:
-    """The targets of a pose, as points that are held.
-
-    Raises:
-        InputError: no such pose.
-    """
+    """The targets of a pose, as points that are held (InputError: no such pose)."""
     places = {marker.name: marker.at for marker in robot.markers}
     targets = robot.pose(name).targets
     return {own: Held(at=places[own], target=target, marker=True) for own, target in targets.items()}

@@ -123,11 +123,7 @@ class MarkerReach:
         return 0 if cloud is None else len(cloud.points)
 
     def start(self, marker: str, count: int = COUNT) -> None:
-        """Begin to look where a marker can go.
-
-        Raises:
-            InputError: no such marker, no cables, or other work is in progress.
-        """
+        """Begin to look where a marker can go (InputError: no such marker, no cables, or other work is in progress)."""
         robot, tension = self._document.robot, self._document.work.wishes.tension
         if _place(robot, marker) is None:
             raise InputError(f'there is no marker "{marker}"; choose one')

@@ -32,11 +32,7 @@ class HeldFolder:
     """
 
     def __init__(self, parent: Path) -> None:
-        """Make it.
-
-        Raises:
-            OSError: it cannot be made.
-        """
+        """Make it (OSError: it cannot be made)."""
         self.path = parent / f"{os.getpid()}-{token_hex(4)}"
         self.path.mkdir(parents=True)
         self._file: IO[bytes] = (self.path / LOCK).open("wb")
@@ -65,11 +61,7 @@ def is_held(folder: Path) -> bool:
 
 
 def _lock(file: IO[bytes]) -> None:
-    """Lock a file until it is closed.
-
-    Raises:
-        OSError: another has locked it.
-    """
+    """Lock a file until it is closed (OSError: another has locked it)."""
     if sys.platform == "win32":
         import msvcrt
 
@@ -173,11 +165,7 @@ class Autosave:
         return sorted((left for left in found if left is not None), key=lambda left: left.time, reverse=True)
 
     def restore(self, left: Left) -> None:
-        """Open what was left; it is kept on as work of this studio.
-
-        Raises:
-            InputError: it cannot be read any more.
-        """
+        """Open what was left; it is kept on as work of this studio (InputError: it cannot be read any more)."""
         work = open_work(left.folder / "work")
         self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp, text=text_of(left.folder / "work"))
         if self._keep():

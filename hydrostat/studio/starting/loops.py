@@ -42,11 +42,7 @@ Loop = tuple[LoopCorner, ...]  # corners in order, the last joined to the first
 
 
 def read_loops(raw: Any) -> tuple[Loop, ...]:
-    """Loops as a screen sends them: lists of [x, y, smooth].
-
-    Raises:
-        InputError: they are no such thing, or too many.
-    """
+    """Loops as a screen sends them: lists of [x, y, smooth] (InputError: they are no such thing, or too many)."""
     try:
         loops = tuple(tuple(LoopCorner(float(x), float(y), bool(smooth)) for x, y, smooth in loop) for loop in raw)
     except (TypeError, ValueError, OverflowError):

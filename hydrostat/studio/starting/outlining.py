@@ -49,37 +49,21 @@ class Outlining:
 
     @classmethod
     def of(cls, robot: Robot) -> "Outlining":
-        """Edit the outline of a robot, as few corners.
-
-        Raises:
-            InputError: it was not drawn.
-        """
+        """Edit the outline of a robot, as few corners (InputError: it was not drawn)."""
         if robot.body.outline is None:
             raise InputError(f"{robot.name} has no outline; only flat bodies that were drawn have one")
         return cls(fitted(robot.body.outline), robot)
 
     def take(self, raw: Any) -> None:
-        """Take what a screen has sent.
-
-        Raises:
-            InputError: it is no loops.
-        """
+        """Take what a screen has sent (InputError: it is no loops)."""
         self._set(read_loops(raw))
 
     def drawing(self) -> bytes:
-        """The loops as SVG in millimetres.
-
-        Raises:
-            InputError: they are no body.
-        """
+        """The loops as SVG in millimetres (InputError: they are no body)."""
         return loops_svg(self.loops)[0]
 
     def applied(self, work: Work) -> Reshaped:
-        """The work with this outline.
-
-        Raises:
-            InputError: it is no body, or no pin lies in it.
-        """
+        """The work with this outline (InputError: it is no body, or no pin lies in it)."""
         drawing, corner = loops_svg(self.loops)
         return reshaped(work, drawing, corner)
 

@@ -36,11 +36,7 @@ class Sketch:
 
 
 def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
-    """Read, heal, mesh and draw.
-
-    Raises:
-        InputError: no body can be made of it; one line says why.
-    """
+    """Read, heal, mesh and draw (InputError: no body can be made of it; one line says why)."""
     _limit_memory()
     try:
         return _sketch(report, draft)

@@ -81,11 +81,7 @@ class Starter(Stage):
         self._document.open(Work(robot=load_robot(folder)), text=text_of(folder))
 
     def open_folder(self, text: str) -> None:
-        """Open the robot in a folder.
-
-        Raises:
-            InputError: there is none, or it is wrong.
-        """
+        """Open the robot in a folder (InputError: there is none, or it is wrong)."""
         if not text.strip():
             raise InputError("name the folder of a robot")
         try:
@@ -143,11 +139,7 @@ class Starter(Stage):
                 self._take(draft)
 
     def make(self) -> None:
-        """Open the robot that was sketched.
-
-        Raises:
-            InputError: there is none, or it is not what was asked for last.
-        """
+        """Open the robot that was sketched (InputError: there is none, or it is not what was asked for last)."""
         with self._lock:
             sketch = self.sketch
             if sketch is None or not self.is_current or self.meshing:
@@ -178,20 +170,12 @@ class Starter(Stage):
         self._document.bell.ring(Topic.JOB)
 
     def outline_open(self) -> None:
-        """Begin to edit the outline of the open robot.
-
-        Raises:
-            InputError: it was not drawn.
-        """
+        """Begin to edit the outline of the open robot (InputError: it was not drawn)."""
         self.outlining = Outlining.of(self._document.robot)
         self._document.bell.ring(Topic.JOB)
 
     def outline_done(self) -> None:
-        """Make a draft of the outline that was drawn.
-
-        Raises:
-            InputError: it is no body.
-        """
+        """Make a draft of the outline that was drawn (InputError: it is no body)."""
         if self.outlining is None:
             return
         self.bring("outline.svg", self.outlining.drawing())

@@ -161,11 +161,7 @@ def _told(options: KitOptions) -> dict[str, Any]:
 
 
 def _options(before: KitOptions, given: dict[str, Any]) -> KitOptions:
-    """The choices of the controls.
-
-    Raises:
-        InputError: a length that cannot be.
-    """
+    """The choices of the controls (InputError: a length that cannot be)."""
     bed = (float(given["bed_x"]), float(given["bed_y"]), float(given["bed_z"]))
     return replace(
         before,
