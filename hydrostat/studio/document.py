@@ -75,11 +75,7 @@ class Document:
 
     @property
     def simulation(self) -> Simulation:
-        """Physics of the robot as it is now; made when first asked for, which can take a while.
-
-        Raises:
-            InputError: no robot is open.
-        """
+        """Physics of the robot as it is now; made when first asked for, in a while (InputError: no robot is open)."""
         now = self._now
         made = now.simulation
         if made is None:

@@ -63,10 +63,7 @@ class Jobs:
         return state is not None and state.running
 
     def warm(self, *modules: str) -> None:
-        """Start a process ahead that imports some modules, so that the next work begins at once.
-
-        Nothing happens if one is there already.
-        """
+        """Start a process ahead, if there is none, that imports modules, so that the next work begins at once."""
         with self._lock:
             if self._spare is not None and self._spare.process.is_alive():
                 return

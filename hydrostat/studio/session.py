@@ -69,11 +69,7 @@ class Session:
     """
 
     def __init__(self, state: Path | None = None) -> None:
-        """An empty studio.
-
-        Args:
-            state: folder to remember in, over runs and crashes; None: nothing is remembered.
-        """
+        """An empty studio that remembers in the folder `state`, over runs and crashes; None: nothing."""
         self.bell = Bell()
         self.document = Document(self.bell)
         self.jobs = Jobs(self.bell)
@@ -126,13 +122,7 @@ class Session:
             self.tell(note, Tone.BAD)
 
     def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:
-        """Take hold of something with a screen's pointer; whether it did.
-
-        Args:
-            screen: which one.
-            hit: what is under the pointer.
-            stamp: comes back with the first frame that has the answer.
-        """
+        """Take hold of a hit by a screen's pointer; whether it did. The first frame with the answer has the stamp."""
         with self._lock:
             if self._holder is not None and self._holder != screen:
                 self.tell("another window is holding something; wait until it lets go", Tone.PLAIN)
@@ -186,11 +176,7 @@ class Session:
         self.tell(f"done again: {label}" if self.document.redo() else "there is nothing to do again")
 
     def save(self, folder: Path | None = None) -> None:
-        """Save the robot where it was, or in another folder.
-
-        Raises:
-            InputError: it has no folder yet, or cannot be written.
-        """
+        """Save the robot where it was, or in another folder (InputError: it has none yet, or cannot be written)."""
         folder = folder or self.document.folder
         if folder is None:
             raise InputError("choose a folder to save this robot in")

@@ -47,11 +47,7 @@ def write_studio_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
 
 
 def read_studio_file(folder: Path, cables: Sequence[str] = ()) -> StudioFile:
-    """What the file says; nothing special if there is none.
-
-    Args:
-        folder: with the file.
-        cables: names of the robot's cables, for a file that numbers them.
+    """What the file of a folder says; nothing special if there is none. The cables are for a file that numbers them.
 
     Raises:
         InputError: it cannot be read or says something else, in one line.
@@ -88,11 +84,7 @@ MOST_TOLD = 5  # so many lost comments are told one by one
 
 
 def open_work(folder: Path) -> Work:
-    """Read a robot's folder; a studio.json that cannot be read is left alone, and `open_note` says why.
-
-    Raises:
-        InputError: as for `load_robot`.
-    """
+    """Read a robot's folder; a broken studio.json is left, `open_note` says why (InputError: as for `load_robot`)."""
     robot = load_robot(folder)
     try:
         kept = read_studio_file(_home(folder), [cable.name for cable in robot.cables])
@@ -113,10 +105,7 @@ def open_note(folder: Path) -> str:
 def save_work(work: Work, folder: Path, text: str = "") -> None:
     """Write everything into a folder; a robot.toml that is there keeps its comments and its form where it can.
 
-    Args:
-        work: to write.
-        folder: where.
-        text: of the robot.toml that the work began with, whose comments go along into a new folder; "": none.
+    Comments of the text, of the robot.toml that the work began with, go along into a new folder.
 
     Raises:
         InputError: a name that is not allowed, or a folder that cannot be written.
@@ -162,13 +151,7 @@ def comments_lost(work: Work, folder: Path) -> list[str]:
 
 
 def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
-    """What a person should be asked before the work is saved in a folder; empty if nothing is lost by it.
-
-    Args:
-        work: to be saved.
-        folder: where.
-        stamp: of the folder when it was opened or saved last; "": it was never.
-    """
+    """What to ask a person before work is saved; none if nothing is lost. Stamp: when last saved, "": never."""
     asked = []
     if changed_outside(folder, stamp):
         asked.append(

@@ -43,12 +43,7 @@ class Chart:
         return self.height - BOTTOM - (self.height - TOP - BOTTOM) * value / self.up
 
     def drawn(self, inside: str, *, label: str) -> str:
-        """The chart with what is drawn inside.
-
-        Args:
-            inside: SVG.
-            label: for who cannot see it.
-        """
+        """The chart with some SVG drawn inside, and a label for who cannot see it."""
         parts = [
             f'<svg viewBox="0 0 {self.width:g} {self.height:g}" class="chart" role="img" aria-label="{label}">',
             f'<text x="0" y="12" class="chart-word">{self.name}</text>',
@@ -70,13 +65,7 @@ def _tick(x: float, y: float, value: float, anchor: str) -> str:
 
 
 def ticks(largest: float, *, most: int, least: float = 0.0) -> list[float]:
-    """Round values from 0 up to the largest.
-
-    Args:
-        largest: none is above.
-        most: so many steps at most.
-        least: no step is smaller.
-    """
+    """Round values from 0 up to the largest: at most so many steps, none of them smaller than the least."""
     raw = max(largest / most, least, 1e-9)
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= raw * (1 - 1e-9))
@@ -96,12 +85,8 @@ FRONT_WIDTH, FRONT_HEIGHT = 300.0, 176.0
 def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: int | None) -> str:
     """A dot for each candidate, in the colour of its number of winches, small ones for networks on the way, as SVG.
 
-    The line goes through what is better than all with fewer cables: what more of them gain.
-
-    Args:
-        candidates: to compare.
-        trail: networks on the way of the last design.
-        chosen: number of the candidate with a ring.
+    The line goes through what is better than all with fewer cables: what more of them gain. The trail has the networks
+    on the way of the last design; the candidate of the chosen number has a ring.
     """
     errors = [(len(one.robot.cables), 1e3 * one.error) for one in candidates]
     way = [(mark.cables, 1e3 * mark.error) for mark in trail]
@@ -162,12 +147,7 @@ GROWTH_WIDTH, GROWTH_HEIGHT = 316.0, 132.0
 
 
 def growth_chart(run: DesignRun, seconds: float) -> str:
-    """The error against time, as SVG.
-
-    Args:
-        run: so far.
-        seconds: since it began.
-    """
+    """The error against time, up to so many seconds since the run began, as SVG."""
     errors = [1e3 * run.rest, *(1e3 * mark.error for mark in run.trail)]
     times = [0.0, *(mark.seconds for mark in run.trail)]
     end = max(seconds, times[-1], 1.0)

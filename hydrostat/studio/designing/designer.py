@@ -54,13 +54,7 @@ class Designer(Stage):
     """
 
     def __init__(self, document: Document, jobs: Jobs, *, options: RouteOptions | None = None) -> None:
-        """The stage of a document.
-
-        Args:
-            document: the robot.
-            jobs: where designs run.
-            options: of the search, for tests that have no time.
-        """
+        """The stage of a document; designs run as jobs, with options of the search for tests that have no time."""
         self._document, self._jobs, self._options = document, jobs, options
         self.painter = Painter(document)
         self.run: DesignRun | None = None
@@ -147,11 +141,7 @@ class Designer(Stage):
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
 
     def design(self) -> None:
-        """Begin a design of what is wished for; it goes on in a process of its own.
-
-        Raises:
-            InputError: no pose, wishes that do not fit, or other work in progress.
-        """
+        """Begin a design in a process of its own (InputError: no pose, wishes that do not fit, or other work)."""
         robot = self._document.robot
         request = wished_request(robot, self.wishes, self._options)
         before = self.run, self._running, self.outcome
@@ -178,11 +168,7 @@ class Designer(Stage):
             self._jobs.stop()
 
     def accept(self) -> None:
-        """Put the chosen network into the robot, in one step to undo.
-
-        Raises:
-            InputError: none is chosen, or the body is another one by now.
-        """
+        """Put the chosen network into the robot, one step to undo (InputError: none is, or it is of another body)."""
         candidate = self.candidate
         if candidate is None:
             raise InputError("choose one of the networks first; those of another body cannot be accepted")

@@ -24,11 +24,7 @@ def disc(middle: Point, rim: Point, size: float) -> Zone:
 
 
 def lasso(points: tuple[Point, ...], size: float) -> Zone:
-    """The polygon that a line drawn by hand goes round; the largest part of it where the line crosses itself.
-
-    Raises:
-        InputError: it goes round nothing.
-    """
+    """The polygon of a line drawn by hand; its largest part where it crosses itself (InputError: it has none)."""
     from shapely import Polygon, make_valid
     from shapely.geometry.base import BaseMultipartGeometry
 

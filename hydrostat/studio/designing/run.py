@@ -11,15 +11,9 @@ from hydrostat.studio.records.wishes import Paint, Wishes
 
 
 def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:
-    """What a person's wishes for a robot ask of a design.
+    """What a person's wishes for a robot ask of a design (InputError: no pose, or wishes that do not fit the robot).
 
-    Args:
-        robot: to design for.
-        wishes: of the person.
-        options: of the search; if left out its usual ones, with the tolerance that is wished for.
-
-    Raises:
-        InputError: no pose, or wishes that do not fit the robot.
+    The options are of the search; if left out its usual ones, with the tolerance that is wished for.
     """
     request = DesignRequest(
         poses=wished_poses(robot, wishes),
@@ -42,11 +36,7 @@ def wished_poses(robot: Robot, wishes: Wishes) -> tuple[Pose, ...]:
 
 
 def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
-    """What can be built, as a person wishes it; winches and cables to keep that are gone are passed over.
-
-    Raises:
-        InputError: limits that cannot be.
-    """
+    """What can be built as wished, but for parts to keep that are gone (InputError: limits that cannot be)."""
     zones = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
     names = {winch.name for winch in robot.winches}
     return Constraints(

@@ -30,13 +30,7 @@ class Driver(Stage):
     """
 
     def __init__(self, document: Document, jobs: Jobs, *, connect: Callable[[Vector], Link] = SimulatedLink) -> None:
-        """A stage for a document.
-
-        Args:
-            document: of the open robot.
-            jobs: for films.
-            connect: makes the link to the motors of a robot, whose winches have taken in so much [m].
-        """
+        """A stage for a document; `connect` makes the link to motors whose winches have taken in so much [m]."""
         self.keyframes, self.recorder = Keyframes(document), Recorder(document, jobs)
         self._document = document
         self._machine = Machine(document, self.keyframes, connect)
@@ -84,11 +78,7 @@ class Driver(Stage):
         return most
 
     def turn(self, name: str, contraction: float) -> None:
-        """Let a winch take in so much [m], within its limits; the key that is selected follows.
-
-        Raises:
-            InputError: there is no such winch, or it is no number.
-        """
+        """Let a winch take in so much [m], within limits; the selected key follows (InputError: no such winch)."""
         if not isfinite(contraction):
             raise InputError(f"{name}: the contraction must be a number")
         with self._lock:

@@ -57,17 +57,7 @@ def film_kinds() -> list[FilmKind]:
 
 
 def record_film(report: Report, robot: Robot, timeline: Timeline, kind: FilmKind) -> bytes:
-    """The film, as the bytes of its file.
-
-    Args:
-        report: told how far it is.
-        robot: that moves.
-        timeline: how.
-        kind: of file.
-
-    Raises:
-        InputError: as for `check_film`.
-    """
+    """The film, as the bytes of a file of some kind; tells how far it is (InputError: as for `check_film`)."""
     check_film(timeline, kind)
     step = STEPS[kind]
     frames = film_frames(robot, timeline, step, report.progress)
@@ -84,14 +74,7 @@ def record_film(report: Report, robot: Robot, timeline: Timeline, kind: FilmKind
 
 
 def film_frames(robot: Robot, timeline: Timeline, step: float, tell: Callable[[str, int, int], None]) -> list[Frame]:
-    """The robot at equal times, each frame an equilibrium; one that has none shows the one before.
-
-    Args:
-        robot: that moves.
-        timeline: how.
-        step: time of a frame [s].
-        tell: told the stage, how much is done, and of how much.
-    """
+    """The robot at equal times [s], each frame an equilibrium; one that has none shows the one before."""
     simulation, profile = Simulation(robot), timeline.profile([winch.name for winch in robot.winches])
     count = max(2, ceil(timeline.seconds / step - 1e-9) + 1)
     last, frames = None, []
@@ -143,11 +126,7 @@ class Recorder:
             self._jobs.stop()
 
     def start(self, kind: FilmKind) -> None:
-        """Begin with a film of the timeline as it is now.
-
-        Raises:
-            InputError: it cannot be filmed, or other work is in progress.
-        """
+        """Begin with a film of the timeline as it is now (InputError: it cannot be filmed, or other work runs)."""
         work = self._document.work
         check_film(work.timeline, kind)
         name = f"{work.robot.name}.{kind}"

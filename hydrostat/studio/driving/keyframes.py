@@ -98,11 +98,7 @@ class Keyframes:
         self._document.seal()
 
     def duplicate(self) -> float:
-        """Copy the key that is selected to the next place that is free, and select that; returns its time [s].
-
-        Raises:
-            InputError: none is selected, or there is no place.
-        """
+        """Copy the selected key to the next free time [s]; select and return that (InputError: no key or place)."""
         key = self._key(self.chosen)
         time = key.time + APART
         while self.timeline.index_at(time) is not None:
@@ -132,11 +128,7 @@ class Keyframes:
             self._document.change(label, timeline=replace(self.timeline, smooth=smooth))
 
     def set_length(self, seconds: float) -> None:
-        """Make the timeline longer or shorter; no key is lost by it.
-
-        Raises:
-            InputError: it is too short, too long, or shorter than its keys.
-        """
+        """Make the timeline longer or shorter [s] (InputError: it is too short, too long, or shorter than its keys)."""
         last = self.timeline.keys[-1].time if self.timeline.keys else 0.0
         if seconds < last:
             raise InputError(f"the last keyframe is at {last:.2f} s; move or delete it before it is cut off")

@@ -36,13 +36,7 @@ class Follower:
         self._last: SolvedPose | None = None
 
     def follow(self, simulation: Simulation, contractions: Vector, *, rough: bool = False) -> RobotShape:
-        """The body at these contractions [m], or as it was last; `failure` tells which.
-
-        Args:
-            simulation: of the robot.
-            contractions: of its winches [m].
-            rough: whether it moves on at once, so that the last digits do not matter.
-        """
+        """The body at these contractions [m], or as it was last; `failure` tells which. Rough: it moves on at once."""
         if simulation is not self._simulation:
             self._simulation, self._last = simulation, None
         pose = self._roughly(simulation, contractions) if rough else None

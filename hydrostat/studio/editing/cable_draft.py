@@ -50,11 +50,7 @@ def begin_cable(robot: Robot, at: Point, key: str = "") -> CableDraft:
 
 
 def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> Robot:
-    """The robot with the cable, and with its winch where that is new; with a mirror also with their twins.
-
-    Raises:
-        InputError: it has no stopper, or a point outside the body.
-    """
+    """The robot with the cable, its winch if new, and their twins (InputError: no stopper, or a point outside)."""
     if len(draft.points) < 2:
         raise InputError("a cable needs a stopper: click on the body where it shall end")
     winch, robot = draft.winch, robot if draft.winch is not None else add_winch(robot, draft.points[0])

@@ -26,9 +26,7 @@ RANGES = {"radius": (1e-4, 20.0), "spool_radius": (1e-4, 20.0), "travel": (0.0, 
 
 
 def rename(robot: Robot, key: str, name: str) -> Robot:
-    """The same robot with another name of a winch, cable or marker; its cables and poses follow.
-
-    Cables whose names were made up of a winch's name follow it too.
+    """The same robot with another name of a winch, cable or marker; its cables, if named after it, and poses follow.
 
     Raises:
         InputError: no such part, a name that is taken or that robot.toml does not allow.
@@ -65,11 +63,7 @@ def rename(robot: Robot, key: str, name: str) -> Robot:
 
 
 def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
-    """The same robot with other numbers of some of its parts, in SI; see `FIELDS`.
-
-    Raises:
-        InputError: no such part, or a number that it cannot have.
-    """
+    """The same robot with other numbers of some parts, in SI; see `FIELDS` (InputError: no such part or number)."""
     for name, value in values.items():
         if name in RANGES and value is not None:
             check_range(name, value, *RANGES[name])
@@ -91,11 +85,7 @@ def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
 
 
 def set_gravity(robot: Robot, direction: str) -> Robot:
-    """The same robot with gravity in a direction such as "-y", or without any: "".
-
-    Raises:
-        InputError: no direction of this body.
-    """
+    """The same robot with gravity in a direction such as "-y", "" for none (InputError: no direction of this body)."""
     return replace(robot, gravity=gravity_along(direction, robot.body.mesh.dim) if direction else None)
 
 
@@ -133,11 +123,11 @@ BODY_RANGE = (1e-4, 20.0)  # least and most thickness and element size that a pe
 def remesh(
     robot: Robot, *, element_size: float | None = None, thickness: float | None = None, material: str | None = None
 ) -> Body:
-    """The body of a robot, made anew; takes a while if the elements are others.
+    """The body of a robot, made anew; takes a while if the elements are others. What is left out stays.
 
     Args:
         robot: whose body it is.
-        element_size: length of a mesh edge [m]; as it was if left out, as are the others.
+        element_size: length of a mesh edge [m].
         thickness: of a flat body [m].
         material: a name of the table.
 

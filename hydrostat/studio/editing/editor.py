@@ -106,11 +106,7 @@ class Editor(Stage):
         self._ring()
 
     def mirror_about(self, axis: str) -> None:
-        """Edit both sides alike about the plane where a coordinate is 0; "": no longer.
-
-        Raises:
-            InputError: the body has no such axis.
-        """
+        """Edit both sides of the plane where a coordinate is 0 alike; "": no longer (InputError: no such axis)."""
         axes = "xyz"[: self._document.robot.body.mesh.dim]
         if axis not in axes:
             raise InputError(f'there is no axis "{axis}"; the body has {", ".join(axes)}')
@@ -118,11 +114,7 @@ class Editor(Stage):
         self._ring()
 
     def set_depth(self, depth: float) -> None:
-        """Set how deep below the skin of a body in space winches and cables are placed [m].
-
-        Raises:
-            InputError: it is no depth in this body.
-        """
+        """Set how deep below the skin winches and cables are placed [m] (InputError: it is no depth in this body)."""
         size = self._document.robot.body.mesh.size
         if not 0 <= depth <= size:
             raise InputError(f"the depth must be from 0 to {1e3 * size:.0f} mm, the size of the body")
@@ -144,11 +136,7 @@ class Editor(Stage):
         self.choose(key if kind == "cable" else f"{kind}:{name}")
 
     def set(self, key: str, **values: Any) -> None:
-        """Change numbers of a part, in SI, and of its twin; see `change.FIELDS`.
-
-        Raises:
-            InputError: a number that it cannot have.
-        """
+        """Change numbers of a part, in SI, and of its twin; see `change.FIELDS` (InputError: one cannot be)."""
         robot = self._document.robot
         self._change(f"change {title_of(key)}", change(robot, self._both(robot, key), **values))
 

@@ -96,11 +96,7 @@ class Hold:
         return tidy(at) if part is not None and part.kind is Kind.PIN else inside(robot.body, at)
 
     def drawn_out(self, robot: Robot) -> tuple[Robot, Self]:
-        """A robot with the via point that is drawn out of a held cable, and the hold on that; else the same.
-
-        Raises:
-            InputError: there cannot be one.
-        """
+        """The robot with the via point drawn out of a held cable, and the hold on it (InputError: none can be)."""
         part = find_part(robot, self.key)
         if part is None or part.kind is not Kind.CABLE:
             return robot, self

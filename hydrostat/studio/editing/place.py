@@ -38,12 +38,7 @@ def add_winch(robot: Robot, at: Point) -> Robot:
 
 
 def add_cable(robot: Robot, winch: str, points: tuple[Point, ...]) -> Robot:
-    """One more cable, as stiff as the last one.
-
-    Args:
-        robot: as it was.
-        winch: that pulls it.
-        points: after the winch [m], in which it begins; the last is its stopper.
+    """One more cable of a winch, as stiff as the last one, through points [m] after the winch to the last, its stopper.
 
     Raises:
         InputError: no such winch, no points, or one outside the body.
@@ -56,11 +51,7 @@ def add_cable(robot: Robot, winch: str, points: tuple[Point, ...]) -> Robot:
 
 
 def insert_via(robot: Robot, index: int, at: Point) -> tuple[Robot, int]:
-    """One more via point, in the segment of a cable that is nearest to it; with its number.
-
-    Raises:
-        InputError: it would lie outside the body.
-    """
+    """One more via point, in the nearest segment of a cable; with its number (InputError: it is outside the body)."""
     cable = robot.cables[index]
     place = nearest_segment(cable.points, at) + 1
     points = (*cable.points[:place], at, *cable.points[place:])
@@ -79,11 +70,7 @@ def nearest_segment(points: tuple[Point, ...], at: Point) -> int:
 
 
 def move(robot: Robot, places: Mapping[str, Point]) -> Robot:
-    """The same robot with parts elsewhere; cables stay at their winches.
-
-    Args:
-        robot: as it was.
-        places: where pins, winches, via points and markers go [m], by key.
+    """The same robot with pins, winches, via points and markers, by key, elsewhere [m]; cables stay at their winches.
 
     Raises:
         InputError: no such part, or a place where it cannot be.

@@ -41,12 +41,7 @@ MODE = 0o644 << 16  # everybody may read what is unpacked
 
 
 def archive(files: Mapping[str, bytes], *, folder: str) -> bytes:
-    """Files as a zip, sorted by their names.
-
-    Args:
-        files: content by path.
-        folder: that all of them are put in.
-    """
+    """Files, content by path, as a zip with all of them in one folder, sorted by their names."""
     buffer = io.BytesIO()
     with ZipFile(buffer, "w") as zipped:
         for path in sorted(files):

@@ -51,11 +51,7 @@ THICK = b"<style>* { vector-effect: non-scaling-stroke; stroke-width: 1px; }</st
 
 
 def make_kit(report: Report, robot: Robot, options: KitOptions) -> KitMade:
-    """Make the kit of a robot with cables, with pictures of its pages.
-
-    Raises:
-        InputError: a body that the method cannot make.
-    """
+    """Make the kit of a robot with cables, with pictures of its pages (InputError: the method cannot make the body)."""
     try:
         kit = build_kit(robot, options=options, progress=report.progress)
     except UnbuildableError as error:

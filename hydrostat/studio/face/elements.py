@@ -22,15 +22,7 @@ class Knob(ui.element, component="static/knob.js"):
     """
 
     def __init__(self, *, least: float, most: float, step: float, colour: str, label: str) -> None:
-        """A knob.
-
-        Args:
-            least: at its left end.
-            most: at its right end.
-            step: of the wheel and the arrow keys.
-            colour: of its hand.
-            label: read out to those who do not see it.
-        """
+        """A knob from least to most, in steps of wheel and arrow keys; who cannot see it hears its label."""
         super().__init__()
         self._props.update(value=0.0, reach=0.0, least=least, most=most, step=step, colour=colour, label=label)
 
@@ -116,12 +108,7 @@ class OutlineEditor(ui.element, component="static/outline_editor.js"):
     """
 
     def __init__(self, loops: Sequence[Loop], on_change: Callable[[Any], None]) -> None:
-        """An editor.
-
-        Args:
-            loops: to begin with.
-            on_change: called with what the screen has sent, not yet checked.
-        """
+        """An editor of loops; `on_change` gets what the screen has sent, not yet checked."""
         super().__init__()
         self._props["handle"] = HANDLE
         self._props["start"] = send_loops(loops)

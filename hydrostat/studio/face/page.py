@@ -42,13 +42,7 @@ class WindowPage:
         self.whole: ui.column
 
     def on(self, topics: Topic | Sequence[Topic], refresh: Refresh, *, lasting: bool = False) -> None:
-        """Call something after a topic rang, and once now.
-
-        Args:
-            topics: that matter, one or several.
-            refresh: redraws what depends on it.
-            lasting: also when another stage is shown.
-        """
+        """Call what redraws after a topic rang, and once now; if lasting also when another stage is shown."""
         for topic in (topics,) if isinstance(topics, Topic) else topics:
             (self._lasting if lasting else self._passing)[topic].append(refresh)
         refresh()
@@ -56,14 +50,7 @@ class WindowPage:
     def on_new(
         self, topics: Topic | Sequence[Topic], state: Callable[[], object], room: ui.element, build: Callable[[], Any]
     ) -> None:
-        """Fill a room, and fill it anew after one of some topics rang where what it shows is another by then.
-
-        Args:
-            topics: that matter.
-            state: what it shows.
-            room: to fill.
-            build: what fills it.
-        """
+        """Fill a room, and fill it anew after a topic rang where the state that it shows is another by then."""
         drawn: list[object] = []
 
         def show() -> None:
@@ -138,15 +125,7 @@ class WindowPage:
 def icon_button(
     icon: str, words: str, action: Callable[[], Any] | None, *, small: bool = True, colour: str | None = None
 ) -> ui.button:
-    """A round button with a sign alone; its words are told to who points at it or cannot see it.
-
-    Args:
-        icon: its sign.
-        words: what it does.
-        action: called when it is pressed.
-        small: whether it is a small one.
-        colour: of its sign; None: as the words around it.
-    """
+    """A round button with a sign alone, small or not; its words are told to who points at it or cannot see it."""
     button = ui.button(icon=icon, color=colour, on_click=action).props("flat round dense" + " size=sm" * small)
     button.props["aria-label"] = words
     return button.tooltip(words)

@@ -42,13 +42,7 @@ class Viewport(ui.element, component="static/viewport.js"):
     """
 
     def __init__(self, *, stream: str, dark: bool | None = None, brush: bool = False) -> None:
-        """A view.
-
-        Args:
-            stream: path of the websocket, such as "/stream".
-            dark: whether it is dark; None: as the page is.
-            brush: whether a drag beside the body paints instead of moving the view.
-        """
+        """A view of a websocket's path, dark or as the page is (None); with a brush a drag beside the body paints."""
         super().__init__()
         self._props["stream"] = stream
         self._props["palette"] = COLOURS
@@ -74,12 +68,7 @@ class Viewport(ui.element, component="static/viewport.js"):
         self.run_method("fit")
 
     def section(self, axis: Axis | None, share: float) -> None:
-        """Cut a body in space open.
-
-        Args:
-            axis: across which; None: not at all.
-            share: where, as a share of the body's extent along it.
-        """
+        """Cut a body in space open across an axis, None: not at all, at a share of the body's extent along it."""
         self.run_method("section", axis, share)
 
     def orthographic(self, on: bool) -> None:

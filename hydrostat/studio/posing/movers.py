@@ -29,12 +29,7 @@ class Movers:
         return found is not None and same_physics(found.robot, robot, mode)
 
     def mover(self, robot: Robot, mode: Mode, tension: float) -> Mover:
-        """The mover of this robot; made if need be, which can take a while.
-
-        Args:
-            robot: as it is now.
-            mode: what moves it.
-            tension: the most that a cable bears [N].
+        """The mover of a robot in a mode; made if need be, which can take a while. Cables bear at most a tension [N].
 
         Raises:
             NotConvergedError: the robot has no rest.

@@ -183,11 +183,7 @@ class Poser(Stage):
         self._document.bell.ring(Topic.THINGS)
 
     def set_mode(self, mode: Mode | str) -> None:
-        """Let muscles or cables move the body; what is held stays held.
-
-        Raises:
-            InputError: there is no mode of this name, or the robot has no cables.
-        """
+        """Let muscles or cables move the body; what is held stays held (InputError: no such mode, or no cables)."""
         mode = member(Mode, mode, what="mode")
         with self._lock:
             now = self._fit()

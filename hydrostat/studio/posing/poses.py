@@ -11,16 +11,7 @@ from hydrostat.studio.records.wishes import Wishes
 
 
 def with_pose(robot: Robot, name: str, held: Mapping[str, Held]) -> Robot:
-    """A robot with one more pose, in place of one of the same name; held points without a marker get one.
-
-    Args:
-        robot: whose pose it is.
-        name: of the pose.
-        held: points by name, with their targets.
-
-    Raises:
-        InputError: no name, or nothing is held.
-    """
+    """A robot with one more pose, or another of its name; held points get markers (InputError: no name or point)."""
     name = checked_name(name)
     if not held:
         raise InputError("nothing is held yet; drag a point of the body, then store the pose")
@@ -31,11 +22,7 @@ def with_pose(robot: Robot, name: str, held: Mapping[str, Held]) -> Robot:
 
 
 def renamed_pose(robot: Robot, old: str, new: str) -> Robot:
-    """A robot with another name for a pose, in its old place.
-
-    Raises:
-        InputError: no such pose, no name, or one that is taken.
-    """
+    """A robot with another name for a pose, in its old place (InputError: no such pose, no name, or a taken one)."""
     pose, new = robot.pose(old), checked_name(new)
     if new != old and new in robot.poses:
         raise InputError(f'there is a pose "{new}" already; choose another name')
@@ -50,13 +37,7 @@ def without_pose(robot: Robot, name: str) -> Robot:
 
 
 def wishes_after(wishes: Wishes, robot: Robot, renamed: Mapping[str, str] | None = None) -> Wishes:
-    """Wishes that name only poses that the robot has.
-
-    Args:
-        wishes: as they were.
-        robot: as it is now.
-        renamed: new names of poses, by their old ones.
-    """
+    """Wishes that name only poses that the robot has now; `renamed` gives new names by their old ones."""
     names = [(renamed or {}).get(name, name) for name in wishes.poses]
     return replace(wishes, poses=tuple(name for name in names if name in robot.poses))
 
@@ -69,11 +50,7 @@ def held_of(robot: Robot, name: str) -> dict[str, Held]:
 
 
 def checked_name(given: str) -> str:
-    """A name without spaces at its ends, fit for a file of a robot.
-
-    Raises:
-        InputError: it is empty, too long or has letters that no name has.
-    """
+    """A name without spaces at its ends, fit for a robot's file (InputError: empty, too long, wrong letters)."""
     name = given.strip()
     if not name:
         raise InputError("a pose needs a name, such as wave")

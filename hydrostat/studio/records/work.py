@@ -56,12 +56,7 @@ def followed(
 
 
 def after_design(work: Work, robot: Robot) -> Wishes:
-    """Wishes after a design has replaced the network: what was kept and is there still is kept on.
-
-    Args:
-        work: as it was before.
-        robot: as it is now.
-    """
+    """Wishes after a design has given the robot another network: what was kept and is there still is kept on."""
     same = {cable.name: cable.name for cable in work.robot.cables if cable in robot.cables}
     wishes = followed(work, robot, cables=same)[1]
     places = {winch.name: winch.at for winch in work.robot.winches}

@@ -114,12 +114,7 @@ class Autosave:
     """
 
     def __init__(self, document: Document, folder: Path | None) -> None:
-        """Keep what is changed.
-
-        Args:
-            document: with the work.
-            folder: that all studios of this person share; None: nothing is kept.
-        """
+        """Keep what is changed in the folder that all studios of this person share; None: nothing is kept."""
         self._document, self._folder = document, folder
         self._held: HeldFolder | None = None
         self._seen = self._kept = (0, True)
@@ -130,11 +125,7 @@ class Autosave:
         self._lock = Lock()
 
     def step(self, now: float) -> None:
-        """Keep the work if it is time to. Returns at once: another thread writes.
-
-        Args:
-            now: time [s] of a clock that only runs forward.
-        """
+        """Keep the work if it is time to, by a clock [s] that never goes back. Returns at once: a thread writes."""
         state = self._state()
         if state != self._seen:
             if self._seen == self._kept and not self.problem:

@@ -69,11 +69,7 @@ class BodyDraft:
 
 
 def new_draft(name: str, content: bytes) -> BodyDraft:
-    """A draft of a file that a person brings, with nothing asked yet but the size of a picture.
-
-    Raises:
-        InputError: empty, too large, or of a kind that is not read.
-    """
+    """A draft of a file that a person brings, nothing asked yet (InputError: empty, too large, or of no known kind)."""
     file = safe_name(name)
     if not content:
         raise InputError(f"{file}: the file is empty; export it again")
@@ -85,11 +81,7 @@ def new_draft(name: str, content: bytes) -> BodyDraft:
 
 
 def safe_name(name: str) -> str:
-    """A plain file name of whatever a browser says a file is called: no folder, no strange letters, not too long.
-
-    Raises:
-        InputError: it does not end as a file that is read.
-    """
+    """A plain file name of what a browser says: no folder, no strange letters, short (InputError: a wrong ending)."""
     plain = re.split(r"[/\\]", name)[-1]
     stem, dot, ending = plain.rpartition(".")
     suffix = (dot + ending).lower()

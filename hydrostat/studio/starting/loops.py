@@ -99,11 +99,7 @@ def outline_of(loops: Sequence[Loop]) -> Outline:
 
 
 def loops_svg(loops: Sequence[Loop]) -> tuple[bytes, tuple[float, float]]:
-    """The loops as a drawing in millimetres, and what of theirs lies in its upper left corner [mm].
-
-    Raises:
-        InputError: as for `outline_of`.
-    """
+    """The loops as SVG in mm, and what of theirs is its upper left corner [mm] (InputError: as for `outline_of`)."""
     rim = 1e3 * outline_of(loops).exterior
     (left, low), (right, top) = rim.min(axis=0), rim.max(axis=0)
     wide, high = right - left, top - low

@@ -98,14 +98,10 @@ def _sin(step: float, steps: int) -> float:
 
 
 def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
-    """Give a flat robot another outline; thickness, element size and material stay.
+    """Give a flat robot another outline, an SVG in millimetres; thickness, element size and material stay.
 
-    Coordinates of a body count from the middle of its drawing, so what stays is moved when that moves.
-
-    Args:
-        work: with the robot.
-        drawing: an SVG in millimetres.
-        corner: what of the robot lies in the upper left corner of the drawing [mm].
+    Coordinates of a body count from the middle of its drawing, so what stays is moved when that moves: `corner` is what
+    of the robot lies in the upper left corner of the drawing [mm].
 
     Raises:
         InputError: the drawing is no body, or no pin lies in it.

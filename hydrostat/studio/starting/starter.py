@@ -48,13 +48,7 @@ class Starter(Stage):
     """
 
     def __init__(self, document: Document, jobs: Jobs, state: Path | None = None) -> None:
-        """Begin.
-
-        Args:
-            document: to open robots in.
-            jobs: for meshing.
-            state: folder to remember in, over runs; None: nothing is remembered.
-        """
+        """A stage that opens robots in a document, meshes in jobs, and remembers in a folder; None: nothing."""
         self._document, self._jobs = document, jobs
         self.autosave = Autosave(document, None if state is None else state / "work")
         self.draft: BodyDraft | None = None
@@ -112,22 +106,14 @@ class Starter(Stage):
         self._jobs.warm(*_MODULES)
 
     def bring(self, name: str, content: bytes) -> None:
-        """Begin with a file that a person brings; it is meshed in a process of its own.
-
-        Raises:
-            InputError: empty, too large, of a kind that is not read, or another job runs.
-        """
+        """Mesh a file that a person brings, as a job (InputError: empty, too large, no known kind, or other work)."""
         draft = new_draft(name, content)
         with self._lock:
             self.sketch = None
             self._take(draft)
 
     def revise(self, **changes: Any) -> None:
-        """Ask for other numbers; see `BodyDraft`. What needs no new mesh is done at once.
-
-        Raises:
-            InputError: a number out of its range.
-        """
+        """Ask for other numbers of the `BodyDraft`; a new mesh only where needed (InputError: one out of range)."""
         with self._lock:
             if self.draft is None:
                 return

@@ -57,13 +57,7 @@ def scale(robot: Robot, colouring: Colouring) -> Scale | None:
 
 
 def node_values(robot: Robot, nodes: Nodes, colouring: Colouring) -> Vector | None:
-    """A value from 0 to 1 for each node, as a share of the `scale`; None for plain felt.
-
-    Args:
-        robot: whose body it is.
-        nodes: where they are [m].
-        colouring: what is asked for.
-    """
+    """A value from 0 to 1 for each node at its place [m], as a share of the `scale`; None for plain felt."""
     legend = scale(robot, colouring)
     if legend is None:
         return None

@@ -33,13 +33,7 @@ class Picture:
     """
 
     def __init__(self, robot: Robot, things: Sequence[Thing], serial: int) -> None:
-        """The picture of a robot with some things.
-
-        Args:
-            robot: whose body is shown.
-            things: beside it.
-            serial: names the scene.
-        """
+        """The picture of a robot's body with things beside it; the serial names the scene."""
         self.robot, self.serial = robot, serial
         self.signature = _signature(robot, things)
         self._shown = _shown_nodes(robot)
@@ -76,14 +70,7 @@ class Picture:
     def frame(
         self, nodes: Nodes, things: Sequence[Thing], head: dict[str, Any], *, values: Vector | None = None
     ) -> bytes:
-        """All that changes.
-
-        Args:
-            nodes: of the body [m].
-            things: as those of the scene, but for places in the world and loads.
-            head: words to go along.
-            values: of each node, 0 to 1, to be coloured by; none if left out.
-        """
+        """All that changes: nodes [m] and their colours from 0 to 1, if any, places and loads of things, words."""
         points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
         if self._stuck.any():
             points[self._stuck] = self._anchors.positions(nodes) + self._beside
@@ -216,15 +203,7 @@ class Show:
         head: dict[str, Any],
         values: Vector | None = None,
     ) -> Shown:
-        """A robot in a shape, with things.
-
-        Args:
-            robot: whose body it is.
-            shape: where the body is.
-            things: beside it.
-            head: words that go along with the frame.
-            values: of the nodes, to be coloured by.
-        """
+        """A robot in a shape, with things, words to go along with the frame, and values of nodes for colours."""
         if self._picture is None or not self._picture.fits(robot, things):
             self._serial += 1
             self._picture = Picture(robot, things, self._serial)

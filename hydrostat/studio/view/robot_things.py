@@ -65,13 +65,7 @@ def robot_things(
 
 
 def target_things(targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "") -> list[Thing]:
-    """Rings where markers should go, with a line from where each is.
-
-    Args:
-        targets: where markers should go [m]; their keys are "target:tip".
-        places: where they are [m].
-        chosen: key that is selected.
-    """
+    """Rings where markers should go [m], keys "target:tip", the chosen one selected, with lines from where they are."""
     things: list[Thing] = []
     for name, target in targets.items():
         key = f"target:{name}"
@@ -138,13 +132,7 @@ class Bar:
 
 
 def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
-    """A bar for each winch.
-
-    Args:
-        robot: whose winches they are.
-        shape: what they do.
-        limit: the most that a cable bears [N].
-    """
+    """A bar for each winch: what it does in a shape, beside the most that a cable bears [N]."""
     colours = winch_colours(robot.winches)
     largest = dict.fromkeys(colours, 0.0)
     for cable, tension in zip(robot.cables, np.asarray(shape.tensions).tolist(), strict=True):
