@@ -28,11 +28,7 @@ def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
     """A folder to write to, whose files come to `out` at the end; nowhere if an error or Ctrl-C comes first.
 
     A new folder is renamed as a whole. In one that exists each file takes the place of the one of its name, and others
-    stay, but for folders that are out of date.
-
-    Args:
-        out: where the results shall be.
-        stale: pattern of paths in `out` of folders of earlier results, which are removed.
+    stay, but for folders of earlier results that match the pattern `stale`.
     """
     out = out.resolve()
     beside = out if out.exists() else out.parent

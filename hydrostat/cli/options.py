@@ -23,17 +23,7 @@ PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the 
 
 
 def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = False) -> float:
-    """Value of an option in SI.
-
-    Args:
-        option: its name, for complaints.
-        text: such as "20 N".
-        dimension: what it measures.
-        zero: 0 is allowed as well.
-
-    Raises:
-        InputError: no such quantity, or one that is not above 0.
-    """
+    """Value of an option in SI, above 0, or 0 where allowed (InputError: it is neither, or no such quantity)."""
     from hydrostat.units import parse_quantity
 
     try:
@@ -46,11 +36,7 @@ def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = Fal
 
 
 def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
-    """Limits on a pose, from --tension, and from --equal with texts such as "left,right".
-
-    Raises:
-        InputError: no such force, or a group of fewer than two winches.
-    """
+    """Limits from --tension and --equal, such as "left,right" (InputError: no force, a group of fewer than two)."""
     from hydrostat.ik import Limits
     from hydrostat.units import FORCE
 
@@ -70,7 +56,7 @@ def check_width(width: int) -> None:
 
 
 def contractions(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
-    """Contractions [m] by winch, from texts such as "left=12mm"; a note is printed of what a winch cannot take in.
+    """Contractions [m] by winch, from texts such as "left=12mm"; notes are printed of what a winch cannot take in.
 
     Raises:
         InputError: no such text, no such winch, or it would take in all of a cable.
@@ -96,11 +82,7 @@ def _contraction(text: str) -> tuple[str, float]:
 
 
 def check_contraction(robot: "Robot", name: str, value: float, *, option: str = "--contract") -> None:
-    """Print a note if a winch cannot take in so much [m].
-
-    Raises:
-        InputError: there is no such winch, or it would take in all of a cable.
-    """
+    """Print a note if a winch cannot take in so much [m] (InputError: no such winch, or it takes in all of a cable)."""
     winch = robot.winch(name)
     if not -winch.release <= value <= winch.travel:
         print(

@@ -28,12 +28,7 @@ class Link(ABC):
 
     @abstractmethod
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
-        """Let the motors go there; return at once.
-
-        Args:
-            contractions: of each winch [m].
-            now: time of the clock [s].
-            speed: largest speed of the cables on the way [m/s].
+        """Let the motors go to contractions [m] at so fast a cable [m/s], by a clock [s]; return at once.
 
         Raises:
             HydrostatError: it cannot be sent.
@@ -41,11 +36,7 @@ class Link(ABC):
 
     @abstractmethod
     def read(self, now: float) -> Vector:
-        """Contraction of each winch at this time [m], as last heard of.
-
-        Raises:
-            HydrostatError: the motors report an error, or nothing.
-        """
+        """Contraction of each winch, as last heard of [m] (HydrostatError: the motors report an error, or nothing)."""
 
     @abstractmethod
     def stop(self) -> None:

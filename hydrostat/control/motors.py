@@ -73,11 +73,7 @@ class Motors:
         self.fastest = speed
 
     def check(self, table: ProfileTable, *, speed: float = 1.0) -> None:
-        """Refuse a table that these motors cannot play.
-
-        Args:
-            table: of their winches.
-            speed: at so many times its own.
+        """Refuse a table that these motors cannot play at so many times its own speed.
 
         Raises:
             InputError: a row is beyond the limits of its winch, or too fast; the text names the line and the column.
@@ -100,11 +96,7 @@ class Motors:
             )
 
     def ask(self, contractions: Vector) -> str:
-        """Command as much of these contractions [m] as the winches can; give in words which cannot, "" if all can.
-
-        Raises:
-            InputError: one is no finite number; the command stays.
-        """
+        """Command what winches can of this [m]; tell what they cannot (InputError: not finite; the command stays)."""
         self.command = self._within(contractions)
         beyond = np.abs(contractions - self.command)
         if beyond.max(initial=0.0) <= NEAR:
@@ -120,13 +112,10 @@ class Motors:
         self.command = self._within(command)
 
     def drive(self, now: float) -> bool:
-        """Send the command, read where the motors are, and tell whether any has moved. On any error they hold.
-
-        Args:
-            now: time of a clock that only runs forward, such as `time.monotonic` [s].
+        """Send the command, read where the motors are by a clock [s] that never goes back; tell whether any moved.
 
         Raises:
-            HydrostatError: of the link, or there was no `drive` for too long; then they hold, and must be asked anew.
+            HydrostatError: of the link, or there was no `drive` for too long; the motors hold, and must be asked anew.
         """
         before = self.places
         try:

@@ -57,12 +57,7 @@ class Player:
         self.speed = speed
 
     def advance(self, now: float, seconds: float) -> None:
-        """Go on with the clock; at the end begin anew, or stop there.
-
-        Args:
-            now: time of the clock [s]; the playhead runs from when it is first told.
-            seconds: length of the timeline [s].
-        """
+        """Go on with a clock [s], from when it is first told; after a timeline's seconds begin anew, or stop."""
         if not self.playing:
             return
         passed = 0.0 if self._seen is None else max(0.0, now - self._seen)

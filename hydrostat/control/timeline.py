@@ -61,11 +61,7 @@ class Timeline:
         return max(self.length, self.keys[-1].time if self.keys else 0.0)
 
     def profile(self, winches: Sequence[str]) -> Profile:
-        """Contractions in time of these winches; nothing is taken in where there is no key.
-
-        Args:
-            winches: names, in the order of the columns.
-        """
+        """Contractions in time of these winches, a column each; nothing is taken in where there is no key."""
         keys = self.keys or (Key(time=0.0, contractions={}),)
         values = [[key.contractions.get(name, 0.0) for name in winches] for key in keys]
         return Profile(

@@ -15,11 +15,7 @@ LARGEST = 4_000_000  # no table has more bytes
 
 
 def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
-    """Contractions in time as a CSV: seconds, and millimetres for each winch; see `ProfileTable`.
-
-    Raises:
-        InputError: there are no keyframes.
-    """
+    """Contractions in time as a CSV of seconds and millimetres; see `ProfileTable` (InputError: no keyframes)."""
     if not timeline.keys:
         raise InputError("there are no keyframes to export; turn the knobs and press Add")
     profile = timeline.profile([winch.name for winch in robot.winches])
@@ -28,12 +24,7 @@ def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
 
 
 def read_timeline(robot: Robot, name: str, content: bytes) -> Timeline:
-    """Read a timeline from such a table, its times counted from its first row.
-
-    Args:
-        robot: whose winches it names.
-        name: of the file, for messages.
-        content: of the file.
+    """Read a timeline from the table of a named file, its times counted from its first row.
 
     Raises:
         InputError: it is too large, or no such table; the text names the line.

@@ -29,10 +29,7 @@ class Camera:
 
     @classmethod
     def towards(cls, eye: Float[np.ndarray, " 3"], *, up: Float[np.ndarray, " 3"] | None = None) -> Self:
-        """A camera in the direction `eye` from the body; `up` is up, z if left out.
-
-        Where z is up and the eye straight above, x runs to the right.
-        """
+        """A camera in the direction `eye` from the body; `up` is up, or z, with x to the right seen from there."""
         turn = upright(np.array([0.0, 0.0, 1.0]) if up is None else up)
         near = turn @ eye / np.linalg.norm(eye)
         right = np.array([-near[1], near[0], 0.0])
@@ -41,10 +38,7 @@ class Camera:
 
     @classmethod
     def at(cls, azimuth: float, elevation: float, *, up: Float[np.ndarray, " 3"] | None = None) -> Self:
-        """A camera in a compass direction, from x towards y, at a height over the horizon [degrees]; z is upright.
-
-        With `up` this is upright, and compass directions count from an axis across it.
-        """
+        """A camera in a compass direction, x towards y, over the horizon [degrees]; z, or `up`, is upright."""
         turn, rise = np.radians([azimuth, elevation])
         near = np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
         right = np.array([-np.sin(turn), np.cos(turn), 0.0])

@@ -87,11 +87,6 @@ def smooth_normals(
     """Unit normals at the corners of triangles, smooth but for edges that turn by more than `sharp` [degrees].
 
     Each is the mean over the triangles about its vertex, weighted by area; 0 at a triangle without area.
-
-    Args:
-        corners: places of the corners of each triangle.
-        triangles: the vertices at these.
-        sharp: [degrees].
     """
     crosses, areas = _crosses(corners)
     weights = np.repeat(areas[:, None], 3, axis=1)

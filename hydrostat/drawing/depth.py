@@ -41,13 +41,7 @@ class DepthBuffer:
         *,
         pixels: int,
     ) -> Self:
-        """The buffer of triangles as they are seen [mm], from outside and from inside, with room round them.
-
-        Args:
-            corners: of the triangles.
-            values: known at them.
-            pixels: along the longer side.
-        """
+        """The buffer of triangles seen [mm] from both sides, with room round it and pixels along its longer side."""
         low, high = corners[:, :, :2].min(axis=(0, 1)), corners[:, :, :2].max(axis=(0, 1))
         pixel = max(float((high - low).max()) / pixels, 1e-9)
         low = low - _RIM * pixel
@@ -65,15 +59,9 @@ class DepthBuffer:
         *,
         inside: bool,
     ) -> Self:
-        """The buffer of a given place, size of a pixel [mm] and rows and columns.
+        """The buffer of rows and columns of a pixel's size [mm] whose pixel [0, 0] has its middle at `low` [mm].
 
-        Args:
-            corners: of the triangles, as they are seen [mm].
-            values: known at them.
-            low: the middle of pixel [0, 0] [mm].
-            pixel: side of a pixel [mm].
-            shape: rows and columns.
-            inside: triangles are seen from inside too, where they turn clockwise.
+        The inside of triangles, where they turn clockwise, is seen too if asked for.
         """
         depth, owner = np.full(shape, -np.inf), np.full(shape, -1, dtype=np.int32)
         shown = np.zeros((*shape, values.shape[2]), dtype=values.dtype)

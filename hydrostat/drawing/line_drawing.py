@@ -95,11 +95,8 @@ class LineDrawing:
 def line_drawing(solids: Sequence[DrawnSolid], camera: Camera, *, soft: float = 0.0, pixels: int = 1400) -> LineDrawing:
     """Draw solids as they are seen, each edge and rim only as far as nothing hides it.
 
-    Args:
-        solids: what is drawn.
-        camera: from where.
-        soft: over what share of the picture the light is blurred, for a body with dents.
-        pixels: along the longer side, to which it is known what is hidden; ten for a millimetre of paper are enough.
+    The light is blurred over a share of the picture (`soft`), for a body with dents. Pixels along the longer side tell
+    what is hidden; ten for a millimetre of paper are enough.
     """
     facets = [Facets.of(solid.vertices, solid.triangles, sharp=solid.sharp) for solid in solids]
     spots = np.concatenate([camera.see(item.vertices)[item.triangles] for item in facets])

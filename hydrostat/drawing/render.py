@@ -94,10 +94,7 @@ def silhouette(spots: Spots, facets: Int[np.ndarray, "facets 3"], *, pixel: floa
 def _samples(
     corners: Float[np.ndarray, "facets 3 3"], values: np.ndarray, pixel: float
 ) -> tuple[DepthBuffer, Float[np.ndarray, " 2"]]:
-    """Samples within pixels of a size [mm], with values known at the corners [mm] of facets; column and row they begin.
-
-    They lie on a lattice of its own, so that pixels and hatching of what rests stay while other parts move.
-    """
+    """Samples within pixels of a size [mm], with values of the corners [mm]; they lie on a lattice that stays."""
     steps = np.floor(corners.min(axis=(0, 1))[:2] / pixel) - 2
     width, height = (FINER * (int(np.ceil(side / pixel)) + 5) for side in np.ptp(corners, axis=(0, 1))[:2])
     fine = pixel / FINER
@@ -107,10 +104,7 @@ def _samples(
 def _corner_values(
     corners: Float[np.ndarray, "facets 3 3"], facets: Int[np.ndarray, "facets 3"], held: Vector | None, fine: float
 ) -> np.ndarray:
-    """What `paint` must know at each corner, (facets, 3, 4 or 7): normal, held or not, distances to the sides.
-
-    The latter only with the side of a sample, `fine` [mm]; in samples.
-    """
+    """Normal, held or not, and distances to the sides in samples of `fine` [mm], per corner: (facets, 3, 4 or 7)."""
     normals = smooth_normals(corners, facets, sharp=CREASE)
     grip = np.zeros(facets.shape) if held is None else held[facets]
     parts = [normals, grip[..., None]]

@@ -15,10 +15,7 @@ SAMPLES = 40  # neighbours that are asked how much of the sky they take
 def sky_shares(depth, normals, reach):
     """How much of the sky each pixel sees past its neighbours, 0 to 1 (screen-space ambient occlusion).
 
-    Args:
-        depth: towards the eye in pixels, (height, width).
-        normals: (height, width, 3), unit.
-        reach: how far neighbours shade, in pixels.
+    Depth is towards the eye, and reach how far neighbours shade, both in pixels; normals (height, width, 3) are unit.
     """
     height, width = depth.shape
     sky = np.ones((height, width), dtype=np.float32)
@@ -109,10 +106,7 @@ def paint(depth, shown, sky, look, table, inks, shares):
 @njit(**INNER)
 @no_type_check
 def _light(x, y, z, up, near):
-    """Light on a surface of normal (x, y, z): two soft lights, the sky, and less where it turns away.
-
-    The lights stand to the left above the eye and, weaker, to its right; the sky is at (0, up, near).
-    """
+    """Light on a normal (x, y, z): lamps to the left above the eye and, weaker, right; the sky at (0, up, near)."""
     key = min(max((-0.4801 * x + 0.6202 * y + 0.6202 * z + 0.25) / 1.25, 0.0), 1.0)
     side = min(max(0.8518 * x + 0.0501 * y + 0.5211 * z, 0.0), 1.0)
     hemisphere = 0.5 + 0.5 * (up * y + near * z)

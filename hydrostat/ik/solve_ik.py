@@ -111,10 +111,6 @@ def restarts(search: InverseSearch, best: Callable[[], InverseState]) -> Iterato
     markers have local optima. So first the best contractions are tried from rest; then in turn ones near them and ones
     anywhere. Only channels that move what is missed are changed: the fingers that are right stay. It ends after a few
     jumps that lead nowhere.
-
-    Args:
-        search: the problem.
-        best: the best state so far.
     """
     state = best()
     found = search.jump(state.values)

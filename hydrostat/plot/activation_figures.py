@@ -25,11 +25,7 @@ PALE = 0.62  # how far felt fades behind muscles
 def draw_activation(robot: Robot, activation: Activation, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """The activation graph (Fig 3.9a): the body as its muscles pose it, each fibre as wide and dark as it pulls.
 
-    Args:
-        robot: to draw.
-        activation: the muscles' tensions and the pose they make.
-        title: above the picture; the pose's name if left out, nothing if empty.
-        width: of the picture [inch].
+    The title is the pose's name if left out, nothing if empty; width in inches.
     """
     pose, rest = activation.target, robot.body.mesh.nodes
     head = f"Activation: {shorten(pose.name)}" if title is None else title
@@ -56,14 +52,9 @@ def draw_candidates(
     title: str | None = None,
     width: float = WIDTH,
 ) -> Figure:
-    """The fibres that passed the threshold, on the rest shape (Fig 3.9b).
+    """The fibres of the candidates that passed the threshold, on the rest shape (Fig 3.9b).
 
-    Args:
-        robot: to draw.
-        activation: all fibres and their tensions.
-        candidates: which of them are kept.
-        title: above the picture; the pose's name if left out, nothing if empty.
-        width: of the picture [inch].
+    The title is the pose's name if left out, nothing if empty; width in inches.
     """
     head = f"Candidates: {shorten(activation.target.name)}" if title is None else title
     note = f"the strongest {len(candidates)} of {counted(len(activation.fibres), 'fibre')}"
@@ -78,14 +69,7 @@ def draw_candidates(
 
 
 def draw_trees(robot: Robot, trees: Iterable[Spread], *, title: str | None = None, width: float = WIDTH) -> Figure:
-    """Routes that grew from the candidates, on the rest shape, a colour each (Fig 3.9c).
-
-    Args:
-        robot: to draw.
-        trees: the routes [m].
-        title: above the picture; "Trees" if left out, nothing if empty.
-        width: of the picture [inch].
-    """
+    """Routes [m] that grew from the candidates, on the rest shape, a colour each (Fig 3.9c); width in inches."""
     trees = list(trees)
     note = f"{counted(len(trees), 'route')} grown from the candidates"
     sheet, panes = _pale_sheet(robot, "Trees" if title is None else title, note, width, bar=title == "")

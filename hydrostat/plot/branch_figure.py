@@ -37,14 +37,8 @@ def draw_branches(
     """The poses found, one over the other; below how far markers move along the branches, if there are any.
 
     Stable parts are solid lines, unstable ones dashed; dots mark folds, diamonds bifurcations, and numbered dots at the
-    end the poses above. The share of the contractions is that of `found`, also for branches followed back from there.
-
-    Args:
-        robot: to draw.
-        found: its poses at the same contractions.
-        branches: on straight ways between rest and these contractions, in either direction.
-        title: above the picture; the robot's name if left out, nothing if empty.
-        width: of the picture [inch].
+    end the poses above. Branches are on straight ways between rest and these contractions, in either direction; the
+    share of the contractions is that of `found`. The title is the robot's name if left out; width in inches.
 
     Raises:
         InputError: contractions that are all 0: there is no way to them.

@@ -13,14 +13,7 @@ DASHES = ("-", "--", ":", "-.")  # lines of one colour, one after the other
 
 
 def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0) -> tuple[Figure, Axes]:
-    """A figure with one chart, whose axis across counts in whole numbers.
-
-    Args:
-        across: words at the axis across.
-        up: words at the axis up, with their unit.
-        width: of the picture [inch].
-        height: of the picture [inch].
-    """
+    """A figure [inch] with one chart and words at its axes; the one across counts in whole numbers."""
     figure = Figure(figsize=(width, height), facecolor="none")
     FigureCanvasAgg(figure)
     left, right, lower, upper = EDGES

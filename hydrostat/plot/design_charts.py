@@ -28,12 +28,8 @@ def draw_growth(
 ) -> Figure:
     """The error of each stage, counted from 1; a new line where another network is begun.
 
-    Args:
-        stages: in order.
-        rest: error at rest [m], dashed, if it is to be seen.
-        final: error of the network that was returned [m], dotted, if it is to be seen.
-        marked: indices of stages with a filled dot, from 0.
-        width: of the picture [inch].
+    Errors at rest (dashed) and of the network that was returned (dotted) are in metres; the stages of the marked
+    indices, from 0, have a filled dot; width in inches.
     """
     figure, axes = new_chart("stage", "pose error [mm rms]", width=width, height=0.46 * width)
     errors = MILLIMETRES * np.array([stage.error for stage in stages])
@@ -94,16 +90,10 @@ def _scale(axes: Axes, errors: np.ndarray) -> None:
 def draw_front(
     alternatives: Iterable[Alternative], chosen: Network, *, tolerance: float | None = None, width: float = WIDTH
 ) -> Figure:
-    """Error against number of cables, a line for each number of winches.
+    """Error against number of cables, a line for each number of winches; of equal numbers the best counts.
 
     A filled dot is a network on the Pareto front: none with as few winches and cables is better. A ring marks the
-    chosen one.
-
-    Args:
-        alternatives: other networks; of equal numbers the best counts.
-        chosen: the network that was returned.
-        tolerance: error that was asked for [m], dashed.
-        width: of the picture [inch].
+    chosen one, a dashed line the tolerance that was asked for [m]. Width in inches.
     """
     errors = best_errors(alternatives, chosen)
     figure, axes = new_chart("cables", "pose error [mm rms]", width=width, height=0.5 * width)

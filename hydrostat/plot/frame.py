@@ -39,11 +39,7 @@ class Frame:
 
 
 def check_frames(robot: Robot, frames: Sequence[Frame]) -> None:
-    """Before long work begins: the frames fit the robot.
-
-    Raises:
-        InputError: no frame, or one whose numbers are too many, too few or not finite.
-    """
+    """Refuse frames that do not fit the robot before work begins (InputError: none, or wrong or infinite numbers)."""
     if not frames:
         raise InputError("an animation needs at least one frame")
     for index, frame in enumerate(frames):

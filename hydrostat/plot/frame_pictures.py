@@ -30,13 +30,7 @@ class FramePictures:
     """A sheet on which one frame after another is drawn; camera, frame and colours of tension are those of all."""
 
     def __init__(self, robot: Robot, frames: Sequence[Frame], *, width: int) -> None:
-        """Room for all of the frames.
-
-        Args:
-            robot: to draw.
-            frames: all that will be drawn.
-            width: of a picture [pixels].
-        """
+        """Room for all of the frames, in pictures of a width [pixels]."""
         self._robot, self._carried = robot, Attachments(robot)
         self._scale = TensionScale.of(np.concatenate([frame.tensions for frame in frames]))
         points = _seen(robot, self._carried, frames)

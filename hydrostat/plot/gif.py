@@ -18,15 +18,10 @@ Indices = UInt8[np.ndarray, "_ _"]
 
 
 def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int]) -> bytes:
-    """A GIF that plays for ever.
+    """A GIF of pictures of one size and their times [1/100 s] that plays for ever, in at most 255 colours.
 
     Pillow's own writer would repeat the palette in every frame and store pixels that stay, which makes files of this
     kind two to three times as large; the pixels of a frame are packed by it.
-
-    Args:
-        pictures: all of one size.
-        palette: at most 255 colours; each pixel takes the nearest.
-        times: of the pictures [hundredths of a second].
     """
     height = width = 0
     parts: list[bytes] = []

@@ -41,12 +41,7 @@ class Glb:
     """
 
     def __init__(self, name: str, *, turn: tuple[float, float, float, float]) -> None:
-        """An empty scene.
-
-        Args:
-            name: of its root.
-            turn: of the whole scene, as a quaternion (x, y, z, w).
-        """
+        """An empty scene: the name of its root, and its turn as a quaternion (x, y, z, w)."""
         self._bytes = bytearray()
         self._keys = 1
         self._morphed: list[int] = []
@@ -77,10 +72,7 @@ class Glb:
         names: Sequence[str],
         seen: Bool[np.ndarray, "frames copies"] | None = None,
     ) -> None:
-        """Put a shape that stays as it is to several places [m], in every key or in one for all.
-
-        With `seen`, each copy is there only in some of the instants that `animate` is told.
-        """
+        """Put a rigid shape to places [m], in every key or one for all; `seen` tells when each copy is there."""
         mesh = self._mesh(shape)
         for index, name in enumerate(names):
             begin = [float(value) for value in places[0, index]]
@@ -115,13 +107,7 @@ class Glb:
         return len(self._document["meshes"]) - 1
 
     def animate(self, times: Float[np.ndarray, " instants"], order: Sequence[int], *, name: str) -> None:
-        """Go from one key to the next, evenly between instants.
-
-        Args:
-            times: of the instants [s].
-            order: key of each instant.
-            name: of the animation.
-        """
+        """Go from one key to the next in their order, evenly between instants [s]."""
         source = self._array(times[:, None], bounds=True, use=None)
         samplers: list[dict[str, Any]] = []
         channels: list[dict[str, Any]] = []

@@ -59,15 +59,8 @@ def draw_hardware(
 ) -> DrawnRobot:
     """Draw cables and winches on a body whose nodes are at `nodes` [m].
 
-    Args:
-        sheet: to draw on.
-        pane: that shows the body.
-        body: as it was drawn.
-        carried: by the body.
-        nodes: of the body [m].
-        colours: of each cable; those of the winches if left out.
-        width: of a cable [pt].
-        contractions: of each winch [m], told by hands on the spools; without, there are none.
+    Cables have the colours of the winches if left out, and a width in points; contractions [m] are told by hands on the
+    spools, and without them there are none.
     """
     cables, winches = [body.cable(points) for points in carried.cables(nodes)], carried.winches(nodes)
     drawn = DrawnRobot(pane, body, cables, pane.places(winches))

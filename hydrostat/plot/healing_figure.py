@@ -34,15 +34,8 @@ def draw_healing(
     """A surface as it came, and healed, both seen by one eye to one scale.
 
     On the first view red is what is wrong: the inside, seen through holes or on triangles that are turned over, edges
-    that do not belong to two triangles that agree, and rings about the places, one where several would meet.
-
-    Args:
-        before: as it came.
-        after: healed.
-        notes: lines below the views, such as what was found.
-        places: to mark on the first view, such as parts that were removed [m].
-        title: above the picture; nothing if empty.
-        width: of the picture [inch].
+    that do not belong to two triangles that agree, and rings about the places [m], one where several would meet. Notes
+    are lines below the views; width in inches.
     """
     marked = np.zeros((0, 3)) if places is None else np.asarray(places, dtype=float).reshape(-1, 3)
     first, second = _welded(before), _welded(after)

@@ -15,13 +15,7 @@ class Labels:
     """Finds a free place for one label after another: off the body, off other labels and off things to be seen."""
 
     def __init__(self, sheet: PictureSheet, *, rings: list[Places], avoid: Places) -> None:
-        """Labels on a sheet.
-
-        Args:
-            sheet: to write on.
-            rings: the drawn body.
-            avoid: points that should not be covered.
-        """
+        """Labels on a sheet, beside the rings of the drawn body; points to avoid should not be covered."""
         self._sheet = sheet
         self._body = shapely.unary_union([shapely.Polygon(ring).buffer(0) for ring in rings[:1]]).simplify(0.5)
         self._avoid = avoid

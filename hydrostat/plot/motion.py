@@ -21,10 +21,7 @@ STEP = 0.16  # time of a step [s]
 
 
 def motion_frames(robot: Robot, poses: Iterable[Vector], *, steps: int = STEPS) -> list[Nodes]:
-    """Equilibria from rest to the contractions [m] of each pose and back, one after the other.
-
-    Each is solved, so that the robot moves as the simulation says; it starts and stops gently.
-    """
+    """Solved equilibria from rest to the contractions [m] of each pose and back in turn; it starts and stops gently."""
     simulation = Simulation(robot)
     frames: list[Nodes] = [robot.body.mesh.nodes] * STILL
     for contractions in poses:
@@ -38,13 +35,9 @@ def motion_frames(robot: Robot, poses: Iterable[Vector], *, steps: int = STEPS) 
 
 
 def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float = STEP) -> Html:
-    """The robot moving through frames for ever, as an `<svg>` element.
+    """The robot moving through frames [m] a step [s] apart for ever, as an `<svg>` with a label for who cannot see it.
 
-    Args:
-        robot: to draw.
-        frames: positions of the nodes [m], at equal times; the first is shown where nothing moves.
-        label: what it shows, for readers who cannot see it.
-        step: time between frames [s].
+    Where nothing moves the first frame is shown.
 
     Raises:
         InputError: a body in space.

@@ -36,17 +36,8 @@ def open_sheet(
     """A sheet that shows a robot, and its panes.
 
     A flat body has one pane; a body in space has a three-quarter view and, beside or below it, a view along the axis
-    that shows most.
-
-    Args:
-        robot: to draw.
-        shapes: positions of the nodes [m] that must be seen.
-        points: more points that must be seen [m].
-        title: its name, in the upper left corner.
-        subtitle: a line below it; left out with the title.
-        width: of the picture [inch].
-        bar: leave room for a colour bar.
-        ruled: with millimetres; without, one pane is all there is.
+    that shows most. All shapes and points [m] are seen. The subtitle is left out with the title; the bar is room for
+    one of colours; without millimetres (`ruled`) one pane is all there is; width in inches.
     """
     if robot.body.mesh.dim == 2:
         skin = FlatSkin.of(robot.body)
@@ -187,12 +178,8 @@ def draw_compass(sheet: PictureSheet, camera: Camera, low: Place) -> None:
 def draw_rules(sheet: PictureSheet, camera: Camera, low: Place, high: Place, origin: Place) -> None:
     """Grid lines at round millimetres behind a view along an axis, numbered on its left and lower side.
 
-    Args:
-        sheet: to draw on.
-        camera: along an axis.
-        low: lower left corner of the view on the sheet [mm].
-        high: its upper right corner [mm].
-        origin: what the camera sees at the lower left corner [mm].
+    The view goes from the corner `low` to the corner `high` of the sheet [mm]; the camera sees the origin at the first
+    [mm].
     """
     step = max(round_step(float((high - low).max())), round_step(4 * 24 * sheet.scale))
     for side in range(2):

@@ -37,12 +37,9 @@ def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
 
 
 def inline_svg(figure: Figure, *, name: str, label: str) -> str:
-    """A figure as an `<svg>` element for a page; its quiet colours and its letters follow the page.
+    """A figure as an `<svg>` element; its quiet colours and its letters follow the page.
 
-    Args:
-        figure: to draw.
-        name: unique in the page, so that inner references do not meet those of other pictures.
-        label: what it shows, for readers who cannot see it.
+    The name is unique in the page, so that inner references do not meet; the label is for who cannot see it.
     """
     import html
 

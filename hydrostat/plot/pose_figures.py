@@ -26,12 +26,8 @@ def draw_pose(
 ) -> Figure:
     """A simulated pose over the ghost of the rest shape; cables coloured by tension, winches with their contraction.
 
-    Args:
-        robot: to draw.
-        pose: its equilibrium, or an instant of a motion.
-        title: above the picture; the robot's name if left out, nothing if empty.
-        note: below the title; whether it rests under its contractions if left out.
-        width: of the picture [inch].
+    The title is the robot's name if left out, nothing if empty; the note below tells, if left out, whether it rests
+    under its contractions; width in inches.
     """
     head = shorten(robot.name) if title is None else title
     line = _rests(pose) if note is None else note
@@ -53,12 +49,8 @@ def draw_reached(
 ) -> Figure:
     """What the winches reach of a pose: targets as crosses, each marker's error as a red line with its millimetres.
 
-    Args:
-        robot: to draw.
-        reached: the pose found.
-        title: above the picture; the pose's name if left out, nothing if empty.
-        outline: the shape that a flat body should take, dashed.
-        width: of the picture [inch].
+    The title is the pose's name if left out, nothing if empty; the outline is the shape that a flat body should take,
+    dashed; width in inches.
     """
     head = _reached_head(reached) if title is None else title
     goals = {} if reached.target is None else target_places(reached.target)
@@ -95,14 +87,7 @@ def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:
 
 
 def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, width: float = WIDTH) -> Figure:
-    """The robot alone, without grid or words, when its nodes are at `nodes` [m].
-
-    Args:
-        robot: to draw.
-        nodes: positions of the nodes [m].
-        frame: points that the picture must hold [m], so that several share one frame; the body if left out.
-        width: of the picture [inch].
-    """
+    """The robot alone, without grid or words, its nodes at `nodes` [m]; the picture holds all points of `frame` [m]."""
     carried = Attachments(robot)
     beside = [*carried.cables(nodes), carried.winches(nodes)] if nodes.shape[1] == 3 else []
     shapes, points = ([nodes], beside) if frame is None else ([], [frame])

@@ -28,11 +28,7 @@ def write_report(
 ) -> Path:
     """Write the report of a design as one HTML file, whole or not at all; returns its path.
 
-    Args:
-        network: the design.
-        path: of the file.
-        title: headline; the robot's name if left out.
-        facts: more lines for the end of the page, such as options and seed, in their order.
+    The title is the robot's name if left out; facts are more lines for the end, such as options and seed.
 
     Raises:
         InputError: a network of which no pose was tried.

@@ -22,10 +22,7 @@ from hydrostat.units import counted
 def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """The robot as it is made: mesh, pins, winches, cables and markers, on a millimetre grid.
 
-    Args:
-        robot: to draw.
-        title: above the picture; the robot's name if left out, nothing if empty.
-        width: of the picture [inch].
+    The title is the robot's name if left out, nothing if empty; width in inches.
     """
     body = robot.body
     count = f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"
@@ -41,11 +38,7 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
 def draw_target(robot: Robot, pose: Pose, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """The rest shape with an arrow from each marker to its target.
 
-    Args:
-        robot: to draw.
-        pose: the targets.
-        title: above the picture; the pose's name if left out, nothing if empty.
-        width: of the picture [inch].
+    The title is the pose's name if left out, nothing if empty; width in inches.
     """
     head = f"Target: {shorten(pose.name)}" if title is None else title
     sheet, panes, bodies = _at_rest(robot, head, "how far each marker has to go", width, also=target_points(pose))
@@ -69,10 +62,7 @@ def draw_target(robot: Robot, pose: Pose, *, title: str | None = None, width: fl
 def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """Draw the winches where they sit and the cables where they run, numbered as in the tables.
 
-    Args:
-        robot: to draw.
-        title: above the picture; a count of winches and cables if left out, nothing if empty.
-        width: of the picture [inch].
+    The title counts winches and cables if left out, nothing if empty; width in inches.
     """
     count = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
     head = shorten(robot.name) if title is None else title
@@ -119,11 +109,7 @@ SMALL = 2.7  # width of such a picture [inch]
 def draw_stage(robot: Robot, *, like: Robot, frame: Spread, width: float = SMALL) -> Figure:
     """A network on the rest shape, each cable in the colour of its winch, without words.
 
-    Args:
-        robot: with the network.
-        like: the robot from whose best side all of them are seen.
-        frame: points that the picture must hold [m], see `stage_frame`.
-        width: of the picture [inch].
+    All are seen from the best side of the robot `like`, in a picture that holds the points of `stage_frame` [m].
     """
     nodes = robot.body.mesh.nodes
     sheet, (pane, *_) = open_sheet(like, [], [frame], width=width, ruled=False)

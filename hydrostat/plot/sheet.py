@@ -77,16 +77,10 @@ def new_sheet(
     bar: bool = False,
     room: float = 0.09,
 ) -> PictureSheet:
-    """An empty sheet that shows all of the points.
+    """An empty sheet that shows all of the points [mm].
 
-    Args:
-        points: what must be seen [mm].
-        title: its name, in the upper left corner.
-        subtitle: a line below it; left out with the title.
-        width: of the picture [inch].
-        ruled: with a grid and numbers in millimetres.
-        bar: leave room for a colour bar.
-        room: free border, as a share of the longest side.
+    The subtitle is left out with the title. If ruled it has a grid and numbers in millimetres; the bar is room for one
+    of colours, the room a free border as a share of the longest side; width in inches.
     """
     low, high = framed(points, room)
     left, right, bottom = (0.42, 0.12, 0.32) if ruled else (0.05, 0.05, 0.05)

@@ -35,11 +35,7 @@ class FlatSkin:
 
     @classmethod
     def of(cls, body: Body) -> Self:
-        """The skin of a flat body: its drawing where there is one, else the boundary of its mesh.
-
-        Raises:
-            InputError: a body in space.
-        """
+        """The skin of a flat body: its drawing where there is one, else its mesh's boundary (InputError: in space)."""
         if body.mesh.dim != 2:
             raise InputError("only a flat body has a skin of rings; this one is in space")
         shape = _shape(body)

@@ -28,13 +28,8 @@ CHART = 1.45  # height of a chart [inch]
 def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """The poses at the keyframes, then contraction, speed and acceleration of each winch over time.
 
-    Keyframes are upright lines, limits dashed ones, snaps red ones.
-
-    Args:
-        robot: that moves.
-        trajectory: its poses in time.
-        title: above the picture; the robot's name if left out, nothing if empty.
-        width: of the picture [inch].
+    Keyframes are upright lines, limits dashed ones, snaps red ones. The title is the robot's name if left out; width in
+    inches.
     """
     shown = [("start", 0.0, trajectory.poses[0]), *((key.name, key.time, key.pose) for key in trajectory.keys)]
     shown = _told_apart(shown)[: MOST_POSES + 1]

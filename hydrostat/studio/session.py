@@ -207,11 +207,7 @@ class Session:
         self.bell.ring(Topic.NOTE)
 
     def step(self, now: float) -> bool:
-        """Do a bit of work of the current stage; whether there is more. Called by a thread of its own.
-
-        Args:
-            now: time [s] of a clock that only runs forward.
-        """
+        """Do a bit of the stage's work; whether there is more. A thread calls it by a clock [s] that only grows."""
         self.starter.autosave.step(now)
         self._tell_unkept()
         if not self.document.is_open:

@@ -69,11 +69,7 @@ class MarkerGoal(Objective):
 
 
 def named_targets(given: object) -> Mapping[str, Point]:
-    """Places by the names of markers; those of a pose.
-
-    Raises:
-        InputError: something else, such as the name of a pose, or none at all.
-    """
+    """Places by the names of markers; those of a pose (InputError: none, or anything else such as a pose's name)."""
     if isinstance(given, Pose):
         return given.targets
     if isinstance(given, str):

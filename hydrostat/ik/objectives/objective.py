@@ -165,13 +165,7 @@ def by_name(what: str, given: object, example: str) -> Mapping[str, Any]:
 
 
 def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"] | None = None) -> Vector:
-    """A place to go for a part of a body [m].
-
-    Args:
-        what: its name.
-        given: what should be a place.
-        mesh: of the body at rest.
-        held: along which axes it counts; along all if left out.
+    """A place to go for a part of a body at rest [m], which counts along the axes that are held, or along all.
 
     Raises:
         InputError: no place, one of another dimension, not finite, or so far away that it cannot be in metres.

@@ -56,13 +56,9 @@ class Curvature:
 
 
 def _updated(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndarray) -> Square:
-    """The least change of an estimate that makes it true along a step, after it is scaled down if it is too large.
+    """The least change of an estimate, scaled down if too large, that makes it true along a step of the channels.
 
-    Args:
-        known: the estimate.
-        step: of the channels.
-        change: what it should be times the step.
-        total: change of the whole gradient.
+    The estimate times the step should be `change`; `total` is the change of the whole gradient.
     """
     along = float(step @ total)
     if not along > 0.0:
@@ -82,10 +78,7 @@ _POOR = 0.1  # Gauss-Newton is poor if it misses the fall of the objective by th
 def descend(search: InverseSearch, state: InverseState, *, weight: float | None = None) -> Descent:
     """Trust-region steps until a goal is reached or nothing is left to gain.
 
-    Args:
-        search: the problem.
-        state: where to begin.
-        weight: of the effort; then it stays, and the end is an optimum of both. Else it falls with the error.
+    A weight of the effort that is given stays, and the end is an optimum of both; else it falls with the error.
     """
     return _TrustRegionDescent(search, state, weight).run()
 
@@ -95,10 +88,6 @@ def least_effort(search: InverseSearch, state: InverseState) -> Descent:
 
     With a heavy effort the optimum is near rest. It is followed while the weight of the effort falls. Walking along the
     poses that reach the goal would be slow, as these are curved.
-
-    Args:
-        search: the problem.
-        state: where to begin.
     """
     spent = 0
     for weight in _WEIGHTS:

@@ -29,11 +29,7 @@ class InverseSearch:
         self.problem, self.solves = problem, 0
 
     def begin(self, start: SolvedPose | None) -> InverseState:
-        """The state of a pose, of rest if it is left out, within the limits.
-
-        Raises:
-            NotConvergedError: no equilibrium is found there.
-        """
+        """The state of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
         pose = start or self.problem.simulation.rest
         self.problem.simulation.check_start(pose)
         values = self.problem.bounds.channel(pose.contractions)
@@ -191,15 +187,9 @@ def try_step(
     move: Callable[[InverseState, Vector], InverseState | None],
     rules: StepRules,
 ) -> StepTried:
-    """Try a trust-region step of the linear model and judge it.
+    """Try a trust-region step of the linear model from a state, with a weight of the effort, and judge it by the rules.
 
-    Args:
-        problem: what is sought.
-        state: where the step begins.
-        step: where it leads, and its promise.
-        weight: of the effort.
-        move: finds the state at other contractions.
-        rules: when it is taken.
+    The move finds the state at other contractions, if there is one.
     """
     trial = move(state, step.values)
     if trial is None:

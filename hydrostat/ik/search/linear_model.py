@@ -96,12 +96,9 @@ class LinearModel:
     def best(self, effort: Vector, radius: float, curvature: np.ndarray | None = None) -> tuple[Vector, float]:
         """The step of the channels [m] of least residual and effort, and by how much it lowers half their squares.
 
-        Where no step keeps the limits on tension, it goes as far towards them as it can.
-
-        Args:
-            effort: residual that a tension of each cable is worth [m/N].
-            radius: largest step, as a share of each channel's range.
-            curvature: what Gauss-Newton leaves out of the Hessian, (channels, channels); nothing if left out.
+        Where no step keeps the limits on tension, it goes as far towards them as it can. The effort is the residual
+        that a tension of each cable is worth [m/N], the radius the largest step as a share of each range, the curvature
+        (channels, channels) what Gauss-Newton leaves out of the Hessian.
         """
         active = self.active
         scale = self.range[active]

@@ -103,14 +103,7 @@ class InverseProblem:
         *,
         ready: bool = False,
     ) -> None:
-        """What is sought.
-
-        Args:
-            simulation: the robot's physics.
-            terms: what should become small.
-            bounds: what the channels may do.
-            options: tolerances and limits of the search.
-            ready: keep slack cables just short of taut, so that they can join at once.
+        """State what is sought; if `ready`, slack cables are kept just short of taut, so that they can join at once.
 
         Raises:
             InputError: a robot without cables, or one whose cables have friction.

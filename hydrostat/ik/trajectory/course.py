@@ -44,12 +44,9 @@ class Course:
 
     @classmethod
     def smooth(cls, times: Vector, keys: Keys, *, passing: bool = True) -> Self:
-        """C2 and at rest at both ends; no winch goes beyond its keys, and one that turns around stops for that.
+        """C2 through keys [m] at times [s], at rest at both ends; no winch goes beyond its keys.
 
-        Args:
-            times: of the keys [s].
-            keys: contractions there [m].
-            passing: through keys without a stop where a winch goes on; else all stop at each key.
+        One that turns around stops for that; one that goes on passes its keys without a stop, unless told not to.
         """
         speeds = np.zeros_like(keys)
         if passing and len(times) > 2:

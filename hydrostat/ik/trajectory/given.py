@@ -19,15 +19,8 @@ def check_robot(simulation: Simulation) -> None:
 def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: SolvedPose) -> None:
     """Refuse a pose that inverse kinematics would not have found; its tensions are told in the report instead.
 
-    Args:
-        simulation: the robot's physics.
-        allowed: what the winches may do.
-        name: of the pose, for the message.
-        pose: a start, or a solved pose as a keyframe.
-
     Raises:
-        InputError: a pose of another robot, a contraction out of its range, or winches that should be equal and are
-            not.
+        InputError: a pose of another robot, a contraction out of its range, or equal winches that are not equal.
     """
     _check_own(simulation, name, pose)
     winches = [winch.name for winch in simulation.robot.winches]

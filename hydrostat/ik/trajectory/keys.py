@@ -130,11 +130,7 @@ class KeySearch:
     knots: int
 
     def find(self, keyframe: Keyframe, before: SolvedPose) -> Found:
-        """The pose of a keyframe, on the branch of the one before.
-
-        Raises:
-            InputError, NotConvergedError: as for `solve_ik`.
-        """
+        """The pose of a keyframe, on the branch before (InputError, NotConvergedError: as for `solve_ik`)."""
         if isinstance(keyframe.target, SolvedPose):
             knots = self._straight(tuple(keyframe.target.markers), before, keyframe.target)
             return Found(keyframe=keyframe, pose=keyframe.target, reached=None, free_error=None, knots=knots)
@@ -145,10 +141,7 @@ class KeySearch:
         return Found(keyframe=keyframe, pose=reached.pose, reached=reached, free_error=free_error, knots=knots)
 
     def _best(self, target: Pose, before: SolvedPose) -> tuple[ReachedPose, float | None]:
-        """What is found from the pose before; and the error that only a search from rest comes to, if it is less.
-
-        What a search from rest finds is taken where the branch of the pose before leads there.
-        """
+        """What is found from the pose before; and a lesser error that only a search from rest comes to, if any."""
         reached = self._solve(target, before, self.options)
         if not self.compare or reached.reason is InverseReason.REACHED:
             return reached, None

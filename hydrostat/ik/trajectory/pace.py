@@ -46,17 +46,12 @@ class Pace:
 
 
 def earliest(keys: Keys, lengths: Vector, pace: Pace, *, least: float) -> Course:
-    """The smooth course that is soon at its end: keys are passed without a stop where that saves time.
+    """The smooth course that is soon at its end: keys [m] are passed without a stop where that saves time.
 
-    Lengths and passing speeds depend on each other. From stops at all keys on, each leg is lengthened or shortened by
-    what it uses of the limits; each course on the way is then scaled as a whole, so that the limits hold exactly, and
-    the shortest is kept. So it never takes longer than with a stop at each key.
-
-    Args:
-        keys: contractions [m], a row a key.
-        lengths: of the legs [s]; NaN where free.
-        pace: the limits.
-        least: length of a free leg in which nothing moves [s].
+    Lengths [s], NaN where free, and passing speeds depend on each other. From stops at all keys on, each leg is
+    lengthened or shortened by what it uses of the limits, to no less than the least [s]; each course on the way is then
+    scaled as a whole, so that the limits hold exactly, and the shortest is kept. So it never takes longer than with
+    stops at all keys.
     """
     free = np.isnan(lengths)
     lengths = np.where(free, np.maximum(pace.rest_to_rest(keys), least), lengths)

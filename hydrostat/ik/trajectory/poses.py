@@ -34,22 +34,11 @@ def follow(
     jump: float,
     tell: Tell | None = None,
 ) -> tuple[tuple[SolvedPose, ...], tuple[Snap, ...]]:
-    """The equilibria at given contractions, each continued from the one before, and where they snap (E20).
+    """The equilibria at contractions [m] in time [s], each continued from the one before, and where they snap (E20).
 
-    A step is taken when the nodes come to rest where the predictor x + dx/da da has put them, within `jump`; else it is
-    halved. On a branch the distance falls with the square of the step, where a cable becomes taut with the step itself;
-    at a snap it stays, however small the step is.
-
-    Args:
-        simulation: the robot's physics.
-        start: the pose to begin from; the first pose is at the first contractions.
-        times: of the samples [s].
-        contractions: at these times [m].
-        jump: the largest distance from the prediction [m].
-        tell: is told how far the work is.
-
-    Returns:
-        The poses, of which only the last one keeps its factorised Hessian; and the snaps.
+    A step is taken when the nodes come to rest where the predictor x + dx/da da has put them, within `jump` [m]; else
+    it is halved. On a branch the distance falls with the square of the step, where a cable becomes taut with the step
+    itself; at a snap it stays, however small the step is. Only the last pose keeps its factorised Hessian.
 
     Raises:
         NotConvergedError: no equilibrium is found at some time.

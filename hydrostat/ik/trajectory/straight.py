@@ -28,14 +28,7 @@ class StraightCourse:
 
     @classmethod
     def earliest(cls, knots: Sequence[Keys], lengths: Vector, pace: Pace, *, least: float) -> Self:
-        """The earliest one within limits.
-
-        Args:
-            knots: contractions of each leg [m], both ends included.
-            lengths: of the legs [s]; NaN where free.
-            pace: the limits.
-            least: length of a leg in which nothing moves [s].
-        """
+        """The earliest one through the knots of each leg [m], of given lengths [s] (NaN where free), within limits."""
         legs = tuple(_leg(keys) for keys in knots)
         soonest = np.array([float(pace.share(*_peaks(leg))[0]) for leg in legs])
         # Between the places that are looked at a leg may be faster by a hair.

@@ -34,11 +34,7 @@ STEPS = {FilmKind.GIF: 0.05, FilmKind.MP4: 0.04, FilmKind.GLB: 0.05}  # time of 
 
 
 def check_film(timeline: Timeline, kind: FilmKind) -> None:
-    """Refuse, before long work begins, what cannot be filmed.
-
-    Raises:
-        InputError: there are no keyframes, it is too long, or an MP4 is asked for and there is no ffmpeg.
-    """
+    """Refuse what cannot be filmed before work begins (InputError: no keyframes, too long, or MP4 without ffmpeg)."""
     if not timeline.keys:
         raise InputError("there are no keyframes to film; turn the knobs and press Add")
     if timeline.seconds > LONGEST_FILM:

@@ -117,11 +117,7 @@ def _rerun(cables: Iterable[Cable], points: Iterable[Iterable[Point]]) -> tuple[
 
 
 def remove(robot: Robot, keys: Collection[str]) -> Robot:
-    """The same robot without parts; the cables of a winch go with it, a marker leaves its poses.
-
-    Raises:
-        InputError: no such part, or one that the robot cannot do without.
-    """
+    """The same robot without parts, a winch's cables, a marker's targets (InputError: no such part, or needed)."""
     gone: dict[Kind, set[int]] = {kind: set() for kind in Kind}
     vias: dict[int, set[int]] = {}
     for key in keys:

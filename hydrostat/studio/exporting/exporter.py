@@ -98,14 +98,7 @@ class Exporter(Stage):
         self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
 
     def make_kit(self, *, force: bool = False) -> None:
-        """Make the kit, in a process of its own.
-
-        Args:
-            force: even if the robot cannot be built well.
-
-        Raises:
-            InputError: the robot has no cables, or other work is in progress.
-        """
+        """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
         if not self._document.robot.cables:
             raise InputError("a kit needs cables; press Design, or place winches and cables by hand")
         options = replace(self.options, force=True) if force else self.options

@@ -36,14 +36,7 @@ class CableMover(Mover):
     def __init__(
         self, simulation: Simulation, *, tension: float, start: SolvedPose | None = None, notes: tuple[str, ...] = ()
     ) -> None:
-        """Begin in a pose.
-
-        Args:
-            simulation: physics of the robot.
-            tension: the most that a cable bears [N].
-            start: where to begin; at rest if left out.
-            notes: what to mind all the time.
-        """
+        """Begin in a pose, or at rest; cables bear at most a tension [N], notes are to be minded all the time."""
         self.robot, self.tension, self._notes = simulation.robot, tension, notes
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
         options = replace(simulation.options, tolerance=ROUGH)

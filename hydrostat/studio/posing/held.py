@@ -105,10 +105,7 @@ class Now:
         return name if found else ""
 
     def adapted(self, robot: Robot) -> "Now":
-        """The same for a robot of the same nodes, whose markers, cables and winches may be others.
-
-        Markers that are gone are held no more, but what was held as a plain point stays held.
-        """
+        """The same for a robot of the same nodes; what was held at a lost marker is let go, a plain point is not."""
         names, places = renamed_markers(self.robot, robot), {marker.name: marker.at for marker in robot.markers}
         held: dict[str, Held] = {}
         for old, point in self.wish.held.items():

@@ -35,15 +35,7 @@ class EditNumber:
     def __init__(
         self, label: str, unit: str, take: Callable[[float], Any], *, step: float = 1.0, mark: str = ""
     ) -> None:
-        """An empty box.
-
-        Args:
-            label: name of the number.
-            unit: shown behind it.
-            take: called with the new number; what it returns is awaited if it can be.
-            step: of the arrow keys.
-            mark: for tests.
-        """
+        """An empty box; `take` is called with the new number, what it returns is awaited, the mark is for tests."""
         self._shown: float | None = None
         self._take = take
         self.box = ui.number(label, suffix=unit, step=step, format="%.6g").props("dense outlined hide-bottom-space")
