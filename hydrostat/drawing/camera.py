@@ -17,15 +17,10 @@ FROM_ABOVE = 0.97  # worth of a view from above beside one from the side that sh
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """An eye far away; what is up stands upright in every picture, unless seen from above.
+    """An eye far away; what is up stands upright in every picture, unless seen from above."""
 
-    Attributes:
-        axes: unit vectors to the right, up and towards the eye, (3, 3), one row each.
-        up: unit vector of what is up for the body, where the sky is.
-    """
-
-    axes: Float[np.ndarray, "3 3"]
-    up: Float[np.ndarray, " 3"] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    axes: Float[np.ndarray, "3 3"]  # unit vectors to the right, up and towards the eye, (3, 3), one row each
+    up: Float[np.ndarray, " 3"] = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))  # where the sky is
 
     @classmethod
     def towards(cls, eye: Float[np.ndarray, " 3"], *, up: Float[np.ndarray, " 3"] | None = None) -> Self:

@@ -20,17 +20,11 @@ FONT = "Libertinus Serif"  # comes with typst, so that a sheet is the same on ev
 
 @dataclass(frozen=True)
 class CanvasFrame:
-    """Scale and place of a drawing on a canvas.
+    """Scale and place of a drawing on a canvas."""
 
-    Attributes:
-        scale: millimetres of paper for one of the thing.
-        left: on the canvas of what is at 0 [mm].
-        base: on the canvas, downwards, of what is at height 0 [mm].
-    """
-
-    scale: float
-    left: float
-    base: float
+    scale: float  # millimetres of paper for one of the thing
+    left: float  # on the canvas of what is at 0 [mm]
+    base: float  # on the canvas, downwards, of what is at height 0 [mm]
 
     @classmethod
     def fit(cls, box: Float[np.ndarray, "2 2"], room: Box) -> Self:
@@ -52,15 +46,10 @@ class CanvasFrame:
 
 @dataclass
 class Canvas:
-    """A picture that is drawn from back to front.
+    """A picture that is drawn from back to front."""
 
-    Attributes:
-        width: [mm].
-        height: [mm].
-    """
-
-    width: float
-    height: float
+    width: float  # [mm]
+    height: float  # [mm]
     _parts: list[Html] = field(default_factory=list)
 
     @property

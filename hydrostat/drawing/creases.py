@@ -15,23 +15,14 @@ Segments = Float[np.ndarray, "segments 2 3"]  # straight pieces of lines by both
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Facets:
-    """Triangles with a normal at each corner: one for both sides of an edge that is not sharp.
+    """Triangles with a normal at each corner: one for both sides of an edge that is not sharp."""
 
-    Attributes:
-        vertices: [mm], none twice.
-        triangles: seen from outside they turn counter-clockwise; none without area.
-        normals: of the triangles, unit vectors.
-        corners: unit normals at the corners of each triangle, (triangles, 3, 3).
-        sharpest: cosine of the angle between two normals from which an edge is sharp.
-        source: which triangles of the mesh they are.
-    """
-
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
-    normals: Float[np.ndarray, "triangles 3"]
-    corners: Float[np.ndarray, "triangles 3 3"]
-    sharpest: float
-    source: Int[np.ndarray, " triangles"]
+    vertices: Float[np.ndarray, "vertices 3"]  # [mm], none twice
+    triangles: Int[np.ndarray, "triangles 3"]  # seen from outside they turn counter-clockwise; none without area
+    normals: Float[np.ndarray, "triangles 3"]  # of the triangles, unit vectors
+    corners: Float[np.ndarray, "triangles 3 3"]  # unit normals at the corners of each triangle, (triangles, 3, 3)
+    sharpest: float  # cosine of the angle between two normals from which an edge is sharp
+    source: Int[np.ndarray, " triangles"]  # which triangles of the mesh they are
 
     @classmethod
     def of(

@@ -17,21 +17,13 @@ _RIM = 4  # pixels of nothing round the picture
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DepthBuffer:
-    """A picture of depths (z-buffer).
+    """A picture of depths (z-buffer)."""
 
-    Attributes:
-        low: place of the middle of pixel [0, 0] as seen: to the right, up [mm].
-        pixel: side of a pixel [mm].
-        depth: towards the eye [mm], one row for each height, upwards; -inf where nothing is.
-        shown: what is known at the corners of the triangles, where it is seen; 0 where nothing is.
-        owner: index of the triangle that is seen; -1 where nothing is.
-    """
-
-    low: Float[np.ndarray, " 2"]
-    pixel: float
-    depth: Float[np.ndarray, "rows columns"]
-    shown: Float[np.ndarray, "rows columns values"]
-    owner: Int[np.ndarray, "rows columns"]
+    low: Float[np.ndarray, " 2"]  # place of the middle of pixel [0, 0] as seen: to the right, up [mm]
+    pixel: float  # side of a pixel [mm]
+    depth: Float[np.ndarray, "rows columns"]  # towards the eye [mm], rows upwards; -inf where nothing is
+    shown: Float[np.ndarray, "rows columns values"]  # what is known at corners, as seen here; 0 where nothing is
+    owner: Int[np.ndarray, "rows columns"]  # index of the triangle that is seen; -1 where nothing is
 
     @classmethod
     def of(

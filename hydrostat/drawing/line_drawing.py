@@ -22,40 +22,24 @@ _SMOOTH = 0.6  # how far rings may pass beside what they enclose [pixels]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnSolid:
-    """One solid of a drawing.
+    """One solid of a drawing."""
 
-    Attributes:
-        vertices: [mm].
-        triangles: seen from outside they turn counter-clockwise.
-        sharp: edges are drawn where the sides turn by more than this [degrees].
-    """
-
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
-    sharp: float = 30.0
+    vertices: Float[np.ndarray, "vertices 3"]  # [mm]
+    triangles: Int[np.ndarray, "triangles 3"]  # seen from outside they turn counter-clockwise
+    sharp: float = 30.0  # edges are drawn where the sides turn by more than this [degrees]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LineDrawing:
-    """Lines and tones as they are seen, in true size [mm].
+    """Lines and tones as they are seen, in true size [mm]."""
 
-    Attributes:
-        camera: from where.
-        outlines: lines before something deeper, or before nothing: to be drawn thick.
-        lines: what else is seen, to be drawn thin.
-        tones: how bright, from 0 for black to 1, and the rings round it by the even-odd rule; later ones lie on top.
-        buffer: of depths, from which it was drawn.
-        solid_of: index of the solid of each triangle of the buffer.
-        source: its index in that solid.
-    """
-
-    camera: Camera
-    outlines: tuple[Polyline, ...]
-    lines: tuple[Polyline, ...]
-    tones: tuple[tuple[float, tuple[Polyline, ...]], ...]
-    buffer: DepthBuffer = field(repr=False)
-    solid_of: Int[np.ndarray, " triangles"] = field(repr=False)
-    source: Int[np.ndarray, " triangles"] = field(repr=False)
+    camera: Camera  # from where
+    outlines: tuple[Polyline, ...]  # lines before something deeper, or before nothing: to be drawn thick
+    lines: tuple[Polyline, ...]  # what else is seen, to be drawn thin
+    tones: tuple[tuple[float, tuple[Polyline, ...]], ...]  # 0 (black) to 1, rings by the even-odd rule
+    buffer: DepthBuffer = field(repr=False)  # of depths, from which it was drawn
+    solid_of: Int[np.ndarray, " triangles"] = field(repr=False)  # index of the solid of each triangle of the buffer
+    source: Int[np.ndarray, " triangles"] = field(repr=False)  # its index in that solid
 
     @cached_property
     def box(self) -> Float[np.ndarray, "2 2"]:

@@ -20,15 +20,10 @@ RAMP = ((0.0, SHADE), (0.30, SEAM), (0.52, mix(SEAM, FELT, 0.62)), (0.74, FELT),
 
 @dataclass(frozen=True, eq=False)
 class Render:
-    """An image of a body.
+    """An image of a body."""
 
-    Attributes:
-        colours: red, green, blue and cover of each pixel, the lowest row first, (height, width, 4), 0 to 1.
-        buffer: how near to the eye the surface is at each pixel.
-    """
-
-    colours: Float[np.ndarray, "height width 4"]
-    buffer: DepthBuffer
+    colours: Float[np.ndarray, "height width 4"]  # red, green, blue, cover, 0 to 1; the lowest row first
+    buffer: DepthBuffer  # how near to the eye the surface is at each pixel
 
     @property
     def extent(self) -> tuple[float, float, float, float]:

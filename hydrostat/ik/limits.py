@@ -34,27 +34,16 @@ class Limits:
 
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """Limits on one robot. A channel is a winch, or a group of winches of one contraction.
+    """Limits on one robot. A channel is a winch, or a group of winches of one contraction."""
 
-    Attributes:
-        low: least contraction of each channel [m].
-        high: largest contraction of each channel [m].
-        span: from the one to the other, whatever the rate allows [m]; steps are measured by it.
-        tension: the most that each cable bears [N]; infinite without a limit.
-        reach: how far each channel may be from where it starts [m]; infinite without a limit.
-        channels: which channel each winch follows.
-        spread: 1 where a winch follows a channel.
-        cables: which channel each cable follows.
-    """
-
-    low: Vector
-    high: Vector
-    span: Vector
-    tension: Vector
-    reach: Vector
-    channels: np.ndarray
-    spread: Float[np.ndarray, "winches channels"]
-    cables: np.ndarray
+    low: Vector  # least contraction of each channel [m]
+    high: Vector  # largest contraction of each channel [m]
+    span: Vector  # from the one to the other, whatever the rate allows [m]; steps are measured by it
+    tension: Vector  # the most that each cable bears [N]; infinite without a limit
+    reach: Vector  # how far each channel may be from where it starts [m]; infinite without a limit
+    channels: np.ndarray  # which channel each winch follows
+    spread: Float[np.ndarray, "winches channels"]  # 1 where a winch follows a channel
+    cables: np.ndarray  # which channel each cable follows
 
     def channel(self, contractions: Vector) -> Vector:
         """Contractions of the channels, from those of the winches: the mean of a group, within the limits."""

@@ -15,31 +15,19 @@ LEVELS = 8  # steps from what is just covered to what is deep inside
 
 @dataclass(frozen=True, eq=False)
 class DrawnCable:
-    """A cable on a picture.
+    """A cable on a picture."""
 
-    Attributes:
-        points: its points [mm].
-        parts: all of it in pieces [mm], each with how far it has faded: 0 in front of the body, towards 1 behind it.
-        fades: how far each of its points has faded.
-    """
-
-    points: Places
-    parts: list[tuple[Places, float]]
-    fades: Vector
+    points: Places  # its points [mm]
+    parts: list[tuple[Places, float]]  # pieces [mm], faded from 0 in front of the body towards 1 behind it
+    fades: Vector  # how far each of its points has faded
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnBody:
-    """The drawn body.
+    """The drawn body."""
 
-    Attributes:
-        rings: its silhouette [mm], the outer ring first.
-        sight: camera, shift on the sheet [mm], image and shortest side of the body [mm]; None for a flat body, which
-            hides nothing.
-    """
-
-    rings: list[Places]
-    sight: tuple[Camera, Place, Render, float] | None = None
+    rings: list[Places]  # its silhouette [mm], the outer ring first
+    sight: tuple[Camera, Place, Render, float] | None = None  # with its shift and the shortest side [mm]; None: flat
 
     def fades(self, points: Points) -> Vector:
         """How far things at points [m] fade behind the body: 0 in front of it, towards 1 behind it."""

@@ -19,19 +19,12 @@ SHARES = np.linspace(0.3, 0.9, 13)  # shares of a cable's length where its numbe
 
 @dataclass(frozen=True, eq=False)
 class DrawnRobot:
-    """A robot on one pane.
+    """A robot on one pane."""
 
-    Attributes:
-        pane: that shows it.
-        body: as it is drawn.
-        cables: as they are drawn.
-        winches: where they are [mm].
-    """
-
-    pane: Pane
-    body: DrawnBody
-    cables: list[DrawnCable]
-    winches: Places
+    pane: Pane  # that shows it
+    body: DrawnBody  # as it is drawn
+    cables: list[DrawnCable]  # as they are drawn
+    winches: Places  # where they are [mm]
 
     @property
     def runs(self) -> list[Places]:

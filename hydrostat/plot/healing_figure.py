@@ -60,21 +60,13 @@ def draw_healing(
 
 @dataclass(frozen=True, eq=False)
 class _PairLayout:
-    """Places of views on a sheet.
+    """Places of views on a sheet."""
 
-    Attributes:
-        corners: opposite corners of the sheet [mm].
-        shifts: what is added to what the camera sees, for each view [mm].
-        tops: middle of the upper side of each view [mm].
-        foot: lower left corner of both views [mm].
-        point: millimetres that a point (1/72 inch) shows.
-    """
-
-    corners: Float[np.ndarray, "2 2"]
-    shifts: tuple[Place, Place]
-    tops: tuple[Place, Place]
-    foot: Place
-    point: float
+    corners: Float[np.ndarray, "2 2"]  # opposite corners of the sheet [mm]
+    shifts: tuple[Place, Place]  # what is added to what the camera sees, for each view [mm]
+    tops: tuple[Place, Place]  # middle of the upper side of each view [mm]
+    foot: Place  # lower left corner of both views [mm]
+    point: float  # millimetres that a point (1/72 inch) shows
 
 
 def _lay_out(view: Float[np.ndarray, "_ 2"], lines: Sequence[str], width: float) -> _PairLayout:

@@ -92,17 +92,11 @@ def way_up(robot: Robot) -> Vector:
 
 @dataclass(frozen=True, eq=False)
 class _ViewLayout:
-    """Places of views on a sheet.
+    """Places of views on a sheet."""
 
-    Attributes:
-        whole: size of the sheet [mm].
-        lows: lower left corner of each view [mm].
-        corner: lower left corner of what belongs to the first view, its border too [mm].
-    """
-
-    whole: Place
-    lows: list[Place]
-    corner: Place
+    whole: Place  # size of the sheet [mm]
+    lows: list[Place]  # lower left corner of each view [mm]
+    corner: Place  # lower left corner of what belongs to the first view, its border too [mm]
 
 
 def _lay_out(sides: Sequence[Place], paper: float) -> _ViewLayout:

@@ -22,13 +22,9 @@ MOST_PIXELS = 1.0e6  # pixels of a larger image grow, so that no image takes lon
 
 @dataclass(frozen=True, eq=False)
 class Pane(ABC):
-    """A view of a robot on a sheet.
+    """A view of a robot on a sheet."""
 
-    Attributes:
-        robot: to draw.
-    """
-
-    robot: Robot
+    robot: Robot  # to draw
 
     @abstractmethod
     def places(self, points: Points) -> Places:
@@ -56,13 +52,9 @@ class Pane(ABC):
 
 @dataclass(frozen=True, eq=False)
 class FlatPane(Pane):
-    """A flat body of felt with a stitched seam.
+    """A flat body of felt with a stitched seam."""
 
-    Attributes:
-        skin: its boundary.
-    """
-
-    skin: FlatSkin
+    skin: FlatSkin  # its boundary
 
     def places(self, points: Points) -> Places:
         return MILLIMETRES * points
@@ -91,17 +83,11 @@ class FlatPane(Pane):
 
 @dataclass(frozen=True, eq=False)
 class SpacePane(Pane):
-    """A body in space.
+    """A body in space."""
 
-    Attributes:
-        camera: that sees it.
-        shift: what is added to its places on the sheet [mm].
-        pixel: side of a pixel of the image of the body [mm]; by the size of the picture if left out.
-    """
-
-    camera: Camera
-    shift: Place
-    pixel: float | None = None
+    camera: Camera  # that sees it
+    shift: Place  # what is added to its places on the sheet [mm]
+    pixel: float | None = None  # side of a pixel of the image of the body [mm]; by the size of the picture if left out
 
     def places(self, points: Points) -> Places:
         return self.camera.see(MILLIMETRES * points)[:, :2] + self.shift

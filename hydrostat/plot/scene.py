@@ -64,19 +64,12 @@ def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: f
 
 @dataclass(frozen=True, eq=False)
 class _Film:
-    """Frames without those that repeat another.
+    """Frames without those that repeat another."""
 
-    Attributes:
-        robot: that moves.
-        keys: frames that differ.
-        order: the key of every frame, -1 where it is between two.
-        nodes: positions of the nodes in every key [m].
-    """
-
-    robot: Robot
-    keys: list[Frame]
-    order: list[int]
-    nodes: Float[np.ndarray, "keys nodes dim"]
+    robot: Robot  # that moves
+    keys: list[Frame]  # frames that differ
+    order: list[int]  # the key of every frame, -1 where it is between two
+    nodes: Float[np.ndarray, "keys nodes dim"]  # positions of the nodes in every key [m]
 
     @classmethod
     def of(cls, robot: Robot, frames: Sequence[Frame]) -> Self:

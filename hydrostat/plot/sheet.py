@@ -24,23 +24,14 @@ TALLEST = 1.15  # greatest height of a picture, as a multiple of its width
 
 @dataclass(frozen=True, eq=False)
 class PictureSheet:
-    """A picture to draw on, in millimetres, all sides to the same scale.
+    """A picture to draw on, in millimetres, all sides to the same scale."""
 
-    Attributes:
-        figure: the whole picture.
-        axes: where the body is drawn.
-        low: lower left corner of the axes [mm].
-        high: upper right corner [mm].
-        scale: millimetres of the body that one point (1/72 inch) on the picture shows.
-        kept: boxes where no label may lie: left, lower, right and upper end [mm].
-    """
-
-    figure: Figure
-    axes: Axes
-    low: np.ndarray
-    high: np.ndarray
-    scale: float
-    kept: tuple[tuple[float, float, float, float], ...] = ()
+    figure: Figure  # the whole picture
+    axes: Axes  # where the body is drawn
+    low: np.ndarray  # lower left corner of the axes [mm]
+    high: np.ndarray  # upper right corner [mm]
+    scale: float  # millimetres of the body that one point (1/72 inch) on the picture shows
+    kept: tuple[tuple[float, float, float, float], ...] = ()  # boxes without labels: left, lower, right, upper [mm]
 
     def curve(self, points: Places, **style: object) -> None:
         """A line through points [mm]; rows of NaN break it."""

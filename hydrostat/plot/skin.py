@@ -21,17 +21,11 @@ RING_POINTS = 320  # points on a ring as long as the body's whole boundary
 
 @dataclass(frozen=True, eq=False)
 class FlatSkin:
-    """Rings of points on and inside the boundary of a body.
+    """Rings of points on and inside the boundary of a body."""
 
-    Attributes:
-        anchors: all points of all rings.
-        rings: the rings of the boundary, as slices of the anchors; the outer ring first.
-        stitches: the rings of the seam, a little inside.
-    """
-
-    anchors: Anchors
-    rings: tuple[slice, ...]
-    stitches: tuple[slice, ...]
+    anchors: Anchors  # all points of all rings
+    rings: tuple[slice, ...]  # the rings of the boundary, as slices of the anchors; the outer ring first
+    stitches: tuple[slice, ...]  # the rings of the seam, a little inside
 
     @classmethod
     def of(cls, body: Body) -> Self:

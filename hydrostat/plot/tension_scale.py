@@ -15,13 +15,9 @@ LEVELS = 16  # lines are drawn in so many steps of tension; the eye tells no mor
 
 @dataclass(frozen=True)
 class TensionScale:
-    """Colours from no tension to the most.
+    """Colours from no tension to the most."""
 
-    Attributes:
-        most: tension at the dark end [N].
-    """
-
-    most: float
+    most: float  # tension at the dark end [N]
 
     @classmethod
     def of(cls, tensions: Vector) -> Self:

@@ -19,19 +19,12 @@ KEPT = 2  # so many states before, and after, keep the physics that were made fo
 
 @dataclass(eq=False)
 class Change:
-    """A state of the work, with what led to it.
+    """A state of the work, with what led to it."""
 
-    Attributes:
-        label: what was done, such as "move marker tip".
-        work: after that.
-        merge: changes in a row with the same word are one, such as those of one drag; "": a change of its own.
-        simulation: physics of the robot as it was then; None: not made yet, or forgotten.
-    """
-
-    label: str
-    work: Work
-    merge: str = ""
-    simulation: Simulation | None = None
+    label: str  # what was done, such as "move marker tip"
+    work: Work  # after that
+    merge: str = ""  # changes in a row with the same word are one, such as those of one drag; "": a change of its own
+    simulation: Simulation | None = None  # physics of the robot as it was then; None: not made yet, or forgotten
 
 
 class Document:

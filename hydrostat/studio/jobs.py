@@ -20,36 +20,22 @@ PATIENCE = 5.0  # a process that has told what came of its work is given so long
 
 @dataclass(frozen=True, kw_only=True)
 class JobState:
-    """State of the work: how far it is.
+    """State of the work: how far it is."""
 
-    Attributes:
-        title: such as "Designing cables".
-        stage: what is done just now.
-        done: how much of it.
-        total: of how much; 0: not known.
-        running: whether it goes on.
-        stopping: whether it was asked to stop.
-        error: why it failed; "" if it did not.
-    """
-
-    title: str
-    stage: str = "starting"
-    done: int = 0
-    total: int = 0
-    running: bool = True
-    stopping: bool = False
-    error: str = ""
+    title: str  # such as "Designing cables"
+    stage: str = "starting"  # what is done just now
+    done: int = 0  # how much of it
+    total: int = 0  # of how much; 0: not known
+    running: bool = True  # whether it goes on
+    stopping: bool = False  # whether it was asked to stop
+    error: str = ""  # why it failed; "" if it did not
 
 
 class Jobs:
-    """One long work at a time.
-
-    Attributes:
-        state: of the work that runs or ran last; None before the first.
-    """
+    """One long work at a time."""
 
     def __init__(self, bell: Bell) -> None:
-        self.state: JobState | None = None
+        self.state: JobState | None = None  # of the work that runs or ran last; None before the first
         self._bell = bell
         self._lock = Lock()
         self._worker: _Worker | None = None
@@ -194,17 +180,11 @@ class Jobs:
 
 @dataclass(eq=False)
 class _Worker:
-    """A process and the pipe to it; it ends when the pipe is closed on this side, so it never outlives the studio.
+    """A process and the pipe to it; it ends when the pipe is closed on this side, so it never outlives the studio."""
 
-    Attributes:
-        process: that works.
-        pipe: to it.
-        begun: whether it was handed its work.
-    """
-
-    process: BaseProcess
-    pipe: Connection
-    begun: bool = field(default=False)
+    process: BaseProcess  # that works
+    pipe: Connection  # to it
+    begun: bool = field(default=False)  # whether it was handed its work
 
     @classmethod
     def started(cls) -> "_Worker":

@@ -38,17 +38,11 @@ class Tone(StrEnum):
 
 @dataclass(frozen=True)
 class Note:
-    """A line for the person.
+    """A line for the person."""
 
-    Attributes:
-        number: counts the notes.
-        text: of it.
-        tone: good news, plain or bad.
-    """
-
-    number: int
-    text: str
-    tone: Tone
+    number: int  # counts the notes
+    text: str  # of it
+    tone: Tone  # good news, plain or bad
 
 
 class Session:
@@ -61,7 +55,7 @@ class Session:
         bell: rings when something has changed.
         document: the robot, with undo.
         jobs: long work.
-        starter: the stage where work begins; as are `editor`, `poser`, `designer`, `driver` and `exporter`.
+        starter: the stages, as are those below.
         stage: that is shown.
         colouring: of the body.
         notes: the last ones, for the person.

@@ -22,19 +22,12 @@ class StageName(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Hit:
-    """What is under the pointer.
+    """What is under the pointer."""
 
-    Attributes:
-        key: of a thing, such as "marker:tip"; "body" for the body, "" for nothing.
-        rest: the place of the body under the pointer, in the rest shape [m]; None beside the body.
-        world: where the pointer is [m]; in space on the thing that was hit, or in a plane through what is dragged.
-        shift: whether the shift key is down.
-    """
-
-    key: str = ""
-    rest: Point | None = None
-    world: Point
-    shift: bool = False
+    key: str = ""  # of a thing, such as "marker:tip"; "body" for the body, "" for nothing
+    rest: Point | None = None  # the place of the body under the pointer, in the rest shape [m]; None beside the body
+    world: Point  # where the pointer is [m]; in space on the thing that was hit, or in a plane through what is dragged
+    shift: bool = False  # whether the shift key is down
 
 
 class Stage(ABC):

@@ -25,19 +25,13 @@ LARGEST = 20_000_000  # the file may have this many bytes
 
 
 class StudioFile(BaseModel):
-    """The whole file; what it does not know is an error, and so is a number that is none.
-
-    Attributes:
-        format: of the file.
-        timeline: keyframes.
-        wishes: for a design.
-    """
+    """The whole file; what it does not know is an error, and so is a number that is none."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
-    format: Literal[1] = 1
-    timeline: Timeline
-    wishes: Wishes
+    format: Literal[1] = 1  # of the file
+    timeline: Timeline  # keyframes
+    wishes: Wishes  # for a design
 
 
 def write_studio_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:

@@ -144,29 +144,18 @@ EXCESS = 1e-6  # a tension may exceed its limit by this share
 
 @dataclass(frozen=True, kw_only=True)
 class StepRules:
-    """When a trust-region step is taken.
+    """When a trust-region step is taken."""
 
-    Attributes:
-        mends: a step that mends a tension too large must bring down what exceeds the limit at least so far, as a share.
-        far: share of a tension's limit by which a step may lead beyond it, for the next one to mend.
-    """
-
-    mends: float
-    far: float
+    mends: float  # a step that mends a tension must bring what exceeds its limit down to this share
+    far: float  # share of a tension's limit by which a step may lead beyond it, for the next one to mend
 
 
 class StepTried(NamedTuple):
-    """Where a step led.
+    """Where a step led."""
 
-    Attributes:
-        trial: the state there; None where no equilibrium was found.
-        ratio: what it gained, as a share of what it promised; minus infinity where nothing is known.
-        accepted: whether it is better than before by the rules.
-    """
-
-    trial: InverseState | None
-    ratio: float
-    accepted: bool
+    trial: InverseState | None  # the state there; None where no equilibrium was found
+    ratio: float  # what it gained, as a share of what it promised; minus infinity where nothing is known
+    accepted: bool  # whether it is better than before by the rules
 
 
 def ends(problem: InverseProblem, state: InverseState, step: ModelStep, objective: float, radius: float) -> bool:
@@ -203,19 +192,12 @@ def try_step(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Descent:
-    """Where a descent ended.
+    """Where a descent ended."""
 
-    Attributes:
-        state: an equilibrium, the best within the limits.
-        reason: why.
-        iterations: steps tried.
-        weight: of the effort at the end.
-    """
-
-    state: InverseState
-    reason: InverseReason
-    iterations: int
-    weight: float
+    state: InverseState  # an equilibrium, the best within the limits
+    reason: InverseReason  # why
+    iterations: int  # steps tried
+    weight: float  # of the effort at the end
 
     @property
     def allowed(self) -> bool:

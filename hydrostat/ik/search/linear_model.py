@@ -16,19 +16,12 @@ from hydrostat.simulation import Simulation
 
 @dataclass(frozen=True, eq=False)
 class Channels:
-    """Where the contractions of a model begin.
+    """Where the contractions of a model begin."""
 
-    Attributes:
-        gaps: what a slack channel takes in, without any effect, before its first cable is taut [m].
-        beyond: what a channel whose tension falls to 0 to first order lets out further, to be slack indeed [m].
-        first: that cable, of each channel; where it pulls already, the one that the most letting out leaves taut.
-        active: whether it has a cable that can become taut within the limits.
-    """
-
-    gaps: Vector
-    beyond: Vector
-    first: np.ndarray
-    active: np.ndarray
+    gaps: Vector  # what a slack channel takes in, without any effect, before its first cable is taut [m]
+    beyond: Vector  # what a channel whose tension falls to 0 to first order lets out further, to be slack indeed [m]
+    first: np.ndarray  # that cable, by channel; where it pulls already, the one that the most letting out leaves taut
+    active: np.ndarray  # whether it has a cable that can become taut within the limits
 
 
 def channels(cables: CableEnergy, posture: Posture, values: Vector, bounds: Bounds) -> Channels:

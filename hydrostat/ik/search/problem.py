@@ -53,25 +53,15 @@ class InverseOptions:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class InverseState:
-    """Where a search is.
+    """Where a search is."""
 
-    Attributes:
-        values: contraction of each channel [m].
-        result: nodes near equilibrium, and the Hessian there.
-        posture: where these nodes come to rest, to first order where they do not rest yet.
-        residual: of all terms there [m].
-        errors: what is left of each goal [m].
-        excess: by how much the largest tension exceeds its limit, as a share of it.
-        sharp: whether the nodes rest.
-    """
-
-    values: Vector
-    result: NewtonResult
-    posture: Posture
-    residual: Rows
-    errors: Mapping[str, float]
-    excess: float
-    sharp: bool
+    values: Vector  # contraction of each channel [m]
+    result: NewtonResult  # nodes near equilibrium, and the Hessian there
+    posture: Posture  # where these nodes come to rest, to first order where they do not rest yet
+    residual: Rows  # of all terms there [m]
+    errors: Mapping[str, float]  # what is left of each goal [m]
+    excess: float  # by how much the largest tension exceeds its limit, as a share of it
+    sharp: bool  # whether the nodes rest
 
     @property
     def error(self) -> float:
@@ -88,11 +78,7 @@ class ModelStep(NamedTuple):
 
 
 class InverseProblem:
-    """One problem of inverse kinematics: a robot, terms, limits. States are seen, linearised and judged here.
-
-    Attributes:
-        reached: error [m] at which a goal counts as reached.
-    """
+    """One problem of inverse kinematics: a robot, terms, limits. States are seen, linearised and judged here."""
 
     def __init__(
         self,
@@ -127,7 +113,7 @@ class InverseProblem:
             )
         self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
         size = robot.body.mesh.size
-        self.reached = options.tolerance * size
+        self.reached = options.tolerance * size  # error [m] at which a goal counts as reached
         self._worth = np.full(len(robot.cables), size / _full_tension(simulation))
         self._size = size
         self._ready = ready

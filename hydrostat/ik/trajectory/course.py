@@ -23,18 +23,12 @@ class Course:
 
     It is C2 where the speeds at the end of a leg are those at the beginning of the next, monotone where p and q lie
     between 0 and 2 D, at rest at both ends the polynomial of least jerk (Flash 1985), and a line where p = q = D.
-
-    Attributes:
-        times: of the keys, rising from 0 [s].
-        keys: contractions there [m].
-        begins: speeds at the beginning of each leg [m/s].
-        ends: speeds at the end of each leg [m/s].
     """
 
-    times: Vector
-    keys: Keys
-    begins: Peaks
-    ends: Peaks
+    times: Vector  # of the keys, rising from 0 [s]
+    keys: Keys  # contractions there [m]
+    begins: Peaks  # speeds at the beginning of each leg [m/s]
+    ends: Peaks  # speeds at the end of each leg [m/s]
 
     @classmethod
     def linear(cls, times: Vector, keys: Keys) -> Self:

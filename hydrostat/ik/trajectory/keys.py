@@ -45,21 +45,13 @@ Key = Keyframe | Targets | SolvedPose | tuple[float | None, Targets | SolvedPose
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Found:
-    """A keyframe with its contractions.
+    """A keyframe with its contractions."""
 
-    Attributes:
-        keyframe: what was asked for.
-        pose: what was found.
-        reached: how it was found; None for a pose that was given.
-        free_error: rms error that a search from rest finds on another branch, where that is better [m].
-        knots: poses on the way there that are to be passed; the last one is `pose`.
-    """
-
-    keyframe: Keyframe
-    pose: SolvedPose
-    reached: ReachedPose | None
-    free_error: float | None
-    knots: tuple[SolvedPose, ...]
+    keyframe: Keyframe  # what was asked for
+    pose: SolvedPose  # what was found
+    reached: ReachedPose | None  # how it was found; None for a pose that was given
+    free_error: float | None  # rms error that a search from rest finds on another branch, where that is better [m]
+    knots: tuple[SolvedPose, ...]  # poses on the way there that are to be passed; the last one is `pose`
 
 
 def as_keyframes(given: Sequence[Key]) -> list[Keyframe]:
@@ -109,25 +101,15 @@ def _as_keyframe(number: int, given: Key) -> Keyframe:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class KeySearch:
-    """Inverse kinematics from one keyframe to the next.
+    """Inverse kinematics from one keyframe to the next."""
 
-    Attributes:
-        simulation: the robot's physics.
-        limits: what the winches may do.
-        objectives: what is wished for beside the targets.
-        options: of a search from rest; one from a keyframe does not restart.
-        compare: look whether a search from rest does better.
-        jump: distance of a node from where it is predicted that is a snap [m].
-        knots: poses on a way along which markers go straight; 0 for other ways.
-    """
-
-    simulation: Simulation
-    limits: Limits
-    objectives: tuple[Objective, ...]
-    options: InverseOptions
-    compare: bool
-    jump: float
-    knots: int
+    simulation: Simulation  # the robot's physics
+    limits: Limits  # what the winches may do
+    objectives: tuple[Objective, ...]  # what is wished for beside the targets
+    options: InverseOptions  # of a search from rest; one from a keyframe does not restart
+    compare: bool  # look whether a search from rest does better
+    jump: float  # distance of a node from where it is predicted that is a snap [m]
+    knots: int  # poses on a way along which markers go straight; 0 for other ways
 
     def find(self, keyframe: Keyframe, before: SolvedPose) -> Found:
         """The pose of a keyframe, on the branch before (InputError, NotConvergedError: as for `solve_ik`)."""

@@ -16,15 +16,10 @@ ByWinch = float | Mapping[str, float]  # one number for all winches, or numbers 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pace:
-    """The most that each winch may do.
+    """The most that each winch may do."""
 
-    Attributes:
-        speed: of its contraction [m/s]; infinite without a limit.
-        acceleration: of its contraction [m/s^2]; infinite without a limit.
-    """
-
-    speed: Vector
-    acceleration: Vector
+    speed: Vector  # of its contraction [m/s]; infinite without a limit
+    acceleration: Vector  # of its contraction [m/s^2]; infinite without a limit
 
     @classmethod
     def of(cls, robot: Robot, speed: ByWinch | None, acceleration: ByWinch | None) -> Self:

@@ -17,14 +17,10 @@ class StraightCourse:
 
     In a leg the contractions are a course c(s) through the knots of that leg,
     and s = 10 u^3 - 15 u^4 + 6 u^5 with u = (t - t_0) / T. So da/dt = c' s' and d2a/dt2 = c'' s'^2 + c' s''.
-
-    Attributes:
-        times: of the keyframes, from 0 [s].
-        legs: course of each leg, of length 1.
     """
 
-    times: Vector
-    legs: tuple[Course, ...]
+    times: Vector  # of the keyframes, from 0 [s]
+    legs: tuple[Course, ...]  # course of each leg, of length 1
 
     @classmethod
     def earliest(cls, knots: Sequence[Keys], lengths: Vector, pace: Pace, *, least: float) -> Self:

@@ -14,25 +14,15 @@ LEFT, RIGHT, TOP, BOTTOM = 34.0, 10.0, 20.0, 32.0  # room for the numbers and wo
 
 @dataclass(frozen=True, kw_only=True)
 class Chart:
-    """A chart whose both scales begin at 0.
+    """A chart whose both scales begin at 0."""
 
-    Attributes:
-        width: of the picture.
-        height: of the picture.
-        across: the largest value across.
-        up: the largest value upwards.
-        name: of what runs upwards, written at the top.
-        below: of what runs across, written at the bottom.
-        whole: whether values across are whole numbers.
-    """
-
-    width: float
-    height: float
-    across: float
-    up: float
-    name: str
-    below: str
-    whole: bool = False
+    width: float  # of the picture
+    height: float  # of the picture
+    across: float  # the largest value across
+    up: float  # the largest value upwards
+    name: str  # of what runs upwards, written at the top
+    below: str  # of what runs across, written at the bottom
+    whole: bool = False  # whether values across are whole numbers
 
     def x(self, value: float) -> float:
         """Where a value across is."""

@@ -16,65 +16,38 @@ from hydrostat.units import counted
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reach:
-    """What a network reaches of a pose.
+    """What a network reaches of a pose."""
 
-    Attributes:
-        pose: that was wanted.
-        nodes: where they come to [m].
-        contractions: of the winches [m].
-        tensions: of the cables [N].
-        places: where the markers of the pose come to, by name [m].
-        errors: distance of each from its target [m].
-        error: root of their mean square [m].
-    """
-
-    pose: Pose
-    nodes: Nodes
-    contractions: Vector
-    tensions: Vector
-    places: dict[str, tuple[float, ...]]
-    errors: dict[str, float]
-    error: float
+    pose: Pose  # that was wanted
+    nodes: Nodes  # where they come to [m]
+    contractions: Vector  # of the winches [m]
+    tensions: Vector  # of the cables [N]
+    places: dict[str, tuple[float, ...]]  # where the markers of the pose come to, by name [m]
+    errors: dict[str, float]  # distance of each from its target [m]
+    error: float  # root of their mean square [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Solution:
-    """A network as the process that found it sends it: without the body, which is known.
+    """A network as the process that found it sends it: without the body, which is known."""
 
-    Attributes:
-        winches: of the network.
-        cables: of the network.
-        reaches: what it reaches of each pose.
-        error: root of the mean squared marker error over all poses [m].
-    """
-
-    winches: tuple[Winch, ...]
-    cables: tuple[Cable, ...]
-    reaches: tuple[Reach, ...]
-    error: float
+    winches: tuple[Winch, ...]  # of the network
+    cables: tuple[Cable, ...]  # of the network
+    reaches: tuple[Reach, ...]  # what it reaches of each pose
+    error: float  # root of the mean squared marker error over all poses [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Candidate:
-    """A network to choose.
+    """A network to choose."""
 
-    Attributes:
-        number: by which it is named; no two have the same.
-        source: the robot that it was designed for.
-        robot: that one with the network.
-        reaches: what it reaches of each pose.
-        error: root of the mean squared marker error over all poses [m].
-        complete: whether the search came to its end.
-        best: whether it is what the search returned, rather than an alternative.
-    """
-
-    number: int
-    source: Robot
-    robot: Robot
-    reaches: tuple[Reach, ...]
-    error: float
-    complete: bool
-    best: bool
+    number: int  # by which it is named; no two have the same
+    source: Robot  # the robot that it was designed for
+    robot: Robot  # that one with the network
+    reaches: tuple[Reach, ...]  # what it reaches of each pose
+    error: float  # root of the mean squared marker error over all poses [m]
+    complete: bool  # whether the search came to its end
+    best: bool  # whether it is what the search returned, rather than an alternative
 
     @property
     def counts(self) -> str:
@@ -131,34 +104,21 @@ def _reach(reached: ReachedPose) -> Reach:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Glimpse:
-    """The best network so far.
+    """The best network so far."""
 
-    Attributes:
-        winches: of it.
-        cables: of it.
-        error: root of the mean squared marker error over all poses [m].
-        words: what was done last.
-    """
-
-    winches: tuple[Winch, ...]
-    cables: tuple[Cable, ...]
-    error: float
-    words: str
+    winches: tuple[Winch, ...]  # of it
+    cables: tuple[Cable, ...]  # of it
+    error: float  # root of the mean squared marker error over all poses [m]
+    words: str  # what was done last
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignsFound:
-    """What a search has found.
+    """What a search has found."""
 
-    Attributes:
-        solutions: the network that it returns, then its alternatives, each once.
-        tried: networks whose poses were solved.
-        complete: whether it came to its end.
-    """
-
-    solutions: tuple[Solution, ...]
-    tried: int
-    complete: bool
+    solutions: tuple[Solution, ...]  # the network that it returns, then its alternatives, each once
+    tried: int  # networks whose poses were solved
+    complete: bool  # whether it came to its end
 
 
 def design_work(report: Report, robot: Robot, request: DesignRequest) -> DesignsFound:

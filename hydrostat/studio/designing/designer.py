@@ -44,23 +44,16 @@ class Designer(Stage):
     """Wishes, zones painted on the body, a design that goes on, and the networks to choose from.
 
     Nothing of the robot changes before a candidate is accepted.
-
-    Attributes:
-        painter: of zones.
-        run: the design that goes on, or the last one; None before the first.
-        chosen: number of the candidate that is shown; None: the robot as it is, or the best network so far.
-        pose: name of the pose in which the candidate is shown; None: at rest.
-        outcome: what became of the last design, a line; "" while there is nothing to tell.
     """
 
     def __init__(self, document: Document, jobs: Jobs, *, options: RouteOptions | None = None) -> None:
         """The stage of a document; designs run as jobs, with options of the search for tests that have no time."""
         self._document, self._jobs, self._options = document, jobs, options
-        self.painter = Painter(document)
-        self.run: DesignRun | None = None
-        self.chosen: int | None = None
-        self.pose: str | None = None
-        self.outcome = ""
+        self.painter = Painter(document)  # of zones
+        self.run: DesignRun | None = None  # the design that goes on, or the last one; None before the first
+        self.chosen: int | None = None  # number of the candidate shown; None: the robot, or the best network so far
+        self.pose: str | None = None  # name of the pose in which the candidate is shown; None: at rest
+        self.outcome = ""  # what became of the last design, a line; "" while there is nothing to tell
         self._all: tuple[Candidate, ...] = ()
         self._numbered = 0
         self._running = False

@@ -73,16 +73,12 @@ class Painter:
 
     With a paint in hand, a drag on the body draws a disc (a ball in space) from its middle outward. On a flat body a
     drag with shift draws round a part of any shape, and clicks set the corners of a polygon.
-
-    Attributes:
-        paint: in hand; None: zones are chosen and moved.
-        chosen: number of the zone that is selected.
     """
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self.paint: Paint | None = None
-        self.chosen: int | None = None
+        self.paint: Paint | None = None  # in hand; None: zones are chosen and moved
+        self.chosen: int | None = None  # number of the zone that is selected
         self._corners: tuple[Point, ...] = ()
         self._line: tuple[Point, ...] = ()
         self._draft: tuple[int | None, Paint, Zone] | None = None

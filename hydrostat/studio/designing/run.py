@@ -57,42 +57,25 @@ def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
 
 @dataclass(frozen=True, kw_only=True)
 class Mark:
-    """The best network at one moment.
+    """The best network at one moment."""
 
-    Attributes:
-        seconds: since the design was asked for.
-        error: root of the mean squared marker error over all poses [m].
-        winches: how many it has.
-        cables: how many it has.
-    """
-
-    seconds: float
-    error: float
-    winches: int
-    cables: int
+    seconds: float  # since the design was asked for
+    error: float  # root of the mean squared marker error over all poses [m]
+    winches: int  # how many it has
+    cables: int  # how many it has
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignRun:
-    """How far a design is.
+    """How far a design is."""
 
-    Attributes:
-        robot: that is designed for.
-        request: what was asked.
-        began: when, on a clock that only runs forward [s].
-        rest: error if nothing moved [m].
-        best: the robot with the best network so far; with what stays of its own before the first.
-        words: what was done last.
-        trail: of the best network, in time.
-    """
-
-    robot: Robot
-    request: DesignRequest
-    began: float
-    rest: float
-    best: Robot
-    words: str = ""
-    trail: tuple[Mark, ...] = field(default=())
+    robot: Robot  # that is designed for
+    request: DesignRequest  # what was asked
+    began: float  # when, on a clock that only runs forward [s]
+    rest: float  # error if nothing moved [m]
+    best: Robot  # the robot with the best network so far; with what stays of its own before the first
+    words: str = ""  # what was done last
+    trail: tuple[Mark, ...] = field(default=())  # of the best network, in time
 
 
 def beginning(robot: Robot, request: DesignRequest) -> Robot:

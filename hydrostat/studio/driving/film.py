@@ -87,26 +87,17 @@ def film_frames(robot: Robot, timeline: Timeline, step: float, tell: Callable[[s
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recording:
-    """A film to take home.
+    """A film to take home."""
 
-    Attributes:
-        name: of its file.
-        content: of it.
-    """
-
-    name: str
-    content: bytes
+    name: str  # of its file
+    content: bytes  # of it
 
 
 class Recorder:
-    """Lets a film be made in another process.
-
-    Attributes:
-        latest: the film that was made last; None before the first.
-    """
+    """Lets a film be made in another process."""
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
-        self.latest: Recording | None = None
+        self.latest: Recording | None = None  # the film that was made last; None before the first
         self._document, self._jobs = document, jobs
         self._title = ""
 

@@ -15,17 +15,11 @@ APART = 0.5  # a copy of a key is put so much later [s]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Held:
-    """A key that is dragged.
+    """A key that is dragged."""
 
-    Attributes:
-        index: its number before.
-        before: the timeline then.
-        made: the timeline that its last move has made; if the robot has another by now, the drag is over.
-    """
-
-    index: int
-    before: Timeline
-    made: Timeline
+    index: int  # its number before
+    before: Timeline  # the timeline then
+    made: Timeline  # the timeline that its last move has made; if the robot has another by now, the drag is over
 
 
 class Keyframes:

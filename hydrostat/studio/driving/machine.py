@@ -24,14 +24,10 @@ FEW = 6  # steps of Newton in which a body that moves should get there; else it 
 
 
 class Follower:
-    """Solves for the newest contractions, from the last good pose; where there is none, the last good one stays.
-
-    Attributes:
-        failure: why the last contractions have no shape; "" if they have.
-    """
+    """Solves for the newest contractions, from the last good pose; where there is none, the last good one stays."""
 
     def __init__(self) -> None:
-        self.failure = ""
+        self.failure = ""  # why the last contractions have no shape; "" if they have
         self._simulation: Simulation | None = None
         self._last: SolvedPose | None = None
 

@@ -17,15 +17,10 @@ NEAR_WINCH = 0.03  # a first point so near to a winch, as a share of the body, m
 
 @dataclass(frozen=True, kw_only=True)
 class CableDraft:
-    """A cable that has no stopper yet.
+    """A cable that has no stopper yet."""
 
-    Attributes:
-        points: so far [m]; the first is the winch.
-        winch: that it begins at; None: one that is made with the cable.
-    """
-
-    points: tuple[Point, ...]
-    winch: str | None = None
+    points: tuple[Point, ...]  # so far [m]; the first is the winch
+    winch: str | None = None  # that it begins at; None: one that is made with the cable
 
     def through(self, at: Point) -> Self:
         """The same with one more point."""

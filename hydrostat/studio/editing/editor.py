@@ -43,21 +43,14 @@ DEPTH = 0.005  # how deep below the skin of a body in space winches and cables a
 
 
 class Editor(Stage):
-    """The body at rest, and tools to place, move, change and delete what is in it.
-
-    Attributes:
-        tool: what the pointer does.
-        mirror: both sides are edited alike about this plane; None: only what is touched.
-        depth: how deep below the skin of a body in space winches and cables are placed [m].
-        draft: the cable that is being laid.
-    """
+    """The body at rest, and tools to place, move, change and delete what is in it."""
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
         self._document, self._jobs = document, jobs
-        self.tool = Tool.MOVE
-        self.mirror: Mirror | None = None
-        self.depth = DEPTH
-        self.draft: CableDraft | None = None
+        self.tool = Tool.MOVE  # what the pointer does
+        self.mirror: Mirror | None = None  # both sides are edited alike about this plane; None: only what is touched
+        self.depth = DEPTH  # how deep below the skin of a body in space winches and cables are placed [m]
+        self.draft: CableDraft | None = None  # the cable that is being laid
         self._chosen = ""
         self._hold: Hold | None = None
         self._holds = 0

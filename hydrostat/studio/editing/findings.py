@@ -11,25 +11,15 @@ _PART = re.compile(r"\b(pin|winch|cable|marker|pose)\[(\d+)\]")
 
 @dataclass(frozen=True, kw_only=True)
 class Findings:
-    """What is known of a robot without simulating it.
+    """What is known of a robot without simulating it."""
 
-    Attributes:
-        nodes: of the mesh.
-        elements: of it.
-        kind: what the elements are.
-        mass: of the body [kg].
-        cables: how many there are.
-        cable_length: of all cables together [m].
-        risks: what is allowed but may disappoint, a line each.
-    """
-
-    nodes: int
-    elements: int
-    kind: str
-    mass: float
-    cables: int
-    cable_length: float
-    risks: tuple[str, ...]
+    nodes: int  # of the mesh
+    elements: int  # of it
+    kind: str  # what the elements are
+    mass: float  # of the body [kg]
+    cables: int  # how many there are
+    cable_length: float  # of all cables together [m]
+    risks: tuple[str, ...]  # what is allowed but may disappoint, a line each
 
 
 def look_over(robot: Robot) -> Findings:

@@ -61,23 +61,14 @@ def _is_in(body: Body, at: Point) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Hold:
-    """A part and its twin in the hand, or a cable out of which a via point is about to be drawn.
+    """A part and its twin in the hand, or a cable out of which a via point is about to be drawn."""
 
-    Attributes:
-        key: of the part.
-        twin: key of its twin; "": it has none.
-        mirror: plane between the two; None: no mirror.
-        flat: whether the part stays on that plane.
-        grip: from the pointer to the middle of the part [m].
-        start: where the pointer took hold [m].
-    """
-
-    key: str
-    twin: str = ""
-    mirror: Mirror | None = None
-    flat: bool = False
-    grip: Point = ()
-    start: Point = ()
+    key: str  # of the part
+    twin: str = ""  # key of its twin; "": it has none
+    mirror: Mirror | None = None  # plane between the two; None: no mirror
+    flat: bool = False  # whether the part stays on that plane
+    grip: Point = ()  # from the pointer to the middle of the part [m]
+    start: Point = ()  # where the pointer took hold [m]
 
     def places(self, at: Point) -> dict[str, Point]:
         """Places of the parts [m], by key, when the held one goes to a place."""

@@ -13,13 +13,9 @@ ON_PLANE = 0.01  # what is placed so near to the plane, as a share of the body, 
 
 @dataclass(frozen=True, kw_only=True)
 class Mirror:
-    """The plane in which one coordinate is 0.
+    """The plane in which one coordinate is 0."""
 
-    Attributes:
-        axis: number of that coordinate.
-    """
-
-    axis: int
+    axis: int  # number of that coordinate
 
     def point(self, at: Point) -> Point:
         """The place on the other side."""

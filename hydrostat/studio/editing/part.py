@@ -20,17 +20,11 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    """One part of a robot.
+    """One part of a robot."""
 
-    Attributes:
-        kind: what it is.
-        index: its number among the pins, winches, cables or markers.
-        place: number of the point of a cable, for a via point.
-    """
-
-    kind: Kind
-    index: int
-    place: int = 0
+    kind: Kind  # what it is
+    index: int  # its number among the pins, winches, cables or markers
+    place: int = 0  # number of the point of a cable, for a via point
 
 
 def find_part(robot: Robot, key: str) -> Part | None:

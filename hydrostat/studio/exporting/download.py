@@ -9,17 +9,11 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 @dataclass(frozen=True, kw_only=True)
 class Download:
-    """A file in memory; it is written nowhere until a person downloads it.
+    """A file in memory; it is written nowhere until a person downloads it."""
 
-    Attributes:
-        name: of the file.
-        content: of it.
-        title: what it is, as a person would say it.
-    """
-
-    name: str
-    content: bytes = field(repr=False)
-    title: str = ""
+    name: str  # of the file
+    content: bytes = field(repr=False)  # of it
+    title: str = ""  # what it is, as a person would say it
 
     @property
     def media_type(self) -> str:

@@ -49,20 +49,14 @@ class Exporter(Stage):
     A result is that of one robot: it is not shown once the robot has changed, and is back if the change is undone.
     How the next kit is made, its method, motor and paper, is of this sitting: it is not part of the robot, is not saved
     with it, and is not undone.
-
-    Attributes:
-        options: of the next kit.
-        pose: that is shown, by its name; "": the robot at rest.
-        busy: what is being made; None: nothing.
-        errors: why something could not be made, by what it was.
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
         self._document, self._jobs = document, jobs
-        self.options = KitOptions()
-        self.pose = ""
-        self.busy: Export | None = None
-        self.errors: dict[Export, str] = {}
+        self.options = KitOptions()  # of the next kit
+        self.pose = ""  # that is shown, by its name; "": the robot at rest
+        self.busy: Export | None = None  # what is being made; None: nothing
+        self.errors: dict[Export, str] = {}  # why something could not be made, by what it was
         self._made: dict[Export, _Made] = {}
         self._posed: _Made | None = None
         self._turn: object = None

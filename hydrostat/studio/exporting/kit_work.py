@@ -12,31 +12,18 @@ from hydrostat.studio.jobs import Report
 
 @dataclass(frozen=True, kw_only=True)
 class KitMade:
-    """A kit, or why there is none.
+    """A kit, or why there is none."""
 
-    Attributes:
-        options: that it was made with.
-        refused: why the robot cannot be built well; then there is nothing but these.
-        zip: all files; None if it was refused.
-        count: of the files.
-        summary: what is in it, a line each.
-        warnings: what to mind.
-        problems: why it cannot be built well, where it was made all the same.
-        checks: whether the files are true to the robot that was simulated.
-        pages: of the assembly sheet, as PNG.
-        pattern: of a plush robot, as SVG.
-    """
-
-    options: KitOptions
-    refused: tuple[str, ...] = ()
-    zip: Download | None = None
-    count: int = 0
-    summary: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
-    problems: tuple[str, ...] = ()
-    checks: tuple[Check, ...] = ()
-    pages: tuple[bytes, ...] = ()
-    pattern: bytes | None = None
+    options: KitOptions  # that it was made with
+    refused: tuple[str, ...] = ()  # why the robot cannot be built well; then there is nothing but these
+    zip: Download | None = None  # all files; None if it was refused
+    count: int = 0  # of the files
+    summary: tuple[str, ...] = ()  # what is in it, a line each
+    warnings: tuple[str, ...] = ()  # what to mind
+    problems: tuple[str, ...] = ()  # why it cannot be built well, where it was made all the same
+    checks: tuple[Check, ...] = ()  # whether the files are true to the robot that was simulated
+    pages: tuple[bytes, ...] = ()  # of the assembly sheet, as PNG
+    pattern: bytes | None = None  # of a plush robot, as SVG
 
     @property
     def told(self) -> str:

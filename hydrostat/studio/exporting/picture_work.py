@@ -20,17 +20,11 @@ from hydrostat.studio.jobs import Report
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SolvedPoses:
-    """What the winches make of the poses.
+    """What the winches make of the poses."""
 
-    Attributes:
-        robot: whose they are.
-        reached: those that were solved, in their order.
-        missed: a line for each that was not.
-    """
-
-    robot: Robot
-    reached: tuple[ReachedPose, ...]
-    missed: tuple[str, ...]
+    robot: Robot  # whose they are
+    reached: tuple[ReachedPose, ...]  # those that were solved, in their order
+    missed: tuple[str, ...]  # a line for each that was not
 
 
 def solve_poses(report: Report, robot: Robot) -> SolvedPoses:

@@ -19,27 +19,19 @@ Refresh = Callable[[], Any]
 
 
 class WindowPage:
-    """One browser window: its view, its panel, and what is to be drawn again when something changes.
-
-    Attributes:
-        session: that all windows share.
-        viewport: the view of the body.
-        panel: the column beside it, filled by the panel of the stage.
-        bottom: the strip below the view, likewise.
-        whole: in place of view and column, for the stage that needs all the room.
-    """
+    """One browser window: its view, its panel, and what is to be drawn again when something changes."""
 
     def __init__(self, session: Session) -> None:
-        self.session = session
+        self.session = session  # that all windows share
         self._lasting: dict[Topic, list[Refresh]] = defaultdict(list)
         self._passing: dict[Topic, list[Refresh]] = defaultdict(list)
         self._rung: set[Topic] = set()
         self._told = session.notes[-1].number if session.notes else 0
         self._leave = session.bell.listen(self._rung.add)
-        self.viewport: Viewport
-        self.panel: ui.column
-        self.bottom: ui.column
-        self.whole: ui.column
+        self.viewport: Viewport  # the view of the body
+        self.panel: ui.column  # the column beside it, filled by the panel of the stage
+        self.bottom: ui.column  # the strip below the view, likewise
+        self.whole: ui.column  # in place of view and column, for the stage that needs all the room
 
     def on(self, topics: Topic | Sequence[Topic], refresh: Refresh, *, lasting: bool = False) -> None:
         """Call what redraws after a topic rang, and once now; if lasting also when another stage is shown."""

@@ -10,19 +10,12 @@ from hydrostat.studio.stage import StageName
 
 @dataclass(frozen=True, kw_only=True)
 class StageWords:
-    """What a stage is for.
+    """What a stage is for."""
 
-    Attributes:
-        title: as on its button.
-        icon: likewise.
-        line: for the help.
-        tour: for who is here for the first time; "": the tour passes it by.
-    """
-
-    title: str
-    icon: str
-    line: str
-    tour: str = ""
+    title: str  # as on its button
+    icon: str  # likewise
+    line: str  # for the help
+    tour: str = ""  # for who is here for the first time; "": the tour passes it by
 
 
 STAGES = {

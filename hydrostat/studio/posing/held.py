@@ -22,32 +22,20 @@ class Mode(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Held:
-    """A point of the body with the place where it should be.
+    """A point of the body with the place where it should be."""
 
-    Attributes:
-        at: where it is in the rest shape [m].
-        target: where it should go [m].
-        marker: whether it is a marker of the robot; else it is a plain point, though it may become one.
-    """
-
-    at: Point
-    target: Point
-    marker: bool = False
+    at: Point  # where it is in the rest shape [m]
+    target: Point  # where it should go [m]
+    marker: bool = False  # whether it is a marker of the robot; else it is a plain point, though it may become one
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wish:
-    """All that a person wants of the body just now.
+    """All that a person wants of the body just now."""
 
-    Attributes:
-        mode: what moves it.
-        held: points by name; those with the name of a marker are that marker.
-        rests: counts how often it was sent back to rest.
-    """
-
-    mode: Mode
-    held: Mapping[str, Held] = field(default_factory=dict)
-    rests: int = 0
+    mode: Mode  # what moves it
+    held: Mapping[str, Held] = field(default_factory=dict)  # points by name; those with a marker's name are that marker
+    rests: int = 0  # counts how often it was sent back to rest
 
 
 class Anchored:
@@ -83,21 +71,13 @@ class Anchored:
 
 @dataclass(frozen=True, kw_only=True)
 class Now:
-    """What belongs together, so that no thread sees an old wish with a new body.
+    """What belongs together, so that no thread sees an old wish with a new body."""
 
-    Attributes:
-        robot: that is posed.
-        wish: what a person wants of it.
-        anchored: where held points are stuck to its mesh.
-        shape: where its body is.
-        ghost: a shape to compare with, if any.
-    """
-
-    robot: Robot
-    wish: Wish
-    anchored: Anchored
-    shape: RobotShape
-    ghost: Ghost | None = None
+    robot: Robot  # that is posed
+    wish: Wish  # what a person wants of it
+    anchored: Anchored  # where held points are stuck to its mesh
+    shape: RobotShape  # where its body is
+    ghost: Ghost | None = None  # a shape to compare with, if any
 
     def known(self, name: str) -> str:
         """The name, if a point that is held or a marker has it, else ""."""

@@ -12,13 +12,9 @@ from hydrostat.studio.view.things import RobotShape
 
 
 class Mover(ABC):
-    """Moves one robot, a step at a time. It works in one thread.
+    """Moves one robot, a step at a time. It works in one thread."""
 
-    Attributes:
-        robot: whose body it moves.
-    """
-
-    robot: Robot
+    robot: Robot  # whose body it moves
 
     @abstractmethod
     def rest(self) -> RobotShape:

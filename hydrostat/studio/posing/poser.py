@@ -38,32 +38,23 @@ TARGET_GHOST = "#8fb4d6"
 
 @dataclass(frozen=True, kw_only=True)
 class _Hold:
-    """What the pointer has hold of.
+    """What the pointer has hold of."""
 
-    Attributes:
-        name: of the point.
-        point: of the body.
-        offset: from the pointer to its target [m].
-    """
-
-    name: str
-    point: Held
-    offset: tuple[float, ...]
+    name: str  # of the point
+    point: Held  # of the body
+    offset: tuple[float, ...]  # from the pointer to its target [m]
 
 
 class Poser(Stage):
     """Grab any point of the body and drag it; muscles or the robot's own cables follow (R2, R30, R36).
 
     Robot, wish and shape are one frozen `Now` that is replaced whole; `step` reads the newest and replaces the shape.
-
-    Attributes:
-        reach: all that a marker can reach.
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
         """Poses of the robot of a document."""
         self._document = document
-        self.reach = MarkerReach(document, jobs)
+        self.reach = MarkerReach(document, jobs)  # all that a marker can reach
         self._lock = RLock()
         self._movers = Movers(document)
         self._now: Now | None = None

@@ -22,42 +22,25 @@ class Paint(StrEnum):
 class Wishes:
     """What a design shall be like.
 
-    Attributes:
-        winches: how many; 0: as few as will do.
-        cables: how many in all.
-        poses: names of the poses to reach; empty: all.
-        zones: painted on the body, with what they mean.
-        mirror: axis of symmetry, "x", "y" or "z"; None: no symmetry.
-        tension: the most that a cable bears [N].
-        clearance: least distance of a cable from the edge [m].
-        tolerance: error that is good enough where winches are counted [m]; None: a hundredth of the body.
-        cables_per_winch: most cables of one winch.
-        slack: the most that a stopper may leave loose [m].
-        stepped: whether cables may have spools up to twice as large or small as their winch's.
-        torque: the most that the motor of a winch gives [N m]; None: as much as the tensions ask.
-        improve: begin with the robot's own winches and cables.
-        kept_winches: names of the robot's own winches that stay.
-        kept_cables: names of the robot's own cables that stay, and their winches with them.
-
     Raises:
         InputError: a number out of its range, or a mirror that is no axis.
     """
 
-    winches: int = int(DesignRequest.winches)
-    cables: int = DesignRequest.cables
-    poses: tuple[str, ...] = ()
-    zones: tuple[tuple[Paint, Zone], ...] = ()
-    mirror: str | None = None
-    tension: float = Constraints.tension
-    clearance: float = Constraints.clearance
-    tolerance: float | None = None
-    cables_per_winch: int = Constraints.cables_per_winch
-    slack: float = Constraints.slack
-    stepped: bool = False
-    torque: float | None = None
-    improve: bool = False
-    kept_winches: tuple[str, ...] = ()
-    kept_cables: tuple[str, ...] = ()
+    winches: int = int(DesignRequest.winches)  # how many; 0: as few as will do
+    cables: int = DesignRequest.cables  # how many in all
+    poses: tuple[str, ...] = ()  # names of the poses to reach; empty: all
+    zones: tuple[tuple[Paint, Zone], ...] = ()  # painted on the body, with what they mean
+    mirror: str | None = None  # axis of symmetry, "x", "y" or "z"; None: no symmetry
+    tension: float = Constraints.tension  # the most that a cable bears [N]
+    clearance: float = Constraints.clearance  # least distance of a cable from the edge [m]
+    tolerance: float | None = None  # error good enough where winches are counted [m]; None: a hundredth of the body
+    cables_per_winch: int = Constraints.cables_per_winch  # most cables of one winch
+    slack: float = Constraints.slack  # the most that a stopper may leave loose [m]
+    stepped: bool = False  # whether cables may have spools up to twice as large or small as their winch's
+    torque: float | None = None  # the most that the motor of a winch gives [N m]; None: as much as the tensions ask
+    improve: bool = False  # begin with the robot's own winches and cables
+    kept_winches: tuple[str, ...] = ()  # names of the robot's own winches that stay
+    kept_cables: tuple[str, ...] = ()  # names of the robot's own cables that stay, and their winches with them
 
     def __post_init__(self) -> None:
         if self.mirror not in (None, "x", "y", "z"):

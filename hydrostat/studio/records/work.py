@@ -10,17 +10,11 @@ from hydrostat.studio.records.wishes import Wishes
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Work:
-    """What a person works on; each change makes a new one.
+    """What a person works on; each change makes a new one."""
 
-    Attributes:
-        robot: body, pins, winches, cables, markers, poses.
-        timeline: keyframes.
-        wishes: for a design.
-    """
-
-    robot: Robot
-    timeline: Timeline = field(default_factory=Timeline)
-    wishes: Wishes = field(default_factory=Wishes)
+    robot: Robot  # body, pins, winches, cables, markers, poses
+    timeline: Timeline = field(default_factory=Timeline)  # keyframes
+    wishes: Wishes = field(default_factory=Wishes)  # for a design
 
 
 def followed(

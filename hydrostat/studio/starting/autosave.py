@@ -25,7 +25,7 @@ LOCK = "lock"
 
 
 class HeldFolder:
-    """A new folder with a locked file in it. The system lets go of the lock when the process is gone, even if killed.
+    """A new folder with a locked file in it. The system ends the lock with the process, even if that is killed.
 
     Attributes:
         path: of the folder.
@@ -33,7 +33,7 @@ class HeldFolder:
 
     def __init__(self, parent: Path) -> None:
         """Make it (OSError: it cannot be made)."""
-        self.path = parent / f"{os.getpid()}-{token_hex(4)}"
+        self.path = parent / f"{os.getpid()}-{token_hex(4)}"  # of the folder
         self.path.mkdir(parents=True)
         self._file: IO[bytes] = (self.path / LOCK).open("wb")
         _lock(self._file)
@@ -79,21 +79,13 @@ AGAIN = 10.0  # what could not be written is tried again after so long [s]
 
 @dataclass(frozen=True, kw_only=True)
 class Left:
-    """Work that was not saved when its studio ended.
+    """Work that was not saved when its studio ended."""
 
-    Attributes:
-        folder: where it is kept.
-        name: of the robot.
-        time: when it was kept.
-        origin: where the robot had been saved before; None: nowhere.
-        stamp: of that folder when the robot was opened or saved last.
-    """
-
-    folder: Path
-    name: str
-    time: datetime
-    origin: Path | None
-    stamp: str = ""
+    folder: Path  # where it is kept
+    name: str  # of the robot
+    time: datetime  # when it was kept
+    origin: Path | None  # where the robot had been saved before; None: nowhere
+    stamp: str = ""  # of that folder when the robot was opened or saved last
 
     @property
     def words(self) -> str:
@@ -108,9 +100,6 @@ class Autosave:
     A studio has a folder ID/ with a lock, and in it ID/N/ with meta.json and work/, N counting. A new one is written
     beside the last under another name and renamed when it is whole, then the last is removed: at any moment one whole
     copy is there.
-
-    Attributes:
-        problem: why the work cannot be kept, a line; "" if it can.
     """
 
     def __init__(self, document: Document, folder: Path | None) -> None:
@@ -119,7 +108,7 @@ class Autosave:
         self._held: HeldFolder | None = None
         self._seen = self._kept = (0, True)
         self._changed = self._asked = 0.0
-        self.problem = ""
+        self.problem = ""  # why the work cannot be kept, a line; "" if it can
         self._count = 0
         self._writer: Thread | None = None
         self._lock = Lock()

@@ -24,30 +24,19 @@ _CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
 class BodyDraft:
     """A drawing or a surface, and what is asked of the robot made of it; None where nothing is asked.
 
-    Attributes:
-        file: name of the file, made safe by `safe_name`.
-        content: its bytes.
-        name: of the robot.
-        material: a name of the table.
-        size: longest side [m].
-        element_size: length of a mesh edge [m].
-        nodes: about so many; not used with an element size.
-        thickness: of a flat body [m].
-        inflate: thickness to blow a drawing up to [m].
-
     Raises:
         InputError: a number out of its range, or an unknown material.
     """
 
-    file: str
-    content: bytes
-    name: str
-    material: str
-    size: float | None = None
-    element_size: float | None = None
-    nodes: int | None = None
-    thickness: float | None = None
-    inflate: float | None = None
+    file: str  # name of the file, made safe by `safe_name`
+    content: bytes  # its bytes
+    name: str  # of the robot
+    material: str  # a name of the table
+    size: float | None = None  # longest side [m]
+    element_size: float | None = None  # length of a mesh edge [m]
+    nodes: int | None = None  # about so many; not used with an element size
+    thickness: float | None = None  # of a flat body [m]
+    inflate: float | None = None  # thickness to blow a drawing up to [m]
 
     def __post_init__(self) -> None:
         find_material(self.material)

@@ -25,17 +25,11 @@ _SHARP, _WINDOW = np.deg2rad(50.0), 0.004
 
 @dataclass(frozen=True)
 class LoopCorner:
-    """A corner of a loop.
+    """A corner of a loop."""
 
-    Attributes:
-        x: to the right [mm].
-        y: up [mm].
-        smooth: whether the outline runs through it in a curve.
-    """
-
-    x: float
-    y: float
-    smooth: bool = False
+    x: float  # to the right [mm]
+    y: float  # up [mm]
+    smooth: bool = False  # whether the outline runs through it in a curve
 
 
 Loop = tuple[LoopCorner, ...]  # corners in order, the last joined to the first

@@ -19,15 +19,10 @@ Move = Callable[[Point], Point]  # from a place in the old body to the same in t
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reshaped:
-    """A robot with another outline.
+    """A robot with another outline."""
 
-    Attributes:
-        work: with the new body.
-        dropped: what lay outside it and is gone, in words, such as "marker tip".
-    """
-
-    work: Work
-    dropped: tuple[str, ...]
+    work: Work  # with the new body
+    dropped: tuple[str, ...]  # what lay outside it and is gone, in words, such as "marker tip"
 
 
 class Outlining:

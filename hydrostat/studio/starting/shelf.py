@@ -20,19 +20,12 @@ MOST_SEEN, MOST_SHOWN = 500, 24  # so many entries of a folder are looked at, so
 
 @dataclass(frozen=True, kw_only=True)
 class Card:
-    """A robot to choose.
+    """A robot to choose."""
 
-    Attributes:
-        name: of the robot.
-        folder: where it is.
-        words: what it is, such as "flat, 4 winches, 8 cables".
-        picture: WebP file of it; None: there is none.
-    """
-
-    name: str
-    folder: Path
-    words: str
-    picture: Path | None = None
+    name: str  # of the robot
+    folder: Path  # where it is
+    words: str  # what it is, such as "flat, 4 winches, 8 cables"
+    picture: Path | None = None  # WebP file of it; None: there is none
 
 
 def gallery_cards() -> list[Card]:

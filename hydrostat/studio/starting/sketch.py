@@ -16,23 +16,14 @@ WIDTH = 6.4  # of pictures [inch]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sketch:
-    """A first robot, and what there is to know of it.
+    """A first robot, and what there is to know of it."""
 
-    Attributes:
-        draft: what it is made of.
-        robot: that would be begun with.
-        lines: what was found and done in reading, healing and meshing.
-        clean: whether nothing had to be mended.
-        picture: of the robot, as SVG that follows the colours of the page.
-        repair: of what was mended, likewise; "" if nothing was.
-    """
-
-    draft: BodyDraft
-    robot: Robot
-    lines: tuple[str, ...]
-    clean: bool
-    picture: str
-    repair: str = ""
+    draft: BodyDraft  # what it is made of
+    robot: Robot  # that would be begun with
+    lines: tuple[str, ...]  # what was found and done in reading, healing and meshing
+    clean: bool  # whether nothing had to be mended
+    picture: str  # of the robot, as SVG that follows the colours of the page
+    repair: str = ""  # of what was mended, likewise; "" if nothing was
 
 
 def make_sketch(report: Report, draft: BodyDraft) -> Sketch:

@@ -37,24 +37,16 @@ _LIGHT = {"name", "material"}  # what can be changed without a new mesh
 
 
 class Starter(Stage):
-    """The stage where work begins: a robot of the gallery, a folder, a file that is brought, an outline drawn by hand.
-
-    Attributes:
-        autosave: keeps the work of the session.
-        draft: what is to become a robot; None: nothing was brought.
-        sketch: what was made of a draft, perhaps one before the present; None: nothing yet.
-        problem: why nothing can be made of the draft; "" if something can.
-        outlining: the outline that is drawn; None: none.
-    """
+    """The stage where work begins: a robot of the gallery, a folder, a file, or an outline drawn by hand."""
 
     def __init__(self, document: Document, jobs: Jobs, state: Path | None = None) -> None:
         """A stage that opens robots in a document, meshes in jobs, and remembers in a folder; None: nothing."""
         self._document, self._jobs = document, jobs
-        self.autosave = Autosave(document, None if state is None else state / "work")
-        self.draft: BodyDraft | None = None
-        self.sketch: Sketch | None = None
-        self.problem = ""
-        self.outlining: Outlining | None = None
+        self.autosave = Autosave(document, None if state is None else state / "work")  # keeps the work of the session
+        self.draft: BodyDraft | None = None  # what is to become a robot; None: nothing was brought
+        self.sketch: Sketch | None = None  # what was made of a draft, perhaps one before the present; None: nothing yet
+        self.problem = ""  # why nothing can be made of the draft; "" if something can
+        self.outlining: Outlining | None = None  # the outline that is drawn; None: none
         self._recent = Recent(None if state is None else state / "recent.json")
         self._known: Path | None = None
         self._working: BodyDraft | None = None

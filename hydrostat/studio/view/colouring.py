@@ -23,19 +23,12 @@ class Colouring(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Scale:
-    """What a legend says.
+    """What a legend says."""
 
-    Attributes:
-        title: what is shown, such as "strain".
-        most: value of the last colour, in SI; the first is 0. It does not change as the body moves.
-        low: the first as text, with its unit.
-        high: the last as text, with its unit; more than that has the same colour.
-    """
-
-    title: str
-    most: float
-    low: str
-    high: str
+    title: str  # what is shown, such as "strain"
+    most: float  # value of the last colour, in SI; the first is 0. It does not change as the body moves.
+    low: str  # the first as text, with its unit
+    high: str  # the last as text, with its unit; more than that has the same colour
 
 
 FULL = 0.5  # strain of the last colour, if the material does not say how far it can be stretched
@@ -90,17 +83,11 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
 
 @dataclass(frozen=True, eq=False)
 class _NodeOperators:
-    """What of a mesh does not change.
+    """What of a mesh does not change."""
 
-    Attributes:
-        dim: of the body.
-        slopes: gives F of all elements, a row for each element and coordinate of rest, from the nodes.
-        average: gives values of nodes from those of elements.
-    """
-
-    dim: int
-    slopes: csr_array
-    average: csr_array
+    dim: int  # of the body
+    slopes: csr_array  # gives F of all elements, a row for each element and coordinate of rest, from the nodes
+    average: csr_array  # gives values of nodes from those of elements
 
 
 @lru_cache(maxsize=2)

@@ -174,17 +174,11 @@ def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """One moment.
+    """One moment."""
 
-    Attributes:
-        serial: of its scene.
-        scene: all that stays the same.
-        frame: all that changes.
-    """
-
-    serial: int
-    scene: bytes
-    frame: bytes
+    serial: int  # of its scene
+    scene: bytes  # all that stays the same
+    frame: bytes  # all that changes
 
 
 class Show:

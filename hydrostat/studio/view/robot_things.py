@@ -110,25 +110,15 @@ def _vias(index: int, cable: Cable, colour: str, chosen: Collection[str], *, eve
 
 @dataclass(frozen=True, kw_only=True)
 class Bar:
-    """What one winch does.
+    """What one winch does."""
 
-    Attributes:
-        winch: its name.
-        colour: of it.
-        contraction: cable taken in [m].
-        travel: the most it can take in [m].
-        release: the most it can let out [m].
-        tension: the largest of its cables [N].
-        limit: the most that a cable bears [N].
-    """
-
-    winch: str
-    colour: str
-    contraction: float
-    travel: float
-    release: float
-    tension: float
-    limit: float
+    winch: str  # its name
+    colour: str  # of it
+    contraction: float  # cable taken in [m]
+    travel: float  # the most it can take in [m]
+    release: float  # the most it can let out [m]
+    tension: float  # the largest of its cables [N]
+    limit: float  # the most that a cable bears [N]
 
 
 def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:

@@ -11,21 +11,13 @@ from hydrostat.robot import Point, Robot
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RobotShape:
-    """A robot as it is shown.
+    """A robot as it is shown."""
 
-    Attributes:
-        nodes: positions [m].
-        tensions: of each cable [N].
-        contractions: of each winch [m].
-        errors: distance of each held marker from its target [m].
-        notes: what to mind, a line each: limits that hold, why a solver stopped.
-    """
-
-    nodes: Nodes
-    tensions: Vector
-    contractions: Vector
-    errors: dict[str, float] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    nodes: Nodes  # positions [m]
+    tensions: Vector  # of each cable [N]
+    contractions: Vector  # of each winch [m]
+    errors: dict[str, float] = field(default_factory=dict)  # distance of each held marker from its target [m]
+    notes: tuple[str, ...] = ()  # what to mind, a line each: limits that hold, why a solver stopped
 
 
 def rest_shape(robot: Robot) -> RobotShape:
@@ -61,103 +53,60 @@ class Stroke(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Dot:
-    """A small sign of the same size at every distance.
+    """A small sign of the same size at every distance."""
 
-    Attributes:
-        key: what a click on it names, such as "winch:left"; "": it cannot be picked.
-        at: a place in the rest shape if it is stuck to the body, else in the world [m].
-        look: how it is drawn.
-        colour: such as "#0b5fa5".
-        label: written beside it; "" for nothing.
-        stuck: whether it moves with the body.
-        chosen: whether it is selected.
-        radius: in metres, for pins that reach so far; 0: just the sign.
-    """
-
-    key: str = ""
-    at: Point
-    look: Look
-    colour: str
-    label: str = ""
-    stuck: bool = True
-    chosen: bool = False
-    radius: float = 0.0
+    key: str = ""  # what a click on it names, such as "winch:left"; "": it cannot be picked
+    at: Point  # a place in the rest shape if it is stuck to the body, else in the world [m]
+    look: Look  # how it is drawn
+    colour: str  # such as "#0b5fa5"
+    label: str = ""  # written beside it; "" for nothing
+    stuck: bool = True  # whether it moves with the body
+    chosen: bool = False  # whether it is selected
+    radius: float = 0.0  # in metres, for pins that reach so far; 0: just the sign
 
 
 @dataclass(frozen=True, kw_only=True)
 class Strand:
-    """A line through some points.
+    """A line through some points."""
 
-    Attributes:
-        key: what a click on it names, such as "cable:0"; "": it cannot be picked.
-        points: in the rest shape where stuck to the body, else in the world [m].
-        stroke: how it is drawn.
-        colour: such as "#0b5fa5".
-        loose: how many points at its beginning are not stuck to the body; -1: none is.
-        load: tension as a share of the largest on the scale, 0 to 1.
-        chosen: whether it is selected.
-    """
-
-    key: str = ""
-    points: tuple[Point, ...]
-    stroke: Stroke
-    colour: str
-    loose: int = 0
-    load: float = 0.0
-    chosen: bool = False
+    key: str = ""  # what a click on it names, such as "cable:0"; "": it cannot be picked
+    points: tuple[Point, ...]  # in the rest shape where stuck to the body, else in the world [m]
+    stroke: Stroke  # how it is drawn
+    colour: str  # such as "#0b5fa5"
+    loose: int = 0  # how many points at its beginning are not stuck to the body; -1: none is
+    load: float = 0.0  # tension as a share of the largest on the scale, 0 to 1
+    chosen: bool = False  # whether it is selected
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Ghost:
-    """The body in another shape, faintly.
+    """The body in another shape, faintly."""
 
-    Attributes:
-        name: one of each name is shown; such as "rest" or "target".
-        nodes: of that shape [m].
-        colour: such as "#b4afbc".
-    """
-
-    name: str
-    nodes: Nodes
-    colour: str
+    name: str  # one of each name is shown; such as "rest" or "target"
+    nodes: Nodes  # of that shape [m]
+    colour: str  # such as "#b4afbc"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cloud:
-    """Many small points in the world, such as all that a marker can reach.
+    """Many small points in the world, such as all that a marker can reach."""
 
-    Attributes:
-        name: one of each name is shown.
-        points: [m].
-        colour: such as "#0b5fa5".
-    """
-
-    name: str
-    points: Points
-    colour: str
+    name: str  # one of each name is shown
+    points: Points  # [m]
+    colour: str  # such as "#0b5fa5"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Area:
-    """A part of the rest shape: a disc or ball, or a polygon in the plane.
+    """A part of the rest shape: a disc or ball, or a polygon in the plane."""
 
-    Attributes:
-        key: what a click on it names, such as "zone:0".
-        colour: such as "#c8243f".
-        at: middle of the disc or ball [m].
-        radius: of it [m].
-        outline: corners of the polygon [m], if it is one.
-        label: written in it.
-        chosen: whether it is selected.
-    """
-
-    key: str = ""
-    colour: str
-    at: Point = ()
-    radius: float = 0.0
-    outline: tuple[Point, ...] = ()
-    label: str = ""
-    chosen: bool = False
+    key: str = ""  # what a click on it names, such as "zone:0"
+    colour: str  # such as "#c8243f"
+    at: Point = ()  # middle of the disc or ball [m]
+    radius: float = 0.0  # of it [m]
+    outline: tuple[Point, ...] = ()  # corners of the polygon [m], if it is one
+    label: str = ""  # written in it
+    chosen: bool = False  # whether it is selected
 
 
 Thing = Dot | Strand | Ghost | Cloud | Area
