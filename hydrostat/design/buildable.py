@@ -62,8 +62,7 @@ def pulls(robot: Robot, reached: Sequence[ReachedPose], constraints: Constraints
     return [sentence for number, one in enumerate(reached) for sentence in _pulled(robot, number, one, constraints)]
 
 
-_SHARE = 1.001
-"""Forces may be so many times their limit: solvers end near it."""
+_SHARE = 1.001  # forces may be so many times their limit: solvers end near it
 
 
 def _pulled(robot: Robot, number: int, reached: ReachedPose, constraints: Constraints) -> list[str]:

@@ -18,23 +18,14 @@ from hydrostat.robot.robot import LARGEST_STEP
 
 @dataclass(frozen=True, kw_only=True)
 class Range:
-    """The values that a number may have.
+    """The values that a number may have."""
 
-    Attributes:
-        least: of them.
-        most: of them; inf for any that is finite.
-        above: whether the least itself is too small.
-        whole: whether they are whole numbers.
-        optional: whether None will do, which leaves the number open.
-        unit: in which the least and the most are.
-    """
-
-    least: float = 0.0
-    most: float = inf
-    above: bool = False
-    whole: bool = False
-    optional: bool = False
-    unit: str = ""
+    least: float = 0.0  # of them
+    most: float = inf  # of them; inf for any that is finite
+    above: bool = False  # whether the least itself is too small
+    whole: bool = False  # whether they are whole numbers
+    optional: bool = False  # whether None will do, which leaves the number open
+    unit: str = ""  # in which the least and the most are
 
     def holds(self, value: object) -> bool:
         """Whether a value is one of them."""
@@ -241,8 +232,7 @@ RANGES = {
 }
 """What each number of `Constraints` may be."""
 
-_ASKEW = 0.02
-"""Share of its width by which a body's two sides may lie unevenly about a mirror."""
+_ASKEW = 0.02  # share of its width by which a body's two sides may lie unevenly about a mirror
 
 
 def _several(field: str, given: object) -> tuple[object, ...]:

@@ -135,8 +135,7 @@ class Network:
         return rms_error(self.reached)
 
 
-Size = tuple[int, int]
-"""Numbers of winches and of cables."""
+Size = tuple[int, int]  # numbers of winches and of cables
 
 
 def size_of(network: Alternative | Network) -> Size:

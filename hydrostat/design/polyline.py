@@ -7,8 +7,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Points, Vector
 
-Route = Float[np.ndarray, "_ dim"]
-"""Points that a cable runs through [m]."""
+Route = Float[np.ndarray, "_ dim"]  # points that a cable runs through [m]
 
 
 def resample(route: Route, spacing: float) -> Route:
@@ -39,8 +38,7 @@ def sharpest_turn(route: Route) -> float:
 Measure = Callable[[Points], Float[np.ndarray, " points"]]
 """Distances of points from something [m]: they change by no more than one goes."""
 
-FINEST = 4e-5
-"""Places are at least so far apart [m]: coordinates are rounded to a quarter of it."""
+FINEST = 4e-5  # places are at least so far apart [m]: coordinates are rounded to a quarter of it
 
 
 def least_along(

@@ -4,16 +4,14 @@ from collections.abc import Callable
 
 from hydrostat.design.network import DesignStage
 
-Progress = Callable[[str, int, int], None]
-"""Told the stage, how much of it is done, and how much there is."""
+Progress = Callable[[str, int, int], None]  # told the stage, how much of it is done, and how much there is
 
 
 def silent(stage: str, done: int, total: int) -> None:
     """No progress wanted."""
 
 
-Watch = Callable[[DesignStage], None]
-"""Told a network on the way, each better than the ones told before."""
+Watch = Callable[[DesignStage], None]  # told a network on the way, each better than the ones told before
 
 
 def unseen(stage: DesignStage) -> None:

@@ -16,8 +16,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.shell import Nearest, Shell, outline_shell
 from hydrostat.robot import Body
 
-MARGIN = 1.02
-"""Points are pushed so many clearances deep, so that rounding takes none out again."""
+MARGIN = 1.02  # points are pushed so many clearances deep, so that rounding takes none out again
 
 
 class Region(ABC):
@@ -63,19 +62,12 @@ class Region(ABC):
 
 @dataclass(frozen=True, eq=False)
 class FlatRegion(Region):
-    """A flat body, as a polygon too.
+    """A flat body, as a polygon too."""
 
-    Attributes:
-        shell: its edge.
-        clearance: [m].
-        body: the whole body [m].
-        inner: the body less `MARGIN` clearances.
-    """
-
-    shell: Shell
-    clearance: float
-    body: Polygon
-    inner: BaseGeometry
+    shell: Shell  # its edge
+    clearance: float  # [m]
+    body: Polygon  # the whole body [m]
+    inner: BaseGeometry  # the body less `MARGIN` clearances
 
     def push_inside(self, route: Route) -> Route:
         """Each point, moved to the nearest place of the inner part if it lies outside of that."""
@@ -114,24 +106,16 @@ def flat_region(body: Body, clearance: float) -> FlatRegion | None:
     return FlatRegion(shell, clearance, whole, inner)
 
 
-_STEPS = 60
-"""Most steps of a point on its way inside."""
-
-_SMALLEST = 1 / 64
-"""A point that gains nothing by a step of this many clearances has come as deep as it can."""
+_STEPS = 60  # most steps of a point on its way inside
+_SMALLEST = 1 / 64  # a point that gains nothing by a step of this many clearances has come as deep as it can
 
 
 @dataclass(frozen=True, eq=False)
 class SpaceRegion(Region):
-    """A body in space.
+    """A body in space."""
 
-    Attributes:
-        shell: its surface.
-        clearance: [m].
-    """
-
-    shell: Shell
-    clearance: float
+    shell: Shell  # its surface
+    clearance: float  # [m]
 
     def push_inside(self, route: Route) -> Route:
         """Each point, moved inward until it is `MARGIN` clearances deep; in a thin part, to where that is deepest.

@@ -27,8 +27,7 @@ from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.robot import Robot
 from hydrostat.units import counted
 
-Progress = Callable[[str, int, int], None]
-"""Told the stage, how much of it is done, and how much there is."""
+Progress = Callable[[str, int, int], None]  # told the stage, how much of it is done, and how much there is
 
 
 def export_kit(

@@ -17,11 +17,8 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 from hydrostat.units import counted
 
-MANY_PIECES = 40
-"""More pieces of a mould than that are a warning: a judgement, each is some hours on a printer."""
-
-MUCH_PLASTIC = 5e3
-"""More plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too."""
+MANY_PIECES = 40  # more pieces of a mould than that are a warning: a judgement, each is some hours on a printer
+MUCH_PLASTIC = 5e3  # more plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
@@ -74,11 +71,8 @@ def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
     )
 
 
-SKIN = 1.0
-"""Least foam between a tube and the skin [mm]: thinner, it tears when the tube is pulled. Measured on none."""
-
-_STEP = 1e-3
-"""Distance of the places that are looked at [m]."""
+SKIN = 1.0  # Least foam between a tube and the skin [mm]: thinner, it tears when the tube is pulled. Measured on none.
+_STEP = 1e-3  # distance of the places that are looked at [m]
 
 
 def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:

@@ -16,8 +16,7 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot, replace_file, robot_hash
 from hydrostat.units import counted
 
-MANIFEST = "manifest.json"
-"""Its file in a kit; written last, so that a kit without it is not whole."""
+MANIFEST = "manifest.json"  # its file in a kit; written last, so that a kit without it is not whole
 
 _MAKERS = ("hydrostat", "ezdxf", "libigl", "manifold3d", "numba", "numpy", "scipy", "shapely", "typst")
 """Packages on which the bytes of a kit depend."""

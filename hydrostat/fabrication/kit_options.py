@@ -9,11 +9,8 @@ from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.robot import Body
 
-STUFFINGS = ("polyester fibre",)
-"""Materials that are stuffed into cloth: a body of them is plush, in space too."""
-
-_SHORTEST = 50.0
-"""A piece of the gusset that is still worth sewing [mm]."""
+STUFFINGS = ("polyester fibre",)  # materials that are stuffed into cloth: a body of them is plush, in space too
+_SHORTEST = 50.0  # a piece of the gusset that is still worth sewing [mm]
 
 
 class Corner(StrEnum):

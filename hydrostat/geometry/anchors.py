@@ -13,11 +13,8 @@ from hydrostat.arrays import Nodes, Points
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
 
-_HAIR = 1e-9
-"""A point this little outside counts as inside, in heights of its element."""
-
-_AT_ONCE = 3_000_000
-"""Pairs of point and facet whose distances are looked at together."""
+_HAIR = 1e-9  # a point this little outside counts as inside, in heights of its element
+_AT_ONCE = 3_000_000  # pairs of point and facet whose distances are looked at together
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.surface import Surface
 
-MOST_GRID_POINTS = 4_000_000
-"""A grid with more points than this is refused."""
+MOST_GRID_POINTS = 4_000_000  # a grid with more points than this is refused
 
 Field = Callable[[Points], Vector]
 """A number for each point, negative inside: a signed distance [m], or 0.5 minus a winding number."""

@@ -12,8 +12,7 @@ from shapely.validation import explain_validity
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import OutlineError
 
-Ring = Float[np.ndarray, "_ 2"]
-"""Corners of a closed polygon [m], first point not repeated."""
+Ring = Float[np.ndarray, "_ 2"]  # corners of a closed polygon [m], first point not repeated
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,19 +87,14 @@ def _ring(points: Ring, *, counter_clockwise: bool) -> Ring:
     return ring
 
 
-Stations = Float[np.ndarray, " _"]
-"""Arc lengths, or values at them."""
+Stations = Float[np.ndarray, " _"]  # arc lengths, or values at them
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A closed polyline with a station [same unit as its points] for each place on it.
+    """A closed polyline with a station [same unit as its points] for each place on it."""
 
-    Attributes:
-        corners: (corners, 2), first point not repeated.
-    """
-
-    corners: Points
+    corners: Points  # (corners, 2), first point not repeated
 
     @cached_property
     def closed(self) -> Points:

@@ -19,18 +19,12 @@ class Nearest:
 
     The distance of a point p is differentiable where this place is the only one: then it changes by direction . dp, and
     by -direction . (shares @ dx) when the nodes of the stencil move, whichever way the nearest place slides.
-
-    Attributes:
-        stencils: nodes of the facet that holds each place, (points, dim).
-        shares: weights of these nodes, rows sum to one.
-        distances: of the points [m], negative inside.
-        directions: unit vectors, in which the distance grows the fastest.
     """
 
-    stencils: Int[np.ndarray, "points dim"]
-    shares: Float[np.ndarray, "points dim"]
-    distances: Float[np.ndarray, " points"]
-    directions: Points
+    stencils: Int[np.ndarray, "points dim"]  # nodes of the facet that holds each place, (points, dim)
+    shares: Float[np.ndarray, "points dim"]  # weights of these nodes, rows sum to one
+    distances: Float[np.ndarray, " points"]  # of the points [m], negative inside
+    directions: Points  # unit vectors, in which the distance grows the fastest
 
 
 class Shell:

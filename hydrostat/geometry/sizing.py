@@ -7,19 +7,13 @@ import numpy as np
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
 
-FEWEST, MOST = 10, 200_000
-"""Nodes that may be asked for."""
-
-CLOSE = 0.1
-"""How far the number may be off, as a fraction of it."""
+FEWEST, MOST = 10, 200_000  # nodes that may be asked for
+CLOSE = 0.1  # how far the number may be off, as a fraction of it
 
 _TRIES = 8
 
-_THIN = 4.0
-"""So many times fewer nodes than elements as large as the body is thick would have, are not looked for."""
-
-_FINE = 0.01
-"""A size refused whose element has less than this share of the body is too fine, others are too coarse."""
+_THIN = 4.0  # so many times fewer nodes than elements as large as the body is thick would have, are not looked for
+_FINE = 0.01  # a size refused whose element has less than this share of the body is too fine, others are too coarse
 
 _DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
 """Nodes in a square or cube of the element size, and on a piece of the boundary as long or large, in 2D and 3D."""

@@ -74,11 +74,8 @@ class Surface:
         return float(np.einsum("td,td->", self.vertices[self.triangles[:, 0]] - middle, self.crosses) / 6)
 
 
-_PLASTIC = 1.32471795724474602596
-"""Its powers spread points evenly over a square (Roberts 2018)."""
-
-_MOST_POINTS = 2_000_000
-"""No more points than this, and one for each triangle."""
+_PLASTIC = 1.32471795724474602596  # its powers spread points evenly over a square (Roberts 2018)
+_MOST_POINTS = 2_000_000  # no more points than this, and one for each triangle
 
 
 def covering_points(surface: Surface, spacing: float) -> Float[np.ndarray, "points 3"]:
@@ -107,13 +104,9 @@ def spread_points(surface: Surface, spacing: float) -> tuple[Float[np.ndarray, "
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """The inside of a surface, by its winding number (Jacobson et al. 2013; fast: Barill et al. 2018).
+    """The inside of a surface, by its winding number (Jacobson et al. 2013; fast: Barill et al. 2018)."""
 
-    Attributes:
-        surface: closed, oriented outward.
-    """
-
-    surface: Surface
+    surface: Surface  # closed, oriented outward
 
     def __getstate__(self) -> dict[str, Any]:
         """State that another process is sent: trees cannot be, and are made again where they are asked for."""

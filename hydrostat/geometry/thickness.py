@@ -8,39 +8,27 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
 
-_REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}
-"""(Edge of a regular simplex)^dim over its size."""
+_REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}  # (Edge of a regular simplex)^dim over its size
 
 _ASIDE = (0.011, -0.007, -0.004)
 """How far a ray starts from the middle of its facet, as weights: from the middle, in regular meshes, rays hit edges."""
 
 _MOST_STEPS = 10_000
 
-_NEAR = 1.5
-"""Middles of thin places this many elements apart are of one part."""
-
-_NEIGHBOURS = 20
-"""As many of them are looked at: in a mesh with fine and coarse places more would be near."""
-
-_SLENDER = 1.5
-"""A part is a limb if it is this many times as long as thick."""
+_NEAR = 1.5  # middles of thin places this many elements apart are of one part
+_NEIGHBOURS = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
+_SLENDER = 1.5  # a part is a limb if it is this many times as long as thick
 
 
 @dataclass(frozen=True, eq=False)
 class Thickness:
-    """Thickness of the body inside of each facet of the boundary.
+    """Thickness of the body inside of each facet of the boundary."""
 
-    Attributes:
-        chords: how far it is from the facet, straight in, to where the body ends [m].
-        middles: half way there [m].
-        spacing: length of the mesh's edges about the facet [m]: of a regular element of the same size.
-        areas: area of the facet [m^2], its length in the plane [m].
-    """
-
-    chords: Float[np.ndarray, " facets"]
-    middles: Float[np.ndarray, "facets dim"]
+    chords: Float[np.ndarray, " facets"]  # how far it is from the facet, straight in, to where the body ends [m]
+    middles: Float[np.ndarray, "facets dim"]  # half way there [m]
+    # length of the mesh's edges about the facet [m]: of a regular element of the same size
     spacing: Float[np.ndarray, " facets"]
-    areas: Float[np.ndarray, " facets"]
+    areas: Float[np.ndarray, " facets"]  # area of the facet [m^2], its length in the plane [m]
 
     @property
     def across(self) -> Float[np.ndarray, " facets"]:
@@ -136,19 +124,12 @@ def _neighbours(mesh: Mesh) -> Int[np.ndarray, "elements corners"]:
 
 @dataclass(frozen=True, eq=False)
 class ThinPart:
-    """A part of the body that is thin and goes on for longer than it is thick.
+    """A part of the body that is thin and goes on for longer than it is thick."""
 
-    Attributes:
-        thickness: that three quarters of it do not reach [m]: a point or a notch is no limb.
-        across: elements there.
-        place: the middle of the body there [m].
-        length: of the part [m].
-    """
-
-    thickness: float
-    across: float
-    place: Float[np.ndarray, " dim"]
-    length: float
+    thickness: float  # that three quarters of it do not reach [m]: a point or a notch is no limb
+    across: float  # elements there
+    place: Float[np.ndarray, " dim"]  # the middle of the body there [m]
+    length: float  # of the part [m]
 
 
 def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:

@@ -10,8 +10,7 @@ import numpy as np
 from hydrostat.errors import InputError
 from hydrostat.robot.checks import LONGEST_NAME, Point, check_name, check_not_negative, check_point, check_positive
 
-LARGEST_FRICTION = 2.0
-"""No coefficient of friction is larger: one half turn would then hold 500 times the tension."""
+LARGEST_FRICTION = 2.0  # no coefficient of friction is larger: one half turn would then hold 500 times the tension
 
 
 @dataclass(frozen=True, kw_only=True)

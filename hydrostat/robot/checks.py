@@ -34,8 +34,7 @@ def check_point(field: str, point: Point) -> None:
         raise InputError(f"{field} must have finite coordinates, not {[float(value) for value in point]}")
 
 
-LONGEST_NAME = 60
-"""A name has at most this many characters."""
+LONGEST_NAME = 60  # a name has at most this many characters
 
 
 def check_name(name: str) -> str:

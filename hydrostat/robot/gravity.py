@@ -7,11 +7,8 @@ from hydrostat.errors import InputError
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s^2] (CGPM 1901)."""
 
-LARGEST_GRAVITY = 1000.0
-"""No component of gravity is larger [m/s^2]: about a hundred times that on earth."""
-
-DIRECTIONS = ("-x", "+x", "-y", "+y", "-z", "+z")
-"""Words for standard gravity along an axis."""
+LARGEST_GRAVITY = 1000.0  # no component of gravity is larger [m/s^2]: about a hundred times that on earth
+DIRECTIONS = ("-x", "+x", "-y", "+y", "-z", "+z")  # words for standard gravity along an axis
 
 
 def gravity_along(direction: str, dim: int) -> tuple[float, ...]:

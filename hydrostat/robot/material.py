@@ -7,8 +7,7 @@ from typing import Self
 from hydrostat.errors import InputError
 from hydrostat.robot.checks import check_not_negative, check_positive
 
-MOST_BRANCHES = 10
-"""A material has at most this many branches."""
+MOST_BRANCHES = 10  # a material has at most this many branches
 
 
 @dataclass(frozen=True, kw_only=True)

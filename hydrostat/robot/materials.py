@@ -11,11 +11,8 @@ from hydrostat.errors import InputError
 from hydrostat.robot.material import Material
 from hydrostat.units import quote
 
-PSI = 6894.757
-"""Pascals in a pound per square inch: data sheets give stresses in these."""
-
-POUND_PER_CUBIC_FOOT = 16.01846
-"""[kg/m^3]: castable foams are named after their density in these."""
+PSI = 6894.757  # pascals in a pound per square inch: data sheets give stresses in these
+POUND_PER_CUBIC_FOOT = 16.01846  # [kg/m^3]: castable foams are named after their density in these
 
 RUBBER_POISSON = 0.49
 """Poisson's ratio of rubbers: their volume hardly changes (0.4999); nearer to 0.5 only solving costs more."""

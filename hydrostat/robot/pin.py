@@ -9,8 +9,7 @@ from hydrostat.geometry.anchors import Anchors, anchor_nodes, locate
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot.checks import Point, check_not_negative, check_point, check_positive
 
-DEFAULT_STIFFNESS = 100e3
-"""Stiffness of a pin [N/m] (M2): about a hundred times that of a plush body."""
+DEFAULT_STIFFNESS = 100e3  # stiffness of a pin [N/m] (M2): about a hundred times that of a plush body
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.schema import TomlTable
 
 FILE = "robot.toml"
-LARGEST_FILE = 200_000_000
-"""The file of a body may have this many bytes."""
+LARGEST_FILE = 200_000_000  # the file of a body may have this many bytes
 
 
 def load_robot(path: str | Path) -> Robot:

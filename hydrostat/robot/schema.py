@@ -26,8 +26,7 @@ from hydrostat.robot.material import MOST_BRANCHES
 from hydrostat.robot.winch import Mount
 from hydrostat.units import quote
 
-LARGEST = 10**12
-"""No number of robot.toml is larger, whether bare or in SI."""
+LARGEST = 10**12  # no number of robot.toml is larger, whether bare or in SI
 
 
 def _quantity(dimension: units.Dimension) -> Callable[[object], float]:

@@ -27,8 +27,7 @@ from hydrostat.robot.winch import Winch
 NODES = 900
 """Nodes of a sketch, if neither a number nor an element size is asked for: as many as the thesis's hand (N3)."""
 
-SHORTEST, LONGEST = 0.002, 20.0
-"""Bodies are as long [m]; what is not was probably meant in another unit."""
+SHORTEST, LONGEST = 0.002, 20.0  # bodies are as long [m]; what is not was probably meant in another unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,8 +125,7 @@ def _guess(surface: Surface, nodes: int) -> float:
     return float((max(min(abs(surface.volume), box), 0.05 * box, 1e-3 * surface.size**3) / nodes) ** (1 / 3))
 
 
-_END = 0.12
-"""An end is as much of the longest side."""
+_END = 0.12  # an end is as much of the longest side
 
 _STOUT = 0.35
 """An end with such a share of the largest cross section is a good place to hold: a wrist, not the tip of an arm."""
@@ -135,11 +133,8 @@ _STOUT = 0.35
 _STATIONS = np.linspace(0.04, 0.9, 12)
 _BAND = 0.05
 _SMOOTHINGS = 3
-_OFFS = (0.3, 0.2, 0.1, 0.0)
-"""How far a cable may lie from the middle of a limb towards its skin, the best first."""
-
-_COVER = 0.004
-"""A cable should be as deep [m]."""
+_OFFS = (0.3, 0.2, 0.1, 0.0)  # how far a cable may lie from the middle of a limb towards its skin, the best first
+_COVER = 0.004  # a cable should be as deep [m]
 
 _SPOOL, _LEAST_SPOOL = 0.006, 0.002
 
@@ -195,15 +190,10 @@ def _hold(mesh: Mesh) -> Pin:
 
 @dataclass(frozen=True, eq=False)
 class _Limb:
-    """The longest way through a body from where it is held.
+    """The longest way through a body from where it is held."""
 
-    Attributes:
-        away: of each node from there, along edges, as a share of the longest way.
-        path: nodes on the longest way, from its end.
-    """
-
-    away: Vector
-    path: Int[np.ndarray, " path"]
+    away: Vector  # of each node from there, along edges, as a share of the longest way
+    path: Int[np.ndarray, " path"]  # nodes on the longest way, from its end
 
     def part(self, mesh: Mesh, share: float) -> Bool[np.ndarray, " elements"]:
         """The elements across the limb at a share of its length: those that hang together with the way there."""

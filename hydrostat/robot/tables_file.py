@@ -15,11 +15,8 @@ if TYPE_CHECKING:
     from hydrostat.robot.schema import TomlTable
 
 
-LARGEST_TEXT = 1_000_000
-"""The file may have this many bytes."""
-
-_LONGEST = 400
-"""Characters of a complaint, its file and line not counted."""
+LARGEST_TEXT = 1_000_000  # the file may have this many bytes
+_LONGEST = 400  # characters of a complaint, its file and line not counted
 
 _PLACE = re.compile(r"([a-z_]+)(?:\[\d+\])*(?:\.[a-z_]+(?:\[\d+\])*)*(?=[ :.])")
 _LONG_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]*["']?[ \t]*\.[ \t]*){30}""")
@@ -29,14 +26,12 @@ _Record = TypeVar("_Record")
 class TablesFile(ABC):
     """Turns the text of one file into records."""
 
-    kind = "a robot"
-    """Thing that the file describes, in complaints."""
+    kind = "a robot"  # thing that the file describes, in complaints
 
     empty: str | None = "the file is empty; begin with format = 1, or run hydrostat new"
     """Complaint of a file without text; None: it may have none."""
 
-    unit = "mm"
-    """Unit of coordinates."""
+    unit = "mm"  # unit of coordinates
 
     def __init__(self, file: Path, text: str) -> None:
         self.file = file

@@ -13,21 +13,13 @@ _TOKEN = re.compile(
 
 @dataclass(frozen=True, kw_only=True)
 class TomlBlock:
-    """One table with its sub-tables, or what stands before the first.
+    """One table with its sub-tables, or what stands before the first."""
 
-    Attributes:
-        name: first part of its key; "" for what stands before the first table.
-        whole: whether it begins with the table itself and not with a sub-table.
-        free: what stands before it, apart: blank lines, and comments with a blank line after them.
-        lead: comments directly above its header.
-        text: from its header to the last line of its own.
-    """
-
-    name: str
-    whole: bool = True
-    free: str = ""
-    lead: str = ""
-    text: str = ""
+    name: str  # first part of its key; "" for what stands before the first table
+    whole: bool = True  # whether it begins with the table itself and not with a sub-table
+    free: str = ""  # what stands before it, apart: blank lines, and comments with a blank line after them
+    lead: str = ""  # comments directly above its header
+    text: str = ""  # from its header to the last line of its own
 
 
 def split_blocks(text: str) -> tuple[list[TomlBlock], str]:

@@ -13,8 +13,7 @@ sources: see `hand.py`, where such numbers are called assumed.
 
 from types import MappingProxyType
 
-FINGERS = ("thumb", "index", "middle", "ring", "little")
-"""Names in the order of the rays."""
+FINGERS = ("thumb", "index", "middle", "ring", "little")  # names in the order of the rays
 
 METACARPALS = MappingProxyType(
     {"thumb": 46.22e-3, "index": 68.12e-3, "middle": 64.60e-3, "ring": 58.00e-3, "little": 53.69e-3}
@@ -40,8 +39,7 @@ SOFT_TIPS = MappingProxyType(
 HAND_LENGTH = 189e-3
 """Length from the crease of the wrist to the tip of the middle finger [m] (Pheasant and Haslegrave 2006)."""
 
-HAND_BREADTH = 87e-3
-"""Across the knuckles of the four fingers [m] (Pheasant and Haslegrave 2006)."""
+HAND_BREADTH = 87e-3  # across the knuckles of the four fingers [m] (Pheasant and Haslegrave 2006)
 
 HAND_THICKNESS = 33e-3
 """Thickness from back to palm at the knuckle of the middle finger [m] (Pheasant and Haslegrave 2006)."""
@@ -49,5 +47,4 @@ HAND_THICKNESS = 33e-3
 INDEX_BREADTH, INDEX_THICKNESS = 21e-3, 19e-3
 """Sizes of the index finger at its middle joint [m] (Pheasant and Haslegrave 2006)."""
 
-THUMB_BREADTH, THUMB_THICKNESS = 23e-3, 22e-3
-"""Sizes of the thumb at its last joint [m] (Pheasant and Haslegrave 2006)."""
+THUMB_BREADTH, THUMB_THICKNESS = 23e-3, 22e-3  # sizes of the thumb at its last joint [m] (Pheasant and Haslegrave 2006)

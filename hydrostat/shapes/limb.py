@@ -13,8 +13,7 @@ from hydrostat.geometry.contour import contour
 from hydrostat.geometry.surface import Surface
 from hydrostat.shapes.field import Field, Place, ellipsoidal
 
-_SPACING = 4e-3
-"""Stations along the spine of a limb are about this far apart [m]."""
+_SPACING = 4e-3  # stations along the spine of a limb are about this far apart [m]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,21 +14,13 @@ from hydrostat.robot import Mount
 
 @dataclass(frozen=True, eq=False)
 class _Segments:
-    """The segments of all new cables.
+    """The segments of all new cables."""
 
-    Attributes:
-        cables: number of the cable of each.
-        firsts: number of the point at which each begins.
-        starts: [m].
-        ends: [m].
-        bare: whether each is without a sheath.
-    """
-
-    cables: Int[np.ndarray, " segments"]
-    firsts: Int[np.ndarray, " segments"]
-    starts: Float[np.ndarray, "segments dim"]
-    ends: Float[np.ndarray, "segments dim"]
-    bare: Bool[np.ndarray, " segments"]
+    cables: Int[np.ndarray, " segments"]  # number of the cable of each
+    firsts: Int[np.ndarray, " segments"]  # number of the point at which each begins
+    starts: Float[np.ndarray, "segments dim"]  # [m]
+    ends: Float[np.ndarray, "segments dim"]  # [m]
+    bare: Bool[np.ndarray, " segments"]  # whether each is without a sheath
 
     def name(self, index: int | np.integer) -> str:
         """A segment as a sentence begins with it."""
@@ -125,11 +117,8 @@ def _sheathed_for_nothing(parts: Parts, segments: _Segments) -> Iterator[str]:
         yield f"{segments.name(index)} runs in a sheath outside the still zones, and leads are not allowed"
 
 
-SAME = 1e-5
-"""Points no farther apart than this [m] share a hole."""
-
-Hole = tuple[int, int]
-"""A hole: number of the cable, and of its point."""
+SAME = 1e-5  # points no farther apart than this [m] share a hole
+Hole = tuple[int, int]  # a hole: number of the cable, and of its point
 
 
 def hole_violations(parts: Parts) -> Iterator[str]:
@@ -227,5 +216,4 @@ def _wrong_spools(parts: Parts) -> Iterator[str]:
             )
 
 
-_ROUNDING = 1e-5
-"""Radii are rounded by no larger a share."""
+_ROUNDING = 1e-5  # radii are rounded by no larger a share

@@ -11,26 +11,17 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.robot import Cable, Mount, Robot, Winch
 
-LENGTH = 2e-5
-"""Lengths may miss a limit by so much [m], for coordinates are rounded to half of it."""
-
-ANGLE = 0.1
-"""Angles may miss a limit by so much [degrees], for the same reason."""
+LENGTH = 2e-5  # lengths may miss a limit by so much [m], for coordinates are rounded to half of it
+ANGLE = 0.1  # angles may miss a limit by so much [degrees], for the same reason
 
 
 @dataclass(frozen=True, eq=False)
 class Parts:
-    """A network within constraints.
+    """A network within constraints."""
 
-    Attributes:
-        robot: with the network.
-        constraints: that it should keep.
-        region: of its body.
-    """
-
-    robot: Robot
-    constraints: Constraints
-    region: Region
+    robot: Robot  # with the network
+    constraints: Constraints  # that it should keep
+    region: Region  # of its body
 
     @cached_property
     def new_winches(self) -> tuple[int, ...]:

@@ -80,8 +80,7 @@ def _crowded(parts: Parts) -> Iterator[str]:
             yield f"{parts.winch_name(index)} pulls {count} cables, more than the cables_per_winch of {most}"
 
 
-_NEAR = 1e-4
-"""A mirror image may be so far from where it should be [m]."""
+_NEAR = 1e-4  # a mirror image may be so far from where it should be [m]
 
 
 def mirror_violations(parts: Parts) -> Iterator[str]:

@@ -185,38 +185,15 @@ class FreePosing:
 _SHORTEST = 0.4
 """A muscle that is so short, as a share of its length at rest, cannot pull: the force falls with the length."""
 
-_LARGEST = 0.15
-"""No update moves a node farther, in sizes of the body."""
-
-_SMALLEST = 1e-4
-"""Steps become no shorter; a goal that moves on asks for longer ones again."""
-
-_STILL = 2e-5
-"""A step that moves no node farther counts as none, in sizes of the body."""
-
-_TRIES = 3
-"""Steps tried in one update before the body stays where it is."""
-
-_SOFTENINGS = 8
-"""Times that the weight of the effort is raised in one update."""
-
-_SOFT = 0.05
-"""A fibre may be asked for so much more than it can pull."""
-
-_ITERATIONS = 1
-"""Steps of Newton in an update: what they leave over, the next one takes in."""
-
-_PATIENT = 4
-"""Steps of Newton where a body is far from rest."""
-
-_LOOSE = 1e-5
-"""Force left over that counts as none, as a share of the largest tension."""
-
-_LEAST_ABLE = 1e-2
-"""Points that hardly move are not pulled at harder than if they moved a tenth as far as the freest."""
-
-_SAMPLES = 24
-"""Nodes by which that is measured."""
-
-_SHIFT = 1e-6
-"""Added to the diagonal of a Hessian that cannot be solved with, as a share of its largest entry."""
+_LARGEST = 0.15  # no update moves a node farther, in sizes of the body
+_SMALLEST = 1e-4  # steps become no shorter; a goal that moves on asks for longer ones again
+_STILL = 2e-5  # a step that moves no node farther counts as none, in sizes of the body
+_TRIES = 3  # steps tried in one update before the body stays where it is
+_SOFTENINGS = 8  # times that the weight of the effort is raised in one update
+_SOFT = 0.05  # a fibre may be asked for so much more than it can pull
+_ITERATIONS = 1  # steps of Newton in an update: what they leave over, the next one takes in
+_PATIENT = 4  # steps of Newton where a body is far from rest
+_LOOSE = 1e-5  # force left over that counts as none, as a share of the largest tension
+_LEAST_ABLE = 1e-2  # points that hardly move are not pulled at harder than if they moved a tenth as far as the freest
+_SAMPLES = 24  # nodes by which that is measured
+_SHIFT = 1e-6  # added to the diagonal of a Hessian that cannot be solved with, as a share of its largest entry

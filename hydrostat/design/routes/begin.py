@@ -82,8 +82,7 @@ def _site_at(sites: list[WinchSite], place: np.ndarray, but: int) -> int | None:
     return None
 
 
-_SAME_PLACE = 1e-4
-"""Winches of the two sides may miss each other's image by so much [m]."""
+_SAME_PLACE = 1e-4  # winches of the two sides may miss each other's image by so much [m]
 
 
 def layout_of(robot: Robot, constraints: Constraints) -> Layout:
@@ -161,5 +160,4 @@ def _lead(cable: Cable) -> int | None:
     return None if sheathed[count:].any() else count
 
 
-_NEAR = 1e-4
-"""What is so near to a mirror image [m] is that image."""
+_NEAR = 1e-4  # what is so near to a mirror image [m] is that image

@@ -17,21 +17,13 @@ from hydrostat.simulation import BodyPhysics, Simulation, SolvedPose
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A layout with an equilibrium for every pose.
+    """A layout with an equilibrium for every pose."""
 
-    Attributes:
-        layout: winches and cables.
-        simulation: of the robot with them.
-        poses: at equilibrium, one for each target.
-        error: root of the mean squared marker error over all poses [m].
-        pull: the largest tension, as a share of what a cable bears.
-    """
-
-    layout: Layout
-    simulation: Simulation
-    poses: tuple[SolvedPose, ...]
-    error: float
-    pull: float
+    layout: Layout  # winches and cables
+    simulation: Simulation  # of the robot with them
+    poses: tuple[SolvedPose, ...]  # at equilibrium, one for each target
+    error: float  # root of the mean squared marker error over all poses [m]
+    pull: float  # the largest tension, as a share of what a cable bears
 
     @property
     def cost(self) -> float:
@@ -41,21 +33,13 @@ class Trial:
 
 @dataclass(eq=False)
 class Bench:
-    """Solves layouts for some poses.
+    """Solves layouts for some poses."""
 
-    Attributes:
-        source: the robot that is designed for.
-        targets: poses to reach.
-        constraints: limits on tensions and contractions.
-        body: physics of the body, which all layouts share; each has its own if left out.
-        solves: layouts tried.
-    """
-
-    source: Robot
-    targets: Sequence[Pose]
-    constraints: Constraints
-    body: BodyPhysics | None = None
-    solves: int = field(default=0)
+    source: Robot  # the robot that is designed for
+    targets: Sequence[Pose]  # poses to reach
+    constraints: Constraints  # limits on tensions and contractions
+    body: BodyPhysics | None = None  # physics of the body, which all layouts share; each has its own if left out
+    solves: int = field(default=0)  # layouts tried
 
     @cached_property
     def markers(self) -> list[list[int]]:

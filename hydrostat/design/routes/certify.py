@@ -41,5 +41,4 @@ def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) 
     return float(np.abs(gradient).max(initial=0.0))
 
 
-_HOLDS = 1e-4
-"""A limit with a smaller margin than this [m] holds."""
+_HOLDS = 1e-4  # a limit with a smaller margin than this [m] holds

@@ -93,8 +93,5 @@ def _all(network: Network) -> tuple[Alternative, ...]:
     return Alternative(robot=network.robot, reached=network.reached), *network.alternatives
 
 
-_SHARE = 0.01
-"""The tolerance where none is given, as a share of the body's size."""
-
-_SAFE = 0.6
-"""Share of the tolerance at which no more cables are added: the mean over poses hides the worst."""
+_SHARE = 0.01  # the tolerance where none is given, as a share of the body's size
+_SAFE = 0.6  # share of the tolerance at which no more cables are added: the mean over poses hides the worst

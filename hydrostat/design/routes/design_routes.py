@@ -223,11 +223,6 @@ class RouteSearch:
         return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot, body=self.bench.body), poses))
 
 
-_DIGITS = 5
-"""Coordinates to a hundredth of a millimetre, as nobody places a cable finer."""
-
-_ANOTHER = 0.2
-"""A round of exchanges that gains so much is followed by another."""
-
-_REFINED = 2
-"""Networks that are refined to the end."""
+_DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a cable finer
+_ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
+_REFINED = 2  # networks that are refined to the end

@@ -13,21 +13,15 @@ from hydrostat.design.routes.refine import RefineOptions, refine
 from hydrostat.robot import Mount
 from hydrostat.simulation import Simulation
 
-Noted = Callable[[str, Trial], None]
-"""Told what was done, and the network after it."""
+Noted = Callable[[str, Trial], None]  # told what was done, and the network after it
 
 
 @dataclass(eq=False)
 class Growth:
-    """Grows, refines and exchanges.
+    """Grows, refines and exchanges."""
 
-    Attributes:
-        proposals: where cables may be added.
-        noted: told of every network on the way.
-    """
-
-    proposals: Proposals
-    noted: Noted
+    proposals: Proposals  # where cables may be added
+    noted: Noted  # told of every network on the way
 
     @property
     def bench(self) -> Bench:
@@ -187,29 +181,12 @@ def _words(trial: Trial) -> str:
     return f"cable {len(layout.routes)}, pulled by {name}"
 
 
-_SEEDS = 3
-"""First cables that are refined for each that a network is grown from."""
-
-_GLANCE = 5
-"""Steps of inverse kinematics that tell which of several networks is the best."""
-
-_ROUND = 8
-"""Steps of refinement before the poses are found from rest again."""
-
-_IDLE = 0.02
-"""A round that gains less ends the refinement."""
-
-_SHALLOW = 0.5
-"""How much more a network costs whose winches are at the edge."""
-
-_TURNED = 0.2
-"""How much more a network costs whose cables turn by 1 rad."""
-
-_SPOILT = 3.0
-"""A cable may raise the error so many times, for refinement to bring it down again; else it is left out."""
-
-_LOSS = 0.005
-"""A cable whose loss costs less than this share does not earn its place."""
-
-_WORTH = 0.01
-"""An exchange must gain so much."""
+_SEEDS = 3  # first cables that are refined for each that a network is grown from
+_GLANCE = 5  # steps of inverse kinematics that tell which of several networks is the best
+_ROUND = 8  # steps of refinement before the poses are found from rest again
+_IDLE = 0.02  # a round that gains less ends the refinement
+_SHALLOW = 0.5  # how much more a network costs whose winches are at the edge
+_TURNED = 0.2  # how much more a network costs whose cables turn by 1 rad
+_SPOILT = 3.0  # a cable may raise the error so many times, for refinement to bring it down again; else it is left out
+_LOSS = 0.005  # a cable whose loss costs less than this share does not earn its place
+_WORTH = 0.01  # an exchange must gain so much

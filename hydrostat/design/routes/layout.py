@@ -14,42 +14,26 @@ from hydrostat.robot.robot import LARGEST_STEP
 
 @dataclass(frozen=True, eq=False)
 class WinchSite:
-    """A winch in the making.
+    """A winch in the making."""
 
-    Attributes:
-        winch: it, at its place.
-        fixed: whether it stays where it is.
-        twin: number of the winch that it mirrors; its own where it stands in the mirror; None: of no other.
-    """
-
-    winch: Winch
-    fixed: bool = False
+    winch: Winch  # it, at its place
+    fixed: bool = False  # whether it stays where it is
+    # number of the winch that it mirrors; its own where it stands in the mirror; None: of no other
     twin: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class CableRoute:
-    """A cable in the making.
+    """A cable in the making."""
 
-    Attributes:
-        winch: number of its winch.
-        points: first = at the winch, last = stopper [m].
-        lead: so many of its first segments run in a sheath.
-        slack: left by its stopper [m].
-        ratio: of its spool to that of its winch.
-        make: a cable whose stiffness, smoothing and friction it has; None: the usual ones.
-        kept: a cable that stays just as it is.
-        twin: number of the line that it mirrors; None: of no other.
-    """
-
-    winch: int
-    points: Float[np.ndarray, "_ dim"]
-    lead: int = 0
-    slack: float = 0.0
-    ratio: float = 1.0
-    make: Cable | None = None
-    kept: Cable | None = None
-    twin: int | None = None
+    winch: int  # number of its winch
+    points: Float[np.ndarray, "_ dim"]  # first = at the winch, last = stopper [m]
+    lead: int = 0  # so many of its first segments run in a sheath
+    slack: float = 0.0  # left by its stopper [m]
+    ratio: float = 1.0  # of its spool to that of its winch
+    make: Cable | None = None  # a cable whose stiffness, smoothing and friction it has; None: the usual ones
+    kept: Cable | None = None  # a cable that stays just as it is
+    twin: int | None = None  # number of the line that it mirrors; None: of no other
 
 
 @dataclass(frozen=True, eq=False)

@@ -252,21 +252,16 @@ def _nearest(zone: Zone, spots: _Spots, numbers: Vector, dim: int) -> _Spots:
     return spots._replace(shares=0.5 * (low + high))
 
 
-_HAIR = 5e-5
-"""Kept back from every limit on a length [m]: more than what rounding coordinates changes."""
-
-_DEGREE = 0.5
-"""Kept back from the largest turn."""
+_HAIR = 5e-5  # kept back from every limit on a length [m]: more than what rounding coordinates changes
+_DEGREE = 0.5  # kept back from the largest turn
 
 _STEP = 1e-7
 
-_MOST = 500
-"""Places between two points: a layout that cannot be pushed back may have flown far apart."""
+_MOST = 500  # places between two points: a layout that cannot be pushed back may have flown far apart
 
 _GOLDEN = 0.5 * (5**0.5 - 1)
 
-_SECTIONS = 16
-"""Leave a two-thousandth of where the nearest place may be."""
+_SECTIONS = 16  # leave a two-thousandth of where the nearest place may be
 
 
 def _unit(size: int, own: slice, sign: float) -> Vector:

@@ -7,8 +7,7 @@ from numba import njit
 
 from hydrostat.kernel import INNER, KERNEL
 
-FINE = {"contract", "reassoc"}
-"""What of floating point may be rearranged: sums, so that they run in vector registers."""
+FINE = {"contract", "reassoc"}  # what of floating point may be rearranged: sums, so that they run in vector registers
 
 
 @njit(**KERNEL)

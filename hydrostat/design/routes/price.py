@@ -25,59 +25,36 @@ Moves = Float[np.ndarray, "edges rows"]
 
 @dataclass(frozen=True, kw_only=True)
 class PathLimits:
-    """What a path may be.
+    """What a path may be."""
 
-    Attributes:
-        hops: most edges of its bare part.
-        turn: sharpest turn at a via point, lead included, in the rest shape [degrees].
-        longest: greatest rest length, lead included [m]; None: any.
-        leads: whether it may begin with a sheathed lead from its winch, which moves nothing.
-        lead_penalty: share of the gain that a lead as long as the body costs.
-    """
-
-    hops: int
-    turn: float
-    longest: float | None = None
-    leads: bool = True
-    lead_penalty: float = 0.0
+    hops: int  # most edges of its bare part
+    turn: float  # sharpest turn at a via point, lead included, in the rest shape [degrees]
+    longest: float | None = None  # greatest rest length, lead included [m]; None: any
+    leads: bool = True  # whether it may begin with a sheathed lead from its winch, which moves nothing
+    lead_penalty: float = 0.0  # share of the gain that a lead as long as the body costs
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Missed:
-    """What is missed in each row, and what 1 N along each edge of a route graph does to it.
+    """What is missed in each row, and what 1 N along each edge of a route graph does to it."""
 
-    Attributes:
-        residual: target less marker of each row [m].
-        moves: what 1 N along each edge adds to each row [m/N].
-        pose_of_row: 0, 1, ...
-        ridge: added to |J|^2 of each pose, above 0.
-        most: largest tension [N].
-    """
-
-    residual: Float[np.ndarray, " rows"]
-    moves: Moves
-    pose_of_row: Int[np.ndarray, " rows"]
-    ridge: Float[np.ndarray, " poses"]
-    most: float
+    residual: Float[np.ndarray, " rows"]  # target less marker of each row [m]
+    moves: Moves  # what 1 N along each edge adds to each row [m/N]
+    pose_of_row: Int[np.ndarray, " rows"]  # 0, 1, ...
+    ridge: Float[np.ndarray, " poses"]  # added to |J|^2 of each pose, above 0
+    most: float  # largest tension [N]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PricedPath:
-    """A cable that would help.
+    """A cable that would help."""
 
-    Attributes:
-        nodes: graph points of its bare part, from where the lead ends.
-        lead: graph points from its winch to the first of `nodes`; just that one where the winch stands there.
-        gain: decrease of half the squares of the residual that it promises, less what its lead costs.
-        moves: of the rows, by a tension of 1 N.
-        tensions: that promise it in each pose [N].
-    """
-
-    nodes: tuple[int, ...]
+    nodes: tuple[int, ...]  # graph points of its bare part, from where the lead ends
+    # graph points from its winch to the first of `nodes`; just that one where the winch stands there
     lead: tuple[int, ...]
-    gain: float
-    moves: Vector
-    tensions: Vector
+    gain: float  # decrease of half the squares of the residual that it promises, less what its lead costs
+    moves: Vector  # of the rows, by a tension of 1 N
+    tensions: Vector  # that promise it in each pose [N]
 
     @property
     def winch(self) -> int:
@@ -126,14 +103,9 @@ def price_paths(
     return [search.priced(paths[order[index]], lead, float(gains[order[index]])) for index, lead in picked]
 
 
-_ALIKE = 0.7
-"""Two paths that share more than this part of their edges are variants of one."""
-
-_SOME = 4
-"""At most one path in so many, and at least two, stand in one region of winches while there are others."""
-
-_LANES = 4
-"""Numbers that a vector register holds."""
+_ALIKE = 0.7  # two paths that share more than this part of their edges are variants of one
+_SOME = 4  # at most one path in so many, and at least two, stand in one region of winches while there are others
+_LANES = 4  # numbers that a vector register holds
 
 
 class _LeadStarts:

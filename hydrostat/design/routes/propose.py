@@ -21,19 +21,12 @@ from hydrostat.simulation import rig_slopes
 
 @dataclass(frozen=True, eq=False)
 class Proposals:
-    """Where cables may be added.
+    """Where cables may be added."""
 
-    Attributes:
-        bench: solves layouts.
-        graph: of via points.
-        options: of the search.
-        spacing: of via points [m].
-    """
-
-    bench: Bench
-    graph: RouteGraph
-    options: RouteOptions
-    spacing: float
+    bench: Bench  # solves layouts
+    graph: RouteGraph  # of via points
+    options: RouteOptions  # of the search
+    spacing: float  # of via points [m]
 
     @cached_property
     def deepest(self) -> float:
@@ -197,24 +190,14 @@ def _span(moves: np.ndarray) -> np.ndarray:
     return left[:, values > _WEAK * max(values.max(initial=0.0), 1e-12)]
 
 
-_EFFORT = 0.1
-"""Share of the residual that the tension limit is worth."""
-
-_CHOICE = 4
-"""So many paths are priced for each that is tried, for the winches of some are deeper in the body."""
-
-_EDGE = 0.1
-"""What the gain of a path counts whose winch is at the edge of the body."""
-
-_WEAK = 0.02
-"""Winches that move the rows less than this share of the strongest are not counted on."""
+_EFFORT = 0.1  # share of the residual that the tension limit is worth
+_CHOICE = 4  # so many paths are priced for each that is tried, for the winches of some are deeper in the body
+_EDGE = 0.1  # what the gain of a path counts whose winch is at the edge of the body
+_WEAK = 0.02  # winches that move the rows less than this share of the strongest are not counted on
 
 
-_NEVER = 1e5
-"""So many times the largest move of an edge."""
-
-_REACH = 0.03
-"""What is farther than this share of the body's size from a limit does not feel it."""
+_NEVER = 1e5  # so many times the largest move of an edge
+_REACH = 0.03  # what is farther than this share of the body's size from a limit does not feel it
 
 
 def route_along(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spacing: float) -> CableRoute | None:

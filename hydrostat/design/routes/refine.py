@@ -15,22 +15,15 @@ from hydrostat.simulation import rig_slopes
 
 @dataclass(frozen=True, kw_only=True)
 class RefineOptions:
-    """How far a refinement goes.
+    """How far a refinement goes."""
 
-    Attributes:
-        iterations: most steps.
-        effort: error, as a share of the present one, that the tension limit of a cable is worth.
-        straightness: error, as a share of the present one, that a cable which turns by 1 rad at every point is worth:
-            turns rub (E14), and what does not matter to the poses should look as if it had been meant.
-        progress: it ends after steps that lower the cost by less than this share.
-        enough: error [m] at which it ends.
-    """
-
-    iterations: int = 40
-    effort: float = 0.02
+    iterations: int = 40  # most steps
+    effort: float = 0.02  # error, as a share of the present one, that the tension limit of a cable is worth
+    # error, as a share of the present one, that a cable which turns by 1 rad at every point is worth: turns rub (E14),
+    # and what does not matter to the poses should look as if it had been meant
     straightness: float = 0.1
-    progress: float = 3e-3
-    enough: float = 0.0
+    progress: float = 3e-3  # it ends after steps that lower the cost by less than this share
+    enough: float = 0.0  # error [m] at which it ends
 
 
 def refine(bench: Bench, region: Region, trial: Trial, options: RefineOptions) -> Trial:
@@ -254,32 +247,17 @@ def _by_numbers(layout: Layout, slopes) -> np.ndarray:
     return full
 
 
-_REACH = 0.03
-"""A large step of a via point, as a share of the body's size."""
-
-_TRAVEL = 0.2
-"""A large step of a contraction, as a share of the travel."""
-
-_NEAR = 0.3
-"""Share of a large step within which limits are felt when a layout is pushed back."""
-
-_DAMPING = 0.1
-"""Where the damping begins, as a share of the largest slope."""
-
-_LEAST, _STIFF = 1e-4, 1e3
-"""Between these the damping stays."""
-
-_GOOD, _POOR = 0.6, 0.2
-"""Shares of what a step promised, above which the damping falls and below which it rises."""
+_REACH = 0.03  # a large step of a via point, as a share of the body's size
+_TRAVEL = 0.2  # a large step of a contraction, as a share of the travel
+_NEAR = 0.3  # share of a large step within which limits are felt when a layout is pushed back
+_DAMPING = 0.1  # where the damping begins, as a share of the largest slope
+_LEAST, _STIFF = 1e-4, 1e3  # between these the damping stays
+_GOOD, _POOR = 0.6, 0.2  # shares of what a step promised, above which the damping falls and below which it rises
 
 _TRIES = 5
-_LIGHT = 0.1
-"""Damping of contractions against that of the numbers of the layout."""
-
-_OVER = 30.0
-"""How much more the part of a tension beyond its limit weighs."""
+_LIGHT = 0.1  # damping of contractions against that of the numbers of the layout
+_OVER = 30.0  # how much more the part of a tension beyond its limit weighs
 
 _PUSHES = 8
 
-_CLOSE = 2e-5
-"""What may be left of a limit [m]."""
+_CLOSE = 2e-5  # what may be left of a limit [m]

@@ -24,24 +24,16 @@ class RouteGraph:
 
     Directed edges are numbered by their start, then by their end: those from point p are `offsets[p]` to
     `offsets[p + 1]`.
-
-    Attributes:
-        points: rest places [m]: those in the body, then winches fixed in the world.
-        anchors: what holds the points in the body.
-        edges: undirected, lower point first, sorted.
-        still: which edges lie in a still zone: a cable runs there in a sheath and moves nothing (R14).
-        winch_places: points where a winch may stand.
-        size: of the body, the longest side of its bounding box [m].
-        region: that the edges keep to.
     """
 
-    points: Points
-    anchors: Anchors
-    edges: Int[np.ndarray, "edges 2"]
+    points: Points  # rest places [m]: those in the body, then winches fixed in the world
+    anchors: Anchors  # what holds the points in the body
+    edges: Int[np.ndarray, "edges 2"]  # undirected, lower point first, sorted
+    # which edges lie in a still zone: a cable runs there in a sheath and moves nothing (R14)
     still: Bool[np.ndarray, " edges"]
-    winch_places: Int[np.ndarray, " places"]
-    size: float
-    region: Region
+    winch_places: Int[np.ndarray, " places"]  # points where a winch may stand
+    size: float  # of the body, the longest side of its bounding box [m]
+    region: Region  # that the edges keep to
 
     @property
     def world(self) -> Bool[np.ndarray, " points"]:
@@ -151,11 +143,8 @@ def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spaci
     )
 
 
-_CROWDED = 0.35
-"""Points nearer than this share of the spacing are one."""
-
-_REACH = 2.0
-"""Points are joined up to so many spacings away."""
+_CROWDED = 0.35  # points nearer than this share of the spacing are one
+_REACH = 2.0  # points are joined up to so many spacings away
 
 _NEIGHBOURS = {2: 12, 3: 18}
 """So many of the nearest points is each joined to, by dimension: enough directions for a cable to follow the field."""

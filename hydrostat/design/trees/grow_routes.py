@@ -15,19 +15,12 @@ FibreEnds = Float[np.ndarray, "fibres 2 dim"]
 
 @dataclass(frozen=True, kw_only=True)
 class GrowthLimits:
-    """When a fibre may be joined to a route.
+    """When a fibre may be joined to a route."""
 
-    Attributes:
-        distance: largest gap to bridge [m].
-        steps: most fibres joined.
-        turn: sharpest turn [degrees].
-        spacing: length of a mesh edge [m]; fibres nearer than 0.6 of it to a route belong to it.
-    """
-
-    distance: float
-    steps: int
-    turn: float
-    spacing: float
+    distance: float  # largest gap to bridge [m]
+    steps: int  # most fibres joined
+    turn: float  # sharpest turn [degrees]
+    spacing: float  # length of a mesh edge [m]; fibres nearer than 0.6 of it to a route belong to it
 
 
 def strongest(tensions: Vector, count: int, *, weakest: float = 0.02) -> Int[np.ndarray, " candidates"]:
@@ -120,11 +113,8 @@ def lay_route(route: Route, region: Region, spacing: float) -> Route | None:
     return laid if len(laid) >= 2 and region.holds(laid) else None
 
 
-_SAME = 1e-5
-"""Points nearer than this [m] share a hole."""
-
-_STEP = 1e-3
-"""How finely places along a cable are tried [m]."""
+_SAME = 1e-5  # points nearer than this [m] share a hole
+_STEP = 1e-3  # how finely places along a cable are tried [m]
 
 
 def keep_apart(cables: Sequence[Route], *, gap: float, winch_gap: float) -> list[Route] | None:

@@ -11,11 +11,8 @@ from hydrostat.simulation import BodyPhysics, Simulation
 _ROUNDS = tuple(InverseOptions(iterations=steps, restarts=0, unique=False) for steps in (3, 4, 100))
 """Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
 
-_KEPT = 4
-"""One in so many robots goes on to the next round."""
-
-_FEWEST = 4
-"""At least so many robots go on."""
+_KEPT = 4  # one in so many robots goes on to the next round
+_FEWEST = 4  # at least so many robots go on
 
 
 def judge(
@@ -102,5 +99,4 @@ def prune(
     return robot, reached
 
 
-_OPTIONS = InverseOptions(restarts=0, unique=False)
-"""One descent tells enough."""
+_OPTIONS = InverseOptions(restarts=0, unique=False)  # one descent tells enough

@@ -20,17 +20,11 @@ from hydrostat.geometry.mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class WinchTree:
-    """One winch and the routes it pulls.
+    """One winch and the routes it pulls."""
 
-    Attributes:
-        place: node at which the winch stands.
-        routes: indices of its routes.
-        score: phi mean - (1 - phi) std, less the penalty for leads.
-    """
-
-    place: int
-    routes: tuple[int, ...]
-    score: float
+    place: int  # node at which the winch stands
+    routes: tuple[int, ...]  # indices of its routes
+    score: float  # phi mean - (1 - phi) std, less the penalty for leads
 
 
 class WinchTrees:

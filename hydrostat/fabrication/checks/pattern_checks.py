@@ -13,8 +13,7 @@ from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Mount, Robot
 
-HOLES = 0.1
-"""How far a hole may be from where the simulated cable passes [mm]."""
+HOLES = 0.1  # how far a hole may be from where the simulated cable passes [mm]
 
 
 def pattern_checks(

@@ -12,13 +12,11 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.patterns.shape import Layer, PatternPart
 from hydrostat.fabrication.self_check import Check
 
-SCALE = 0.1
-"""How much the bar of 100 mm may be too long or too short [mm]."""
+SCALE = 0.1  # how much the bar of 100 mm may be too long or too short [mm]
 
 _SVG = "{http://www.w3.org/2000/svg}"
 
-_MILLIMETRES = 4
-"""How a DXF says that it counts millimetres ($INSUNITS)."""
+_MILLIMETRES = 4  # how a DXF says that it counts millimetres ($INSUNITS)
 
 
 class SeenSvg:

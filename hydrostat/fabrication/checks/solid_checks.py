@@ -12,14 +12,9 @@ from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interfere
 from hydrostat.fabrication.solids.printed import Printed, connected, loose_edges
 from hydrostat.robot import Robot
 
-_ON_BED = 1e-4
-"""How far from the bed the lowest point may be [mm]."""
-
-_CRUMB = 1e-3
-"""Volume below which a body of its own is no piece of a part, only a leftover of rounding [mm^3]."""
-
-_CHANGE = 1e-4
-"""By how much of itself a volume may change when a part is written."""
+_ON_BED = 1e-4  # how far from the bed the lowest point may be [mm]
+_CRUMB = 1e-3  # volume below which a body of its own is no piece of a part, only a leftover of rounding [mm^3]
+_CHANGE = 1e-4  # by how much of itself a volume may change when a part is written
 
 
 def watertight_problems(printed: Printed) -> tuple[str, ...]:
@@ -110,8 +105,7 @@ def _turned(size: tuple[float, float, float]) -> tuple[float, float, float]:
     return max(size[:2]), min(size[:2]), size[2]
 
 
-RADIUS = 0.1
-"""How far the radius at which a cable is wound may be from that of the robot file [mm]."""
+RADIUS = 0.1  # how far the radius at which a cable is wound may be from that of the robot file [mm]
 
 
 def spool_checks(robot: Robot, units: Iterable[WinchUnit]) -> tuple[Check, ...]:

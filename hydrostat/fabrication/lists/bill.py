@@ -10,23 +10,14 @@ from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_
 
 @dataclass(frozen=True, kw_only=True)
 class Item:
-    """One line of the bill.
+    """One line of the bill."""
 
-    Attributes:
-        group: such as "body".
-        what: is bought.
-        specification: which kind.
-        quantity: in the unit of its price.
-        price: of one unit.
-        mass: of all of it [g]; None where it is not known.
-    """
-
-    group: str
-    what: str
-    specification: str
-    quantity: float
-    price: Price
-    mass: float | None = None
+    group: str  # such as "body"
+    what: str  # is bought
+    specification: str  # which kind
+    quantity: float  # in the unit of its price
+    price: Price  # of one unit
+    mass: float | None = None  # of all of it [g]; None where it is not known
 
     @property
     def cost(self) -> float:

@@ -21,37 +21,23 @@ TAIL = 80.0
 STEP = 10.0
 """Cables are cut to full steps of this [mm]: a tape on a table is no more precise, and the rest goes to the knot."""
 
-ALLOWED = 0.1
-"""Lengths agree with the simulation within this [mm]."""
+ALLOWED = 0.1  # lengths agree with the simulation within this [mm]
 
 
 @dataclass(frozen=True, kw_only=True)
 class CableCut:
-    """One cable, all in millimetres.
+    """One cable, all in millimetres."""
 
-    Attributes:
-        number: of the cable, from 1.
-        winch: its name.
-        body: rest length from the place of the winch to the stopper, sheaths included.
-        slack: taken in before it is taut.
-        outside: tube from motors outside to where the cable begins.
-        lead: from the winch's exit to the spool.
-        wraps: line that stays on the spool when all is let out.
-        release: line on the spool that can be let out beyond the rest length.
-        knot: for the knot at the spool.
-        tail: beyond the stopper.
-    """
-
-    number: int
-    winch: str
-    body: float
-    slack: float
-    outside: float
-    lead: float
-    wraps: float
-    release: float
-    knot: float = KNOT
-    tail: float = TAIL
+    number: int  # of the cable, from 1
+    winch: str  # its name
+    body: float  # rest length from the place of the winch to the stopper, sheaths included
+    slack: float  # taken in before it is taut
+    outside: float  # tube from motors outside to where the cable begins
+    lead: float  # from the winch's exit to the spool
+    wraps: float  # line that stays on the spool when all is let out
+    release: float  # line on the spool that can be let out beyond the rest length
+    knot: float = KNOT  # for the knot at the spool
+    tail: float = TAIL  # beyond the stopper
 
     @property
     def length(self) -> float:
@@ -158,23 +144,14 @@ SPARE = 20.0
 
 @dataclass(frozen=True, kw_only=True)
 class SheathCut:
-    """One piece of tube, in millimetres.
+    """One piece of tube, in millimetres."""
 
-    Attributes:
-        cable: number of its cable, from 1.
-        winch: name of the winch of its cable.
-        start: index of the cable point where it begins; None: at the base with the motors.
-        end: index of the cable point where it ends.
-        run: length of the cable in it.
-        seat: what is pushed into the housing or holder, at all of its ends.
-    """
-
-    cable: int
-    winch: str
-    start: int | None
-    end: int
-    run: float
-    seat: float
+    cable: int  # number of its cable, from 1
+    winch: str  # name of the winch of its cable
+    start: int | None  # index of the cable point where it begins; None: at the base with the motors
+    end: int  # index of the cable point where it ends
+    run: float  # length of the cable in it
+    seat: float  # what is pushed into the housing or holder, at all of its ends
 
     @property
     def length(self) -> float:

@@ -7,8 +7,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
 from hydrostat.robot import Robot
 
-POUND = 4.448222
-"""Newtons in a pound of force: lines are sold by these."""
+POUND = 4.448222  # newtons in a pound of force: lines are sold by these
 
 KNOT = 0.5
 """Share of its strength that a line keeps at a knot. Tests of braided lines ("Braid knots: some clear winners and
@@ -18,8 +17,7 @@ SAFETY = 0.5
 """Share of the strength at the knot that is used: the rest is for wear at pinholes and edges, and because polyethylene
 creeps under lasting loads. Assumed; no source."""
 
-_TOLERANCE = 0.01
-"""A line may be so much thicker than asked for [mm]: labels are no more precise."""
+_TOLERANCE = 0.01  # a line may be so much thicker than asked for [mm]: labels are no more precise
 
 SOURCE = (
     "Diameters and strengths of modern braided lines by their PE number: line diameter chart of Tasline (Australia); "
@@ -29,17 +27,11 @@ SOURCE = (
 
 @dataclass(frozen=True, kw_only=True)
 class FishingLine:
-    """A braided line of polyethylene.
+    """A braided line of polyethylene."""
 
-    Attributes:
-        name: its PE number and strength, as on the label.
-        diameter: [mm].
-        pounds: nominal strength without a knot [lb].
-    """
-
-    name: str
-    diameter: float
-    pounds: float
+    name: str  # its PE number and strength, as on the label
+    diameter: float  # [mm]
+    pounds: float  # nominal strength without a knot [lb]
 
     @property
     def strength(self) -> float:
@@ -82,19 +74,12 @@ def line_for(diameter: float) -> FishingLine:
 
 @dataclass(frozen=True, kw_only=True)
 class LineCheck:
-    """Verdict on whether one line bears all cables.
+    """Verdict on whether one line bears all cables."""
 
-    Attributes:
-        line: what they are made of.
-        table: strength of each cable's line against its tension.
-        problems: cables that would break.
-        warnings: cables above the working load.
-    """
-
-    line: FishingLine
-    table: Table
-    problems: tuple[str, ...]
-    warnings: tuple[str, ...]
+    line: FishingLine  # what they are made of
+    table: Table  # strength of each cable's line against its tension
+    problems: tuple[str, ...]  # cables that would break
+    warnings: tuple[str, ...]  # cables above the working load
 
 
 def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float | None = None) -> LineCheck:

@@ -15,83 +15,49 @@ from hydrostat.robot import Robot
 
 @dataclass(frozen=True, kw_only=True)
 class Cloth:
-    """Cloth that the pattern of a plush robot takes.
+    """Cloth that the pattern of a plush robot takes."""
 
-    Attributes:
-        felt: of all panels [mm^2].
-        seam: length of all seams [mm].
-        zipper: length of the opening [mm]; 0 for none.
-    """
-
-    felt: float
-    seam: float
-    zipper: float = 0.0
+    felt: float  # of all panels [mm^2]
+    seam: float  # length of all seams [mm]
+    zipper: float = 0.0  # length of the opening [mm]; 0 for none
 
 
 @dataclass(frozen=True, kw_only=True)
 class FoamNeeds:
-    """Foam and silicone that casting the body takes.
+    """Foam and silicone that casting the body takes."""
 
-    Attributes:
-        volume: of the cavity [mm^3].
-        part_a: of the foam [g].
-        part_b: of the foam [g].
-        silicone: for the mould [mm^3]; 0 for a printed one.
-        silicone_mass: [g].
-        material: name of the foam; empty: that of the robot's body.
-    """
-
-    volume: float
-    part_a: float
-    part_b: float
-    silicone: float = 0.0
-    silicone_mass: float = 0.0
-    material: str = ""
+    volume: float  # of the cavity [mm^3]
+    part_a: float  # of the foam [g]
+    part_b: float  # of the foam [g]
+    silicone: float = 0.0  # for the mould [mm^3]; 0 for a printed one
+    silicone_mass: float = 0.0  # [g]
+    material: str = ""  # name of the foam; empty: that of the robot's body
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ListInput:
-    """Facts that the lists are made of; lengths in millimetres, cables by their index.
+    """Facts that the lists are made of; lengths in millimetres, cables by their index."""
 
-    Attributes:
-        robot: that is built.
-        demand: what its poses ask for.
-        motor: of all its winches.
-        method: how the body is made.
-        options: of the printed parts: line, tube and spare wraps.
-        printed: the parts for all winches, stoppers, and the base.
-        mould: printed pieces of the mould, or the positive for a silicone one.
-        bolts: how many M4 bolts hold the mould, each with a nut.
-        dowels: how many of 3 mm join pieces of the mould.
-        screws: how many of each kind, nuts too, by what they are called; motors among them are not counted twice.
-        leads: from each winch's exit to its spool [mm].
-        seats: depth of the seat of the tube at each winch [mm].
-        outside: tube from the base with the motors to where each cable begins [mm].
-        stitches: of each cable of a plush robot.
-        cloth: of a plush robot.
-        foam: of a robot of foam.
-        line: what the cables are made of; None: the strongest as thick as the options say.
-        stopper_hold: tension at which a cable begins to slip in its stopper [N]; None: not known.
-    """
-
-    robot: Robot
-    demand: Demand
-    motor: Motor
-    method: Method = Method.PLUSH
-    options: PartOptions = field(default_factory=PartOptions)
-    printed: tuple[Printed, ...] = ()
-    mould: tuple[Printed, ...] = ()
-    bolts: int = 0
-    dowels: int = 0
+    robot: Robot  # that is built
+    demand: Demand  # what its poses ask for
+    motor: Motor  # of all its winches
+    method: Method = Method.PLUSH  # how the body is made
+    options: PartOptions = field(default_factory=PartOptions)  # of the printed parts: line, tube and spare wraps
+    printed: tuple[Printed, ...] = ()  # the parts for all winches, stoppers, and the base
+    mould: tuple[Printed, ...] = ()  # printed pieces of the mould, or the positive for a silicone one
+    bolts: int = 0  # how many M4 bolts hold the mould, each with a nut
+    dowels: int = 0  # how many of 3 mm join pieces of the mould
+    # how many of each kind, nuts too, by what they are called; motors among them are not counted twice
     screws: Mapping[str, int] = field(default_factory=dict)
-    leads: Mapping[int, float] = field(default_factory=dict)
-    seats: Mapping[int, float] = field(default_factory=dict)
+    leads: Mapping[int, float] = field(default_factory=dict)  # from each winch's exit to its spool [mm]
+    seats: Mapping[int, float] = field(default_factory=dict)  # depth of the seat of the tube at each winch [mm]
+    # tube from the base with the motors to where each cable begins [mm]
     outside: Mapping[int, float] = field(default_factory=dict)
-    stitches: tuple[CableStitches, ...] = ()
-    cloth: Cloth | None = None
-    foam: FoamNeeds | None = None
-    line: FishingLine | None = None
-    stopper_hold: float | None = None
+    stitches: tuple[CableStitches, ...] = ()  # of each cable of a plush robot
+    cloth: Cloth | None = None  # of a plush robot
+    foam: FoamNeeds | None = None  # of a robot of foam
+    line: FishingLine | None = None  # what the cables are made of; None: the strongest as thick as the options say
+    stopper_hold: float | None = None  # tension at which a cable begins to slip in its stopper [N]; None: not known
 
     def __post_init__(self) -> None:
         for name in ("leads", "seats", "outside"):

@@ -27,19 +27,12 @@ _MOULD_COST = "For hands of foam the thesis gives about 100 USD for a silicone m
 
 @dataclass(frozen=True, kw_only=True)
 class Lists:
-    """The lists of a robot.
+    """The lists of a robot."""
 
-    Attributes:
-        tables: in the order in which they are used.
-        problems: why the robot cannot be built well.
-        warnings: what a person should mind.
-        checks: that the lists are true to the simulation.
-    """
-
-    tables: tuple[Table, ...]
-    problems: tuple[str, ...]
-    warnings: tuple[str, ...]
-    checks: tuple[Check, ...]
+    tables: tuple[Table, ...]  # in the order in which they are used
+    problems: tuple[str, ...]  # why the robot cannot be built well
+    warnings: tuple[str, ...]  # what a person should mind
+    checks: tuple[Check, ...]  # that the lists are true to the simulation
 
     @property
     def cost(self) -> tuple[float, float]:

@@ -9,33 +9,21 @@ from hydrostat.fabrication.lists.table import Table, number_columns, text_column
 from hydrostat.fabrication.parts.motor import MARGIN, Motor
 from hydrostat.robot import Robot, Winch
 
-SLOW = 10.0
-"""A winch that takes longer than this for its full travel [s] is called slow."""
+SLOW = 10.0  # a winch that takes longer than this for its full travel [s] is called slow
 
 
 @dataclass(frozen=True, kw_only=True)
 class WinchSizing:
-    """Demand of one winch on its motor, and what it gets.
+    """Demand of one winch on its motor, and what it gets."""
 
-    Attributes:
-        winch: its name.
-        cables: how many it takes in.
-        tension: largest of one of its cables [N].
-        torque: largest on its shaft [N mm].
-        radius: of its spool, where its travel is measured [mm].
-        turns: of the spool from all let out to all taken in.
-        travel: the most cable it takes in from rest [mm].
-        motor: that turns it.
-    """
-
-    winch: str
-    cables: int
-    tension: float
-    torque: float
-    radius: float
-    turns: float
-    travel: float
-    motor: Motor
+    winch: str  # its name
+    cables: int  # how many it takes in
+    tension: float  # largest of one of its cables [N]
+    torque: float  # largest on its shaft [N mm]
+    radius: float  # of its spool, where its travel is measured [mm]
+    turns: float  # of the spool from all let out to all taken in
+    travel: float  # the most cable it takes in from rest [mm]
+    motor: Motor  # that turns it
 
     @property
     def needed(self) -> float:

@@ -9,30 +9,16 @@ from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
 from hydrostat.fabrication.lists.prices import NO_SOURCE, PRICES, Price
 from hydrostat.fabrication.solids.printed import Printed
 
-POLYETHYLENE = 0.97e-3
-"""Density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)."""
-
-PTFE = 2.15e-3
-"""Density of the tube [g/mm^3]; ASTM D792, in data sheets of PTFE tube."""
-
-SPOOL = 100e3
-"""Thread on a spool [mm]."""
-
-THREAD = 4.0
-"""Thread for a length of seam: two threads of a lock stitch, sewn twice. Assumed."""
-
-_BOARD_MOTORS = 6
-"""Motors for one board: it has so many outputs that set a speed (PWM)."""
-
-_DRIVER_MOTORS = 2
-"""Motors for one driver."""
-
-DOWEL = 15.0
-"""Length of a dowel [mm]: a little less than the holes in both pieces are deep."""
+POLYETHYLENE = 0.97e-3  # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
+PTFE = 2.15e-3  # density of the tube [g/mm^3]; ASTM D792, in data sheets of PTFE tube
+SPOOL = 100e3  # thread on a spool [mm]
+THREAD = 4.0  # Thread for a length of seam: two threads of a lock stitch, sewn twice. Assumed.
+_BOARD_MOTORS = 6  # motors for one board: it has so many outputs that set a speed (PWM)
+_DRIVER_MOTORS = 2  # motors for one driver
+DOWEL = 15.0  # length of a dowel [mm]: a little less than the holes in both pieces are deep
 
 _BODY, _CABLES, _WINCHES, _CONTROL, _MOULD = "body", "cables", "winches", "control", "mould"
-_SILICONES = ("ecoflex", "dragon skin")
-"""Beginnings of names of materials that are poured and are no foam."""
+_SILICONES = ("ecoflex", "dragon skin")  # beginnings of names of materials that are poured and are no foam
 
 
 def all_needs(

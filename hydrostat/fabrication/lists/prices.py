@@ -55,14 +55,9 @@ class Price:
         return self.packs(quantity) * self.pack * self.amount
 
 
-_SHEET = 0.2286 * 0.3048
-"""Of craft felt, 9 by 12 inches [m^2]."""
-
-_BAG = 32 * 0.0283495
-"""Of fibre filling, 32 oz [kg]."""
-
-_ANGLER = 91.44
-"""Line on a spool, 100 yards [m]."""
+_SHEET = 0.2286 * 0.3048  # of craft felt, 9 by 12 inches [m^2]
+_BAG = 32 * 0.0283495  # of fibre filling, 32 oz [kg]
+_ANGLER = 91.44  # line on a spool, 100 yards [m]
 
 _PUPPETS = "a puppet maker's list of costs (The Tucson Puppet Lady)"
 _BEARS = "a sewing group's list of costs (Crafting 4 Jesus)"

@@ -12,16 +12,14 @@ from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Body, Cable, Robot
 
-SKIN = 4.0
-"""A point at most so deep [mm] is sewn to the skin: the needle only dips into the foam. Assumed."""
+SKIN = 4.0  # A point at most so deep [mm] is sewn to the skin: the needle only dips into the foam. Assumed.
 
 NEEDLE = 60.0
 """A point at most so deep [mm] is reached with a long needle: a doll needle of 125 mm goes in at the skin, and there is
 enough of it left to hold; for deeper ones a tube is laid before casting. Assumed."""
 
 
-CLOSE = 2.0
-"""Points nearer than this [mm] cannot be told apart with a needle. Assumed."""
+CLOSE = 2.0  # Points nearer than this [mm] cannot be told apart with a needle. Assumed.
 
 
 def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:

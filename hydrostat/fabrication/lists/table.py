@@ -8,8 +8,7 @@ from enum import StrEnum
 
 from hydrostat.errors import InputError
 
-Cell = str | int | float | None
-"""What stands in one field; None: nothing."""
+Cell = str | int | float | None  # what stands in one field; None: nothing
 
 _FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """A text that begins with one of these is run as a formula by spreadsheets; the last four are their wide forms."""
@@ -24,19 +23,12 @@ class Align(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Column:
-    """One column.
+    """One column."""
 
-    Attributes:
-        title: what it holds.
-        unit: of its numbers; empty for none.
-        decimals: to which its numbers are rounded.
-        align: left for text, right for numbers.
-    """
-
-    title: str
-    unit: str = ""
-    decimals: int = 1
-    align: Align = Align.RIGHT
+    title: str  # what it holds
+    unit: str = ""  # of its numbers; empty for none
+    decimals: int = 1  # to which its numbers are rounded
+    align: Align = Align.RIGHT  # left for text, right for numbers
 
     @property
     def heading(self) -> str:

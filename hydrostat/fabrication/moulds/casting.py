@@ -4,43 +4,25 @@ from dataclasses import dataclass
 
 from hydrostat.robot import MATERIALS, Material
 
-SPARE = 0.10
-"""Mixed more than is needed: some stays in the cup and in the sprue."""
-
-_LIQUID_FOAM = 1.1e3
-"""Density of mixed polyurethane before it rises [kg/m^3]: assumed."""
-
-SILICONE_PRICE = 40.0
-"""Of a kilogram of Mold Max 30 [USD]: measured on none, check yours."""
-
-_EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")
-"""Beginnings of names of castable materials that come as two parts."""
-
-_PLATINUM = ("ecoflex", "dragon skin")
-"""Of these, those that are cured by platinum."""
+SPARE = 0.10  # mixed more than is needed: some stays in the cup and in the sprue
+_LIQUID_FOAM = 1.1e3  # density of mixed polyurethane before it rises [kg/m^3]: assumed
+SILICONE_PRICE = 40.0  # of a kilogram of Mold Max 30 [USD]: measured on none, check yours
+_EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of castable materials that come as two parts
+_PLATINUM = ("ecoflex", "dragon skin")  # of these, those that are cured by platinum
 
 THESIS = "thesis on cable-driven soft robots (R52, N2, N5)"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mix:
-    """Two parts that are mixed and poured; masses with what is spare.
+    """Two parts that are mixed and poured; masses with what is spare."""
 
-    Attributes:
-        material: what it is.
-        volume: to fill [mm^3], without what is spare.
-        density: once cured [g/mm^3].
-        part_a: mass of the first part [g].
-        part_b: mass of the second part [g].
-        ratio: of the parts, in words, with its source.
-    """
-
-    material: str
-    volume: float
-    density: float
-    part_a: float
-    part_b: float
-    ratio: str
+    material: str  # what it is
+    volume: float  # to fill [mm^3], without what is spare
+    density: float  # once cured [g/mm^3]
+    part_a: float  # mass of the first part [g]
+    part_b: float  # mass of the second part [g]
+    ratio: str  # of the parts, in words, with its source
 
     @property
     def mass(self) -> float:
@@ -50,25 +32,15 @@ class Mix:
 
 @dataclass(frozen=True, kw_only=True)
 class Casting:
-    """All that is poured.
+    """All that is poured."""
 
-    Attributes:
-        body: what the body is cast of.
-        expansion: volume of the foam over that of the liquid; 1 for what does not rise.
-        silicone: of a mould of silicone, the first pour and the second; none if halves are printed.
-        silicone_cost: rough price of both pours [USD].
-        times: what waits how long, as (what, how long), with sources.
-        release: what keeps the cast from sticking.
-        notes: where facts come from, and what is not known.
-    """
-
-    body: Mix
-    expansion: float
-    silicone: tuple[Mix, ...]
-    silicone_cost: float
-    times: tuple[tuple[str, str], ...]
-    release: str
-    notes: tuple[str, ...]
+    body: Mix  # what the body is cast of
+    expansion: float  # volume of the foam over that of the liquid; 1 for what does not rise
+    silicone: tuple[Mix, ...]  # of a mould of silicone, the first pour and the second; none if halves are printed
+    silicone_cost: float  # rough price of both pours [USD]
+    times: tuple[tuple[str, str], ...]  # what waits how long, as (what, how long), with sources
+    release: str  # what keeps the cast from sticking
+    notes: tuple[str, ...]  # where facts come from, and what is not known
 
 
 def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -> tuple[Casting, tuple[str, ...]]:

@@ -13,17 +13,10 @@ from hydrostat.fabrication.moulds.openings import Sprue
 from hydrostat.fabrication.moulds.solids import joined, rod
 from hydrostat.fabrication.solids.construct import Cuboid
 
-RIM = 13.0
-"""Least width of the rim round the cavity [mm]: a key or a bolt with walls on both sides."""
-
-INSET = 6.5
-"""From the outer side of the rim to the middle of keys and bolts [mm]."""
-
-BOLT = 2.25
-"""Radius of a hole for an M4 bolt or threaded rod [mm]."""
-
-_PITCH = 110.0
-"""Bolts are no further apart [mm]."""
+RIM = 13.0  # least width of the rim round the cavity [mm]: a key or a bolt with walls on both sides
+INSET = 6.5  # from the outer side of the rim to the middle of keys and bolts [mm]
+BOLT = 2.25  # radius of a hole for an M4 bolt or threaded rod [mm]
+_PITCH = 110.0  # bolts are no further apart [mm]
 
 _KEY = 4.0
 _ODD_KEY = 3.0
@@ -33,21 +26,15 @@ _ROOT = 1.0
 _GAP = 2.0
 _SLOT = (6.0, 16.0, 2.5)
 
-Spot = tuple[float, float]
-"""A place in the parting plane [mm]."""
+Spot = tuple[float, float]  # a place in the parting plane [mm]
 
 
 @dataclass(frozen=True)
 class MouldBlock(Cuboid):
-    """Outside of a mould [mm].
+    """Outside of a mould [mm]."""
 
-    Attributes:
-        x_cuts: where it is cut across x, to fit the printer.
-        y_cuts: where it is cut across y.
-    """
-
-    x_cuts: tuple[float, ...] = ()
-    y_cuts: tuple[float, ...] = ()
+    x_cuts: tuple[float, ...] = ()  # where it is cut across x, to fit the printer
+    y_cuts: tuple[float, ...] = ()  # where it is cut across y
 
     @property
     def solid(self) -> Manifold:
@@ -57,23 +44,15 @@ class MouldBlock(Cuboid):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Closing:
-    """Keys, bolts and slots by which the halves meet.
+    """Keys, bolts and slots by which the halves meet."""
 
-    Attributes:
-        keys: middles and radii of the keys [mm]; one is smaller, so that the halves fit one way round.
-        bolts: middles of the bolt holes [mm].
-        bumps: on the lower half, reaching a little into it.
-        sockets: what is taken from the upper half.
-        holes: all bolt holes.
-        slots: for a flat tool, in the upper half.
-    """
-
+    # middles and radii of the keys [mm]; one is smaller, so that the halves fit one way round
     keys: tuple[tuple[Spot, float], ...]
-    bolts: tuple[Spot, ...]
-    bumps: Manifold
-    sockets: Manifold
-    holes: Manifold
-    slots: Manifold
+    bolts: tuple[Spot, ...]  # middles of the bolt holes [mm]
+    bumps: Manifold  # on the lower half, reaching a little into it
+    sockets: Manifold  # what is taken from the upper half
+    holes: Manifold  # all bolt holes
+    slots: Manifold  # for a flat tool, in the upper half
 
 
 def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, ...], clearance: float) -> Closing:

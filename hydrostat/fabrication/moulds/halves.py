@@ -17,20 +17,13 @@ _FAR = 1e4
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Halves:
-    """A mould, closed, in its own coordinates.
+    """A mould, closed, in its own coordinates."""
 
-    Attributes:
-        upper: half that is drawn along the pull.
-        lower: half that stays.
-        cavity: the body less pockets and dents: what the foam becomes.
-        poured: all that is filled with foam: the cavity with sprue and vents, as far as they are in the block.
-        volumes: of each thing [mm^3], see `Mould.volumes`; each is measured on its own solid, none is what is left.
-    """
-
-    upper: Manifold
-    lower: Manifold
-    cavity: Manifold
-    poured: Manifold
+    upper: Manifold  # half that is drawn along the pull
+    lower: Manifold  # half that stays
+    cavity: Manifold  # the body less pockets and dents: what the foam becomes
+    poured: Manifold  # all that is filled with foam: the cavity with sprue and vents, as far as they are in the block
+    # of each thing [mm^3], see `Mould.volumes`; each is measured on its own solid, none is what is left
     volumes: dict[str, float]
 
 

@@ -24,8 +24,7 @@ from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot
 
-TOP_RIM = 20.0
-"""Height of the rim above the body [mm]: the funnel is in it."""
+TOP_RIM = 20.0  # height of the rim above the body [mm]: the funnel is in it
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -10,15 +10,13 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material
 from hydrostat.units import counted
 
-UNNOTICED = 0.05
-"""Share of undercut that nobody notices: foam is pressed past it."""
+UNNOTICED = 0.05  # share of undercut that nobody notices: foam is pressed past it
 
 TOLERATED = 0.3
 """Share of undercut beyond which a rigid mould is a problem. A judgement, measured on none: soft foam is squeezed to
 less than half its thickness as it is drawn out, and comes back; but what grips all round tears it."""
 
-STIFF = 1e6
-"""Young's modulus from which on a body is not squeezed past an undercut by hand [Pa]."""
+STIFF = 1e6  # Young's modulus from which on a body is not squeezed past an undercut by hand [Pa]
 
 
 def standing(stance: Stance, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:

@@ -14,14 +14,12 @@ from hydrostat.fabrication.moulds.solids import rod
 from hydrostat.fabrication.moulds.stance import SMALLEST_TRAP, high_points
 from hydrostat.fabrication.solids.printed import triangles_of
 
-VENT = 1.5
-"""Radius of a vent [mm]: a printer does not close it, foam does."""
+VENT = 1.5  # radius of a vent [mm]: a printer does not close it, foam does
 
 NECKS = (12.0, 10.0, 8.0, 6.0, 5.0)
 """Radii of a sprue [mm]: foam that rises is poured quickly, so 10 mm across at least."""
 
-FUNNEL = 8.0
-"""How much wider the funnel is than the neck [mm], on each side, where there is room."""
+FUNNEL = 8.0  # how much wider the funnel is than the neck [mm], on each side, where there is room
 
 _FUNNEL_DEPTH = 12.0
 _SUNK = 2.0
@@ -32,36 +30,22 @@ _STEP = 1.0
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sprue:
-    """The hole to pour into, half in each half.
+    """The hole to pour into, half in each half."""
 
-    Attributes:
-        x: of its axis [mm].
-        mouth: height at which it meets the body [mm].
-        radius: of its neck [mm].
-        funnel: radius at the top of the mould [mm].
-        solid: all of it, reaching into the body.
-    """
-
-    x: float
-    mouth: float
-    radius: float
-    funnel: float
-    solid: Manifold
+    x: float  # of its axis [mm]
+    mouth: float  # height at which it meets the body [mm]
+    radius: float  # of its neck [mm]
+    funnel: float  # radius at the top of the mould [mm]
+    solid: Manifold  # all of it, reaching into the body
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Vent:
-    """A hole for air.
+    """A hole for air."""
 
-    Attributes:
-        at: the high point that it serves [mm].
-        upward: it is a groove in the parting plane; else it leaves through the back of a half.
-        solid: all of it, reaching into the body.
-    """
-
-    at: Float[np.ndarray, "3"]
-    upward: bool
-    solid: Manifold
+    at: Float[np.ndarray, "3"]  # the high point that it serves [mm]
+    upward: bool  # it is a groove in the parting plane; else it leaves through the back of a half
+    solid: Manifold  # all of it, reaching into the body
 
 
 def make_sprue(body: Manifold, *, top: float, room: tuple[float, float], deep: float) -> Sprue | None:

@@ -36,11 +36,8 @@ class WinchRoom(Cuboid):
         return (self.low[0] + self.high[0]) / 2, (self.low[1] + self.high[1]) / 2, 0.0
 
 
-_LEAST_SKIN = 2.0
-"""Foam between a pocket and the next surface [mm]."""
-
-_WIRES = (8.0, 4.0)
-"""Width and depth of the groove for the wires of a motor, beside it [mm]."""
+_LEAST_SKIN = 2.0  # foam between a pocket and the next surface [mm]
+_WIRES = (8.0, 4.0)  # width and depth of the groove for the wires of a motor, beside it [mm]
 
 _OUTSIDE = 0.02
 _BARE = 0.1
@@ -54,27 +51,16 @@ _DENT_RADIUS = 1.5
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Pocket:
-    """Room for a winch in the foam.
+    """Room for a winch in the foam."""
 
-    Attributes:
-        winch: its name.
-        size: of the room, in the coordinates of the mould [mm].
-        upper: it is a core of the upper half; else of the lower.
-        unit: the winch itself, a box within the room.
-        reach: from the deep end of the pocket out of the body, with a groove for wires at the end of the motor.
-        core: what of the body it takes.
-        outside: share of the room that is outside the body.
-        problem: why it cannot be built well, or nothing.
-    """
-
-    winch: str
-    size: tuple[float, float, float]
-    upper: bool
-    unit: Manifold
-    reach: Manifold
-    core: Manifold
-    outside: float
-    problem: str = ""
+    winch: str  # its name
+    size: tuple[float, float, float]  # of the room, in the coordinates of the mould [mm]
+    upper: bool  # it is a core of the upper half; else of the lower
+    unit: Manifold  # the winch itself, a box within the room
+    reach: Manifold  # from the deep end of the pocket out of the body, with a groove for wires at the end of the motor
+    core: Manifold  # what of the body it takes
+    outside: float  # share of the room that is outside the body
+    problem: str = ""  # why it cannot be built well, or nothing
 
 
 def make_pockets(
@@ -151,17 +137,11 @@ def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Lying:
-    """One way to lay a winch, with its sides along those of the mould.
+    """One way to lay a winch, with its sides along those of the mould."""
 
-    Attributes:
-        sides: of the winch along x, y, z of the mould [mm].
-        middle: of its box [mm].
-        wires: the side wall at which its wires come out: axis across the pull, and sign.
-    """
-
-    sides: Sides
-    middle: Sides
-    wires: tuple[int, int]
+    sides: Sides  # of the winch along x, y, z of the mould [mm]
+    middle: Sides  # of its box [mm]
+    wires: tuple[int, int]  # the side wall at which its wires come out: axis across the pull, and sign
 
 
 def _pockets_for(

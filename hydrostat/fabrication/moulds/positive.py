@@ -16,52 +16,31 @@ from hydrostat.fabrication.moulds.solids import joined
 from hydrostat.fabrication.moulds.split import dowels_across
 from hydrostat.fabrication.solids.construct import segments
 
-SILICONE_WALL = 12.0
-"""Silicone round the body [mm]: it keeps its shape and is not wasted."""
-
-FRAME_WALL = 5.0
-"""Thickness of a frame [mm]."""
-
-DOME = 6.0
-"""Radius of a key dome [mm]."""
+SILICONE_WALL = 12.0  # silicone round the body [mm]: it keeps its shape and is not wasted
+FRAME_WALL = 5.0  # thickness of a frame [mm]
+DOME = 6.0  # radius of a key dome [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Positive:
-    """The body to be printed, parted like the mould, in its coordinates.
+    """The body to be printed, parted like the mould, in its coordinates."""
 
-    Attributes:
-        upper: above the parting plane.
-        lower: below it.
-        dowels: how many join the two.
-        lost: volume of the holes for dowels [mm^3].
-        stub: volume of the piece of sprue on it [mm^3].
-    """
-
-    upper: Manifold
-    lower: Manifold
-    dowels: int
-    lost: float
-    stub: float
+    upper: Manifold  # above the parting plane
+    lower: Manifold  # below it
+    dowels: int  # how many join the two
+    lost: float  # volume of the holes for dowels [mm^3]
+    stub: float  # volume of the piece of sprue on it [mm^3]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Frames:
-    """Frames that hold the silicone, in the coordinates of the mould.
+    """Frames that hold the silicone, in the coordinates of the mould."""
 
-    Attributes:
-        lower: round the lower half.
-        upper: round the upper half.
-        dome: a key, flat side down; domes lie on the board at the corners.
-        inside: block of silicone with the positive in it.
-        pours: volumes of silicone [mm^3], below the parting plane and above it.
-    """
-
-    lower: Manifold
-    upper: Manifold
-    dome: Manifold
-    inside: MouldBlock
-    pours: tuple[float, float]
+    lower: Manifold  # round the lower half
+    upper: Manifold  # round the upper half
+    dome: Manifold  # a key, flat side down; domes lie on the board at the corners
+    inside: MouldBlock  # block of silicone with the positive in it
+    pours: tuple[float, float]  # volumes of silicone [mm^3], below the parting plane and above it
 
 
 def make_positive(cavity: Manifold, sprue: Sprue | None) -> Positive:

@@ -14,16 +14,12 @@ _DEPTH = 0.05
 """Share of undercut that a mould may have more for being flat instead of as deep as the body is long: deep moulds are
 hard to print and to fill."""
 
-_LEVEL = 2e-3
-"""Shares that differ by less are the same: then the parting is nearest to the middle of the body."""
-
-_RINGS = (9.0, 4.5, 2.2, 1.1, 0.5)
-"""Angles at which neighbours of the best direction are tried [degrees]."""
+_LEVEL = 2e-3  # shares that differ by less are the same: then the parting is nearest to the middle of the body
+_RINGS = (9.0, 4.5, 2.2, 1.1, 0.5)  # angles at which neighbours of the best direction are tried [degrees]
 
 _APART = 1e-7
 
-_FLATS = 6
-"""Flat faces whose normals are tried: along walls that are flat the good directions are few and sharp."""
+_FLATS = 6  # flat faces whose normals are tried: along walls that are flat the good directions are few and sharp
 
 _FLAT_SHARE = 0.02
 _CROSSED = 0.2
@@ -34,25 +30,15 @@ _BEST = 3
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Pull:
-    """Pull by which the halves come off.
+    """Pull by which the halves come off."""
 
-    Attributes:
-        direction: unit vector along which the upper half is drawn, in the coordinates of the body.
-        height: of the parting plane along it [mm].
-        share: of the surface that holds: neither half comes off it.
-        surface: the surface that was looked at.
-        undercut: which of its triangles hold.
-        directions: all that were tried.
-        shares: of each of them, at its best height.
-    """
-
-    direction: Float[np.ndarray, "3"]
-    height: float
-    share: float
-    surface: FineSurface
-    undercut: Bool[np.ndarray, " triangles"]
-    directions: Float[np.ndarray, "tried 3"]
-    shares: Vector
+    direction: Float[np.ndarray, "3"]  # unit vector along which the upper half is drawn, in the coordinates of the body
+    height: float  # of the parting plane along it [mm]
+    share: float  # of the surface that holds: neither half comes off it
+    surface: FineSurface  # the surface that was looked at
+    undercut: Bool[np.ndarray, " triangles"]  # which of its triangles hold
+    directions: Float[np.ndarray, "tried 3"]  # all that were tried
+    shares: Vector  # of each of them, at its best height
 
 
 def half_sphere(count: int) -> Float[np.ndarray, "count 3"]:

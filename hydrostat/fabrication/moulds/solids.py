@@ -11,8 +11,7 @@ from hydrostat.fabrication.solids.construct import segments
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import Body
 
-MILLIMETRES = 1e3
-"""In a metre."""
+MILLIMETRES = 1e3  # in a metre
 
 
 def body_solid(body: Body) -> Manifold:

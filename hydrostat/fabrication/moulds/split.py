@@ -9,11 +9,8 @@ from manifold3d import CrossSection, JoinType, Manifold
 
 from hydrostat.fabrication.moulds.solids import joined, rod
 
-DOWEL = 1.6
-"""Radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]."""
-
-DOWEL_DEPTH = 8.0
-"""Of the hole in each of two pieces [mm]."""
+DOWEL = 1.6  # radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]
+DOWEL_DEPTH = 8.0  # of the hole in each of two pieces [mm]
 
 _WALL = 2.0
 _CRUMB = 20.0
@@ -25,17 +22,11 @@ _THIN = 1.0
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Pieces:
-    """A solid in pieces, where they belong.
+    """A solid in pieces, where they belong."""
 
-    Attributes:
-        solids: watertight, by row and column.
-        dowels: how many join them.
-        lost: volume of the holes for dowels, and of crumbs that a cut leaves [mm^3], measured on these.
-    """
-
-    solids: tuple[Manifold, ...]
-    dowels: int
-    lost: float
+    solids: tuple[Manifold, ...]  # watertight, by row and column
+    dowels: int  # how many join them
+    lost: float  # volume of the holes for dowels, and of crumbs that a cut leaves [mm^3], measured on these
 
 
 def cuts(low: float, high: float, longest: float) -> tuple[float, ...]:

@@ -11,41 +11,23 @@ from hydrostat.arrays import Vector
 from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import axes_along
 
-SMALLEST_TRAP = 1.0
-"""A bubble no higher than that is left to the foam, which pushes it into its cells [mm]."""
-
-_HELD_UPWARDS = 3.0
-"""A held end at the top is worth so many vents: nobody sees there where the sprue was cut off."""
-
-_TALL = 0.5
-"""Vents that a mould may have more for being once less as tall as it is wide."""
-
-_LARGE = 10.0
-"""Vents that a box may need less for being twice as large."""
-
-_ACROSS = 0.7
-"""Sine of the angle between an axis of the robot and the pull, above which it gives the box its sides."""
-
-_AT_THE_TOP = 0.85
-"""From which part of the height on something is at the top."""
-
-_TOP = 0.5
-"""What lies less than that below a high point belongs to it [mm]."""
+SMALLEST_TRAP = 1.0  # a bubble no higher than that is left to the foam, which pushes it into its cells [mm]
+_HELD_UPWARDS = 3.0  # a held end at the top is worth so many vents: nobody sees there where the sprue was cut off
+_TALL = 0.5  # vents that a mould may have more for being once less as tall as it is wide
+_LARGE = 10.0  # vents that a box may need less for being twice as large
+_ACROSS = 0.7  # sine of the angle between an axis of the robot and the pull, above which it gives the box its sides
+_AT_THE_TOP = 0.85  # from which part of the height on something is at the top
+_TOP = 0.5  # what lies less than that below a high point belongs to it [mm]
 
 
 @dataclass(frozen=True, eq=False)
 class Stance:
-    """Axes of a mould; its parting plane is z = 0.
+    """Axes of a mould; its parting plane is z = 0."""
 
-    Attributes:
-        axes: unit vectors across, upwards when poured, and along the pull, as rows, in the body's coordinates.
-        height: of the parting plane along the pull [mm].
-        held_upwards: where the robot is held is at the top: the foam is poured in there.
-    """
-
+    # unit vectors across, upwards when poured, and along the pull, as rows, in the body's coordinates
     axes: Float[np.ndarray, "3 3"]
-    height: float
-    held_upwards: bool = False
+    height: float  # of the parting plane along the pull [mm]
+    held_upwards: bool = False  # where the robot is held is at the top: the foam is poured in there
 
     def into(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
         """Points of the body [mm] in the mould."""

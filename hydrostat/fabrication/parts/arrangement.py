@@ -10,23 +10,16 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, UnitPlace, ways_to_lie
 
-_SWEEPS = 8
-"""Rounds of a search."""
+_SWEEPS = 8  # rounds of a search
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LaidUnit:
-    """A unit as it is laid in the body.
+    """A unit as it is laid in the body."""
 
-    Attributes:
-        place: where and how.
-        problems: why it cannot be built well.
-        warnings: what to mind.
-    """
-
-    place: UnitPlace
-    problems: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
+    place: UnitPlace  # where and how
+    problems: tuple[str, ...] = ()  # why it cannot be built well
+    warnings: tuple[str, ...] = ()  # what to mind
 
 
 def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:

@@ -14,19 +14,13 @@ from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder, Prism, segments
 
 HOLDER_WIDTH = 10.0
-HOLDER_DEPTH = 8.0
-"""Of a block, across and along the tubes [mm]."""
+HOLDER_DEPTH = 8.0  # of a block, across and along the tubes [mm]
 
 HOLDER_PASSAGE = 3.4
 _PILOT = 2.6
-_INTO = 8.0
-"""Hole in the base for the M3 screw that holds the block, its pilot in the block, and how deep that is [mm]."""
-
-_SLOT = 1.0
-"""Width of the slot that closes when the block is screwed together [mm]."""
-
-_ABOVE = 3.0
-"""From the highest tube to the screw that pinches [mm]."""
+_INTO = 8.0  # hole in the base for the M3 screw that holds the block, its pilot in the block, and how deep that is [mm]
+_SLOT = 1.0  # width of the slot that closes when the block is screwed together [mm]
+_ABOVE = 3.0  # from the highest tube to the screw that pinches [mm]
 
 
 def tube_holder(heights: Sequence[float], options: PartOptions) -> Construction:
@@ -49,16 +43,12 @@ def tube_holder(heights: Sequence[float], options: PartOptions) -> Construction:
     return body - Cylinder(depth + 1, _PILOT / 2).moved(0, 0, -1)
 
 
-Ring = tuple[Corner, ...]
-"""A closed line, its first corner not repeated [mm]."""
-
-FREE = 15.0
-"""From a unit to its tube holder [mm]."""
+Ring = tuple[Corner, ...]  # a closed line, its first corner not repeated [mm]
+FREE = 15.0  # from a unit to its tube holder [mm]
 
 _GAP = 3.0
 _STRIP = 12.0
-_LEG_SCREW = 3.4
-"""Between units; margin for the screws of the legs; hole for such a screw, M3 [mm]."""
+_LEG_SCREW = 3.4  # between units; margin for the screws of the legs; hole for such a screw, M3 [mm]
 
 
 @dataclass(frozen=True)
@@ -84,15 +74,10 @@ class Hole:
 
 @dataclass(frozen=True, kw_only=True)
 class Seat:
-    """Place of a unit on the base.
+    """Place of a unit on the base."""
 
-    Attributes:
-        unit: index among the units outside.
-        x: of its shaft [mm].
-    """
-
-    unit: int
-    x: float
+    unit: int  # index among the units outside
+    x: float  # of its shaft [mm]
 
     def put(self, point: Corner) -> Corner:
         """A point of the unit on the base [mm]."""

@@ -26,35 +26,24 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 
 _LEG = 12.0
-_BELOW = 10.0
-"""Width of a leg; room below the motors for their wires [mm]."""
+_BELOW = 10.0  # width of a leg; room below the motors for their wires [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BasePlate:
-    """A base for the winches outside the body.
+    """A base for the winches outside the body."""
 
-    Attributes:
-        printed: tiles of the plate, tube holders, legs.
-        assembly: all of it with the units.
-        sheet: outline of the whole plate, then its holes, to be cut from acrylic in place of the tiles [mm].
-        thickness: of the plate [mm].
-        seats: where the units stand.
-        tubes: from the outer face of its housing to where its cable begins, by cable index [mm].
-        bought: what is bought for it, and how many of each.
-        problems: why it cannot be built well.
-        warnings: what to mind.
-    """
-
-    printed: tuple[Printed, ...]
-    assembly: PartAssembly
+    printed: tuple[Printed, ...]  # tiles of the plate, tube holders, legs
+    assembly: PartAssembly  # all of it with the units
+    # outline of the whole plate, then its holes, to be cut from acrylic in place of the tiles [mm]
     sheet: tuple[Ring, ...]
-    thickness: float
-    seats: tuple[Seat, ...]
+    thickness: float  # of the plate [mm]
+    seats: tuple[Seat, ...]  # where the units stand
+    # from the outer face of its housing to where its cable begins, by cable index [mm]
     tubes: tuple[tuple[int, float], ...]
-    bought: tuple[tuple[str, int], ...]
-    problems: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
+    bought: tuple[tuple[str, int], ...]  # what is bought for it, and how many of each
+    problems: tuple[str, ...] = ()  # why it cannot be built well
+    warnings: tuple[str, ...] = ()  # what to mind
 
 
 def base_plate(

@@ -7,25 +7,17 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.solids.construct import Construction, Cylinder, Turning
 from hydrostat.fabrication.solids.printed import Printed
 
-_LINE = 0.4
-"""What a nozzle lays in one go: the thinnest sleeve [mm]."""
-
-_PLAY = 0.4
-"""How much wider the bore is than the cable, at least [mm]."""
+_LINE = 0.4  # what a nozzle lays in one go: the thinnest sleeve [mm]
+_PLAY = 0.4  # how much wider the bore is than the cable, at least [mm]
 
 _MOUTH = ((1.0, 0.0), (0.65, 0.3), (0.25, 0.75), (0.0, 1.3))
 """How much wider than the bore the mouth is, at heights above the bed [mm]: a rounding in steps of less than 50
 degrees from upright, which prints without support."""
 
 _FLANGE = 1.6
-_SLEEVE = 1.4
-"""How far the sleeve goes into the felt [mm]: felt of 1.5 mm or more hides its end."""
-
-_STITCH = 1.0
-"""Diameter of a hole for needle and thread [mm]."""
-
-_RIM = 1.0
-"""Least material on each side of a hole for the needle [mm]."""
+_SLEEVE = 1.4  # how far the sleeve goes into the felt [mm]: felt of 1.5 mm or more hides its end
+_STITCH = 1.0  # diameter of a hole for needle and thread [mm]
+_RIM = 1.0  # least material on each side of a hole for the needle [mm]
 
 
 def grommet(options: PartOptions, hole: float) -> Printed:

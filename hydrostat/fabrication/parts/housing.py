@@ -16,14 +16,9 @@ from hydrostat.fabrication.parts.screws import Screw
 from hydrostat.fabrication.parts.spool import Spool
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cuboid, Cylinder
 
-STUB = 8.0
-"""How far the shaft of a coupling goes into a spool [mm]."""
-
-SHEET = 4.0
-"""Thickness of the base that motors outside the body stand on, printed or of acrylic [mm]."""
-
-_NUT = 2.0
-"""What a nut takes of a screw [mm]."""
+STUB = 8.0  # how far the shaft of a coupling goes into a spool [mm]
+SHEET = 4.0  # thickness of the base that motors outside the body stand on, printed or of acrylic [mm]
+_NUT = 2.0  # what a nut takes of a screw [mm]
 
 _LENGTHS = (8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0)
 _SEAT = 5.0
@@ -35,21 +30,13 @@ of the screws [mm]."""
 
 @dataclass(frozen=True, kw_only=True)
 class Drive:
-    """Place of a spool on a motor; heights above the face of the motor [mm].
+    """Place of a spool on a motor; heights above the face of the motor [mm]."""
 
-    Attributes:
-        floor: thickness of the plate under the heads of its screws.
-        plate: top of the plate.
-        disc: thickness of the coupling's disc; 0 without a horn.
-        start: lower face of the spool.
-        tip: end of the shaft.
-    """
-
-    floor: float
-    plate: float
-    disc: float
-    start: float
-    tip: float
+    floor: float  # thickness of the plate under the heads of its screws
+    plate: float  # top of the plate
+    disc: float  # thickness of the coupling's disc; 0 without a horn
+    start: float  # lower face of the spool
+    tip: float  # end of the shaft
 
     @property
     def inside(self) -> float:
@@ -76,21 +63,13 @@ def roof_of(options: PartOptions) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Housing:
-    """A plate and a box round a spool; lengths in millimetres, z above the face of the motor.
+    """A plate and a box round a spool; lengths in millimetres, z above the face of the motor."""
 
-    Attributes:
-        motor: that it is screwed on.
-        spool: that turns in it.
-        azimuths: of each cable: the way in which it leaves, counted from +x [degrees], multiples of 90.
-        outside: whether its motor stands on a base outside the body: its screws then go on through the base.
-        options: sizes of the parts.
-    """
-
-    motor: Motor
-    spool: Spool
-    azimuths: tuple[int, ...]
-    outside: bool
-    options: PartOptions
+    motor: Motor  # that it is screwed on
+    spool: Spool  # that turns in it
+    azimuths: tuple[int, ...]  # of each cable: the way in which it leaves, counted from +x [degrees], multiples of 90
+    outside: bool  # whether its motor stands on a base outside the body: its screws then go on through the base
+    options: PartOptions  # sizes of the parts
 
     @cached_property
     def drive(self) -> Drive:

@@ -13,21 +13,13 @@ from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cy
 
 @dataclass(frozen=True, kw_only=True)
 class FaceScrew:
-    """A screw with a pan head that holds something on a motor; lengths in millimetres.
+    """A screw with a pan head that holds something on a motor; lengths in millimetres."""
 
-    Attributes:
-        size: of the thread, such as "M2".
-        hole: diameter of a printed hole that it passes freely [mm].
-        head: diameter of its head [mm], ISO 7045.
-        head_height: of its head [mm], ISO 7045.
-        depth: how far it may go into the motor [mm].
-    """
-
-    size: str
-    hole: float
-    head: float
-    head_height: float
-    depth: float
+    size: str  # of the thread, such as "M2"
+    hole: float  # diameter of a printed hole that it passes freely [mm]
+    head: float  # diameter of its head [mm], ISO 7045
+    head_height: float  # of its head [mm], ISO 7045
+    depth: float  # how far it may go into the motor [mm]
 
     def length(self, wall: float) -> float:
         """The shortest standard length [mm] that reaches two thirds of its depth through a wall [mm]."""
@@ -47,21 +39,13 @@ _LENGTHS = (3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Shaft:
-    """A shaft with one flat, which faces +x; lengths in millimetres.
+    """A shaft with one flat, which faces +x; lengths in millimetres."""
 
-    Attributes:
-        diameter: of the round part [mm].
-        across: from the flat to the round side opposite [mm].
-        length: above the face of the motor [mm].
-        boss: radius of the raised ring round it [mm].
-        boss_height: of that ring above the face [mm].
-    """
-
-    diameter: float
-    across: float
-    length: float
-    boss: float
-    boss_height: float
+    diameter: float  # of the round part [mm]
+    across: float  # from the flat to the round side opposite [mm]
+    length: float  # above the face of the motor [mm]
+    boss: float  # radius of the raised ring round it [mm]
+    boss_height: float  # of that ring above the face [mm]
 
     def shape(self, length: float, grown: float = 0.0) -> Construction:
         """Shape of it from z = 0 upwards [mm], thicker by so much on each side [mm]."""
@@ -73,21 +57,13 @@ class Shaft:
 
 @dataclass(frozen=True, kw_only=True)
 class Horn:
-    """A disc on the output of a servo, which a coupling with a shaft is screwed on; lengths in millimetres.
+    """A disc on the output of a servo, which a coupling with a shaft is screwed on; lengths in millimetres."""
 
-    Attributes:
-        radius: of the disc [mm].
-        height: of its top above the face of the motor [mm].
-        circle: radius of the circle of its screw holes [mm].
-        count: of its screw holes, the first at +x.
-        screw: that goes into them.
-    """
-
-    radius: float
-    height: float
-    circle: float
-    count: int
-    screw: FaceScrew
+    radius: float  # of the disc [mm]
+    height: float  # of its top above the face of the motor [mm]
+    circle: float  # radius of the circle of its screw holes [mm]
+    count: int  # of its screw holes, the first at +x
+    screw: FaceScrew  # that goes into them
 
 
 @dataclass(frozen=True, kw_only=True)

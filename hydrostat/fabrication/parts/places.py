@@ -10,33 +10,23 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.fabrication.solids.construct import Corner, Cuboid
 from hydrostat.robot import Body
 
-GIVES = 0.25
-"""Share of its thickness that stuffing and cloth give for a unit. Assumed, measured on none."""
-
-TOUCHES = 1.0
-"""Area that units may share, or that may stand over the seam [mm^2]: corners of boxes drawn square."""
+GIVES = 0.25  # Share of its thickness that stuffing and cloth give for a unit. Assumed, measured on none.
+TOUCHES = 1.0  # area that units may share, or that may stand over the seam [mm^2]: corners of boxes drawn square
 
 _SLIDE = 6.0
 """How far a unit is slid from where the robot file has it [mm]: its place is still in its housing, and its tubes bend
 that much."""
 
-_STEP = 30
-"""Between the turns that are tried [degrees]: an hour of a clock, which is how a person is told."""
+_STEP = 30  # between the turns that are tried [degrees]: an hour of a clock, which is how a person is told
 
 
 @dataclass(frozen=True, kw_only=True)
 class UnitBox(Cuboid):
-    """Box round a unit before it is laid: the shaft along z, the face of the motor at z = 0, the roof at the top.
+    """Box round a unit before it is laid: the shaft along z, the face of the motor at z = 0, the roof at the top."""
 
-    Attributes:
-        winch: its name.
-        at: where the robot file has it: its shaft, or the middle of its housing if it lies.
-        along: the way in which its first cable goes on, counted from +x [degrees].
-    """
-
-    winch: str
-    at: Corner
-    along: float
+    winch: str  # its name
+    at: Corner  # where the robot file has it: its shaft, or the middle of its housing if it lies
+    along: float  # the way in which its first cable goes on, counted from +x [degrees]
 
     @property
     def words(self) -> str:
@@ -46,25 +36,15 @@ class UnitBox(Cuboid):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class UnitPlace:
-    """One way in which a unit lies.
+    """One way in which a unit lies."""
 
-    Attributes:
-        box: the unit.
-        across: its shaft stands across the body, the roof to the front; else it lies in the plane of the body.
-        turn: where its +y points, counted from +x [degrees].
-        flipped: a unit that lies has its motor to the right of +y; else to the left.
-        slid: from its place, to the right of its +y, and along it [mm].
-        footprint: what of the plane it takes [mm].
-        outside: how much of that is beyond the seam [mm^2].
-    """
-
-    box: UnitBox
-    across: bool
-    turn: float
-    flipped: bool
-    slid: Corner
-    footprint: Polygon
-    outside: float
+    box: UnitBox  # the unit
+    across: bool  # its shaft stands across the body, the roof to the front; else it lies in the plane of the body
+    turn: float  # where its +y points, counted from +x [degrees]
+    flipped: bool  # a unit that lies has its motor to the right of +y; else to the left
+    slid: Corner  # from its place, to the right of its +y, and along it [mm]
+    footprint: Polygon  # what of the plane it takes [mm]
+    outside: float  # how much of that is beyond the seam [mm^2]
 
     @property
     def depth(self) -> float:

@@ -17,25 +17,15 @@ from hydrostat.robot import Mount, Robot
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RigidParts:
-    """The rigid parts of one robot.
+    """The rigid parts of one robot."""
 
-    Attributes:
-        motor: that turns all winches.
-        units: a winch each.
-        base: for winches outside the body; None if all are in it.
-        stopper: one for each cable; None without cables.
-        grommet: one for each pinhole, counted; None without pinholes.
-        cables: how many there are.
-        between: what to mind of winches side by side.
-    """
-
-    motor: Motor
-    units: tuple[WinchUnit, ...]
-    base: BasePlate | None
-    stopper: Stopper | None
-    grommet: Printed | None
-    cables: int
-    between: tuple[str, ...] = ()
+    motor: Motor  # that turns all winches
+    units: tuple[WinchUnit, ...]  # a winch each
+    base: BasePlate | None  # for winches outside the body; None if all are in it
+    stopper: Stopper | None  # one for each cable; None without cables
+    grommet: Printed | None  # one for each pinhole, counted; None without pinholes
+    cables: int  # how many there are
+    between: tuple[str, ...] = ()  # what to mind of winches side by side
 
     @property
     def printed(self) -> tuple[Printed, ...]:

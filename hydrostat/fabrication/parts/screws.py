@@ -7,25 +7,15 @@ from hydrostat.fabrication.solids.construct import Construction, Cylinder
 
 @dataclass(frozen=True, kw_only=True)
 class Screw:
-    """A screw with a flat countersunk head; lengths in millimetres.
+    """A screw with a flat countersunk head; lengths in millimetres."""
 
-    Attributes:
-        title: as it is bought.
-        length: with its head [mm].
-        core: diameter within the thread [mm].
-        pilot: diameter of the printed hole that it cuts its thread in [mm].
-        passage: diameter of the printed hole that it passes freely [mm].
-        head: diameter of the head [mm].
-        head_height: of the cone of the head [mm].
-    """
-
-    title: str
-    length: float
-    core: float
-    pilot: float
-    passage: float
-    head: float
-    head_height: float
+    title: str  # as it is bought
+    length: float  # with its head [mm]
+    core: float  # diameter within the thread [mm]
+    pilot: float  # diameter of the printed hole that it cuts its thread in [mm]
+    passage: float  # diameter of the printed hole that it passes freely [mm]
+    head: float  # diameter of the head [mm]
+    head_height: float  # of the cone of the head [mm]
 
     @property
     def envelope(self) -> Construction:

@@ -11,11 +11,8 @@ LAY = 1.25
 """Width that a turn takes over the diameter of the cable: a line that nobody guides does not lie side by side."""
 
 _RIM = 0.8
-_SKIN = 0.6
-"""Material outside the hole for the knot, and below it [mm]."""
-
-_STEP = 0.5
-"""Widths of grooves are multiples of this [mm], so that winches of nearly the same travel share a spool."""
+_SKIN = 0.6  # material outside the hole for the knot, and below it [mm]
+_STEP = 0.5  # widths of grooves are multiples of this [mm], so that winches of nearly the same travel share a spool
 
 
 def wraps(length: float, radius: float, spare: float) -> float:
@@ -46,40 +43,24 @@ def capacity(width: float, radius: float, cable: float, layers: int) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Groove:
-    """Place where one cable is wound; lengths in millimetres.
+    """Place where one cable is wound; lengths in millimetres."""
 
-    Attributes:
-        radius: of the middle of the cable in the first layer [mm].
-        width: of its floor [mm].
-        layers: in which the cable lies.
-    """
-
-    radius: float
-    width: float
-    layers: int = 1
+    radius: float  # of the middle of the cable in the first layer [mm]
+    width: float  # of its floor [mm]
+    layers: int = 1  # in which the cable lies
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spool:
-    """Grooves on a shaft, the first next to the motor; z counts from its lower face, which lies on the motor's side.
+    """Grooves on a shaft, the first next to the motor; z counts from its lower face, which lies on the motor's side."""
 
-    Attributes:
-        grooves: in the order of the cables.
-        cable: diameter of the cable [mm].
-        shaft: that turns it.
-        inside: how much of the shaft is in it [mm].
-        play: between shaft and bore, on each side [mm].
-        wall: least thickness [mm].
-        journal: length of the pin at the far end, which turns in the housing [mm].
-    """
-
-    grooves: tuple[Groove, ...]
-    cable: float
-    shaft: Shaft
-    inside: float
-    play: float
-    wall: float
-    journal: float
+    grooves: tuple[Groove, ...]  # in the order of the cables
+    cable: float  # diameter of the cable [mm]
+    shaft: Shaft  # that turns it
+    inside: float  # how much of the shaft is in it [mm]
+    play: float  # between shaft and bore, on each side [mm]
+    wall: float  # least thickness [mm]
+    journal: float  # length of the pin at the far end, which turns in the housing [mm]
 
     @property
     def pin(self) -> float:

@@ -14,8 +14,7 @@ _LONGEST = 30.0
 
 _MOST_LAYERS = 6
 
-_INSIDE = 1.2
-"""The least of a shaft in a spool over its diameter: less, and a flat of plastic wears round."""
+_INSIDE = 1.2  # the least of a shaft in a spool over its diameter: less, and a flat of plastic wears round
 
 
 def spool_for(

@@ -22,44 +22,32 @@ _FLAT = 1.5
 """Radius of the post that the cable goes round, of the key above it, and how far the flat of the key is from the axis
 [mm]."""
 
-_ROOM = 0.8
-"""How much wider than the cable the holes and the track are [mm]."""
+_ROOM = 0.8  # how much wider than the cable the holes and the track are [mm]
 
 _LID = 2.6
 _KEY_HEIGHT = 1.2
 _RIM = 1.0
-_RIB = 0.8
-"""Thickness of the lid, height of the key in it, width of the rim behind the track, width of a rib [mm]."""
+_RIB = 0.8  # thickness of the lid, height of the key in it, width of the rim behind the track, width of a rib [mm]
 
 _FLOOR = 0.8
-_TIP = 0.4
-"""Below the point of the screw: plastic, and air [mm]."""
-
-_SMOOTH = 0.6
-"""Chamfer of what lies on the cloth and of what a hand feels [mm]."""
+_TIP = 0.4  # below the point of the screw: plastic, and air [mm]
+_SMOOTH = 0.6  # chamfer of what lies on the cloth and of what a hand feels [mm]
 
 _OFF_CENTRE = 0.8
 """How far the middle of the button is from the screw towards the cable, so that it is pulled flat [mm]."""
 
-_EXIT = 300.0
-"""Where the cable leaves, counted round the post from where it comes up [degrees]."""
+_EXIT = 300.0  # where the cable leaves, counted round the post from where it comes up [degrees]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Stopper:
-    """A clamp for the end of a cable.
+    """A clamp for the end of a cable."""
 
-    Attributes:
-        printed: the base, which lies on the cloth, and the lid.
-        assembly: both with the screw, closed on a cable that is pressed to half its thickness; the cloth is at z = 0.
-        screw: that closes it, as it is bought.
-        hold: tension at which the cable begins to slip, estimated [N].
-    """
-
-    printed: tuple[Printed, ...]
+    printed: tuple[Printed, ...]  # the base, which lies on the cloth, and the lid
+    # both with the screw, closed on a cable that is pressed to half its thickness; the cloth is at z = 0
     assembly: PartAssembly
-    screw: str
-    hold: float
+    screw: str  # that closes it, as it is bought
+    hold: float  # tension at which the cable begins to slip, estimated [N]
 
 
 def stopper(options: PartOptions) -> Stopper:

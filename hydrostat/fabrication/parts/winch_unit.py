@@ -83,56 +83,32 @@ def letters(number: int) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Exit:
-    """Exit of a cable from a unit, in the unit's coordinates: the shaft is z, the face of the motor z = 0.
+    """Exit of a cable from a unit, in the unit's coordinates: the shaft is z, the face of the motor z = 0."""
 
-    Attributes:
-        cable: index of the cable in the robot.
-        point: in the outer face of the housing, in the middle of the seat of the tube [mm].
-        direction: in which the cable leaves, of length 1.
-        lead: cable from the spool to this point [mm].
-        seat: how deep the tube goes in from this point [mm].
-    """
-
-    cable: int
-    point: tuple[float, float, float]
-    direction: tuple[float, float, float]
-    lead: float
-    seat: float
+    cable: int  # index of the cable in the robot
+    point: tuple[float, float, float]  # in the outer face of the housing, in the middle of the seat of the tube [mm]
+    direction: tuple[float, float, float]  # in which the cable leaves, of length 1
+    lead: float  # cable from the spool to this point [mm]
+    seat: float  # how deep the tube goes in from this point [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class WinchUnit:
-    """Motor, spool and housing of one winch; lengths in millimetres.
+    """Motor, spool and housing of one winch; lengths in millimetres."""
 
-    Attributes:
-        winch: its name.
-        cables: index of each of its cables in the robot, in the order of the grooves.
-        mount: where it is.
-        motor: that turns it.
-        housing: its sizes, with those of its spool.
-        printed: what is printed for it, one of each.
-        assembly: all of it, in its own coordinates, in the order in which it is put together.
-        exits: of its cables.
-        bought: what is bought for it besides the motor, and how many of each.
-        across: whether its shaft stands across a flat body, with the roof to the front; else it lies in it.
-        place: how it is laid in a flat body; None in space and outside.
-        problems: why it cannot be built well.
-        warnings: what to mind.
-    """
-
-    winch: str
-    cables: tuple[int, ...]
-    mount: Mount
-    motor: Motor
-    housing: Housing
-    printed: tuple[Printed, ...]
-    assembly: PartAssembly
-    exits: tuple[Exit, ...]
-    bought: tuple[tuple[str, int], ...]
-    across: bool
-    place: UnitPlace | None = None
-    problems: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
+    winch: str  # its name
+    cables: tuple[int, ...]  # index of each of its cables in the robot, in the order of the grooves
+    mount: Mount  # where it is
+    motor: Motor  # that turns it
+    housing: Housing  # its sizes, with those of its spool
+    printed: tuple[Printed, ...]  # what is printed for it, one of each
+    assembly: PartAssembly  # all of it, in its own coordinates, in the order in which it is put together
+    exits: tuple[Exit, ...]  # of its cables
+    bought: tuple[tuple[str, int], ...]  # what is bought for it besides the motor, and how many of each
+    across: bool  # whether its shaft stands across a flat body, with the roof to the front; else it lies in it
+    place: UnitPlace | None = None  # how it is laid in a flat body; None in space and outside
+    problems: tuple[str, ...] = ()  # why it cannot be built well
+    warnings: tuple[str, ...] = ()  # what to mind
 
     @property
     def spool(self) -> Spool:

@@ -17,34 +17,23 @@ from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
 from hydrostat.fabrication.solids.printed import connected
 
 _DIRECTIONS = 12
-_SHIFTS = (0.0, -0.06, 0.06)
-"""Offsets beside the worst place that are tried, as shares of the root of the patch's area."""
-
-_FINER = (-0.03, -0.015, 0.0, 0.015, 0.03)
-"""Offsets beside the best of those that are tried then."""
+_SHIFTS = (0.0, -0.06, 0.06)  # offsets beside the worst place that are tried, as shares of the root of the patch's area
+_FINER = (-0.03, -0.015, 0.0, 0.015, 0.03)  # offsets beside the best of those that are tried then
 
 _LENGTH = 0.25
 """How much a chord as long as the root of the patch's area counts against it: a shorter seam is less work."""
 
-_LEAST = 0.03
-"""A piece of less than this share of the patch is not worth cutting off."""
+_LEAST = 0.03  # a piece of less than this share of the patch is not worth cutting off
 
 
 @dataclass(frozen=True, kw_only=True)
 class Chord:
-    """A straight cut through a flat patch.
+    """A straight cut through a flat patch."""
 
-    Attributes:
-        through: a place on it [mm].
-        along: its unit direction.
-        low: where it enters the patch, from that place along the direction [mm].
-        high: where it leaves it.
-    """
-
-    through: tuple[float, float]
-    along: tuple[float, float]
-    low: float
-    high: float
+    through: tuple[float, float]  # a place on it [mm]
+    along: tuple[float, float]  # its unit direction
+    low: float  # where it enters the patch, from that place along the direction [mm]
+    high: float  # where it leaves it
 
     def heights(self, places: Float[np.ndarray, "places 2"]) -> Float[np.ndarray, " places"]:
         """Signed distance of places from its line [mm]."""

@@ -15,11 +15,8 @@ from hydrostat.fabrication.patches.seams import Seam, find_seams
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero
 from hydrostat.fabrication.patterns.skin import Skin
 
-_SMOOTH = 0.02
-"""How far the normals are smoothed before the silhouette is drawn, as a share of the body's diagonal."""
-
-_ALONG_AXIS = 0.94
-"""A direction so near to an axis (its cosine) is the axis: 20 degrees."""
+_SMOOTH = 0.02  # how far the normals are smoothed before the silhouette is drawn, as a share of the body's diagonal
+_ALONG_AXIS = 0.94  # a direction so near to an axis (its cosine) is the axis: 20 degrees
 
 
 def thin_direction(mesh: SkinMesh) -> Float[np.ndarray, " 3"]:
@@ -79,26 +76,17 @@ MOST_GIVE = 0.12
 """How much the cloth may have to give in 95 % of a patch. Felt and woven plush give about that much; assumed, measured
 on none."""
 
-MOST_EASE = 0.05
-"""How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed."""
-
-MOST_PATCHES = 6
-"""A person loses track of more."""
+MOST_EASE = 0.05  # How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed.
+MOST_PATCHES = 6  # a person loses track of more
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Cutting:
-    """A skin in patches.
+    """A skin in patches."""
 
-    Attributes:
-        mesh: of the whole skin.
-        patches: in the order of their numbers.
-        back: of each whether it was cut from the back.
-    """
-
-    mesh: SkinMesh
-    patches: tuple[Patch, ...]
-    back: tuple[bool, ...]
+    mesh: SkinMesh  # of the whole skin
+    patches: tuple[Patch, ...]  # in the order of their numbers
+    back: tuple[bool, ...]  # of each whether it was cut from the back
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -166,8 +154,7 @@ def _on(mesh: SkinMesh, number: int, patch: Patch) -> Patch:
 GIVES_LITTLE = 0.06
 """What any cloth gives: above that a pattern asks for one that stretches. Assumed, measured on none."""
 
-NARROWEST = 8.0
-"""A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed."""
+NARROWEST = 8.0  # A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed.
 
 
 def patch_problems(

@@ -12,17 +12,13 @@ from hydrostat.fabrication.patches.patch import Disc, Patch
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Distortion:
-    """Distortion of the map from flat cloth to the body, triangle by triangle.
+    """Distortion of the map from flat cloth to the body, triangle by triangle."""
 
-    Attributes:
-        longest: ratio of length in the direction of most stretch: above 1 the cloth has to stretch.
-        shortest: the same in the direction of least: below 1 it has to shrink, or wrinkles.
-        areas: of the triangles on the body [mm^2], their weights.
-    """
-
+    # ratio of length in the direction of most stretch: above 1 the cloth has to stretch
     longest: Float[np.ndarray, " triangles"]
+    # the same in the direction of least: below 1 it has to shrink, or wrinkles
     shortest: Float[np.ndarray, " triangles"]
-    areas: Float[np.ndarray, " triangles"]
+    areas: Float[np.ndarray, " triangles"]  # of the triangles on the body [mm^2], their weights
 
     @property
     def gives(self) -> Float[np.ndarray, " triangles"]:
@@ -66,11 +62,8 @@ def distortion(patch: Patch) -> Distortion:
     return Distortion(longest=stretches[:, 0], shortest=stretches[:, 1], areas=patch.disc.areas)
 
 
-_STEPS = 5
-"""Solves at a time."""
-
-_MOST = 40
-"""How many times at most."""
+_STEPS = 5  # solves at a time
+_MOST = 40  # how many times at most
 
 SETTLED = 5e-4
 """Relative change of the energy in one such time below which it has settled: it moves seams by less than cloth does."""

@@ -13,28 +13,18 @@ from hydrostat.fabrication.solids.printed import TriangleMesh, connected
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Disc(TriangleMesh):
-    """A patch in space, with vertices of its own.
+    """A patch in space, with vertices of its own."""
 
-    Attributes:
-        rim: its boundary, counter-clockwise from outside.
-        of: number of each vertex in the skin.
-    """
-
-    rim: Int[np.ndarray, " rim"]
-    of: Int[np.ndarray, " vertices"]
+    rim: Int[np.ndarray, " rim"]  # its boundary, counter-clockwise from outside
+    of: Int[np.ndarray, " vertices"]  # number of each vertex in the skin
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Patch:
-    """A disc with its flat image.
+    """A disc with its flat image."""
 
-    Attributes:
-        disc: in space.
-        flat: where its vertices lie [mm], seen from outside.
-    """
-
-    disc: Disc
-    flat: Float[np.ndarray, "vertices 2"]
+    disc: Disc  # in space
+    flat: Float[np.ndarray, "vertices 2"]  # where its vertices lie [mm], seen from outside
 
     @property
     def outline(self) -> Polygon:

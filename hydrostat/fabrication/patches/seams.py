@@ -15,18 +15,12 @@ from hydrostat.fabrication.patterns.skin import notch_letters
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Seam:
-    """A stretch of seam between two patches.
+    """A stretch of seam between two patches."""
 
-    Attributes:
-        patches: their numbers; the first has it on its left, seen from outside.
-        closed: whether it ends where it begins.
-        solid: its vertices on the body [mm], the first again at the end of a closed one.
-        sides: the same on the first and on the second patch [mm].
-    """
-
-    patches: tuple[int, int]
-    closed: bool
-    solid: Float[np.ndarray, "vertices 3"]
+    patches: tuple[int, int]  # their numbers; the first has it on its left, seen from outside
+    closed: bool  # whether it ends where it begins
+    solid: Float[np.ndarray, "vertices 3"]  # its vertices on the body [mm], the first again at the end of a closed one
+    # the same on the first and on the second patch [mm]
     sides: tuple[Float[np.ndarray, "vertices 2"], Float[np.ndarray, "vertices 2"]]
 
     @cached_property
@@ -112,30 +106,18 @@ def _seam(
     return Seam(patches=numbers, closed=closed, solid=patches[0].disc.vertices[local[0]], sides=(one, other))
 
 
-_SPACING = 60.0
-"""About how far apart notches are along a seam [mm]."""
-
-_SHORTEST = 10.0
-"""A seam shorter than that [mm] needs no notch."""
-
-_PAIR = 5.0
-"""How far apart the strokes of a double notch are [mm]."""
-
-_STUFFING = 80.0
-"""Length of seam left open for turning and stuffing where there is no zipper [mm], about."""
+_SPACING = 60.0  # about how far apart notches are along a seam [mm]
+_SHORTEST = 10.0  # a seam shorter than that [mm] needs no notch
+_PAIR = 5.0  # how far apart the strokes of a double notch are [mm]
+_STUFFING = 80.0  # length of seam left open for turning and stuffing where there is no zipper [mm], about
 
 
 @dataclass(frozen=True, kw_only=True)
 class PatchNotch:
-    """A mark by which two patches are matched.
+    """A mark by which two patches are matched."""
 
-    Attributes:
-        name: the same letters on both; empty for the second stroke of a double notch.
-        place: on the seam line [mm].
-    """
-
-    name: str
-    place: Place
+    name: str  # the same letters on both; empty for the second stroke of a double notch
+    place: Place  # on the seam line [mm]
 
 
 def _notch_places(seam: Seam) -> list[tuple[float, bool]]:

@@ -20,38 +20,27 @@ from hydrostat.units import counted
 DEEPEST = 15.0
 """A point of a cable at most so far under the skin [mm] is sewn to it; deeper ones stay in the stuffing. Assumed."""
 
-SHARED = 0.1
-"""Cables that pass the skin no farther apart than that [mm] share a hole."""
+SHARED = 0.1  # cables that pass the skin no farther apart than that [mm] share a hole
 
 _SEAM_FIRST = 3.0
 """A point at most so much farther from a seam than from the skin [mm] is sewn into the seam: that takes no hole, and
 cables in the middle between front and back stay there. Assumed."""
 
-_SHALLOW = 5.0
-"""A cable that was simulated so near to the skin [mm] acts as if it were on it. Assumed."""
+_SHALLOW = 5.0  # A cable that was simulated so near to the skin [mm] acts as if it were on it. Assumed.
 
 
 @dataclass(frozen=True, kw_only=True)
 class SkinHole:
-    """Point of a cable near the skin, and what the cable does there.
+    """Point of a cable near the skin, and what the cable does there."""
 
-    Attributes:
-        cable: its number, 1 for the first cable of the robot.
-        point: its number along the cable, 1 at the winch.
-        depth: how far under the skin the simulated point is [mm].
-        solid: the nearest place of the skin [mm].
-        places: patch number and place on it [mm]; two, one on each side, where the cable passes through a seam.
-        passes: whether the cable goes through the cloth here.
-        after: on which side it runs on.
-    """
-
-    cable: int
-    point: int
-    depth: float
-    solid: tuple[float, float, float]
+    cable: int  # its number, 1 for the first cable of the robot
+    point: int  # its number along the cable, 1 at the winch
+    depth: float  # how far under the skin the simulated point is [mm]
+    solid: tuple[float, float, float]  # the nearest place of the skin [mm]
+    # patch number and place on it [mm]; two, one on each side, where the cable passes through a seam
     places: tuple[tuple[int, Place], ...]
-    passes: bool
-    after: Side
+    passes: bool  # whether the cable goes through the cloth here
+    after: Side  # on which side it runs on
 
     @property
     def in_seam(self) -> bool:

@@ -13,19 +13,14 @@ from hydrostat.robot import Body
 
 _SIDES = ((0, 1), (1, 2), (2, 0))
 
-_SHARE = 0.03
-"""Longest edge, as a share of the diagonal of the body: fine enough for smooth seams."""
+_SHARE = 0.03  # longest edge, as a share of the diagonal of the body: fine enough for smooth seams
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SkinMesh(TriangleMesh):
-    """A closed surface cut into patches.
+    """A closed surface cut into patches."""
 
-    Attributes:
-        patch: number of the patch of each triangle.
-    """
-
-    patch: Int[np.ndarray, " triangles"]
+    patch: Int[np.ndarray, " triangles"]  # number of the patch of each triangle
 
     @cached_property
     def edges(self) -> tuple[Int[np.ndarray, "edges 2"], Int[np.ndarray, "triangles 3"]]:
@@ -136,8 +131,7 @@ def _fine(mesh: SkinMesh, longest: float) -> SkinMesh:
         mesh, _ = mesh.divided(long, np.full(len(long), 0.5))
 
 
-_NEAR = 0.05
-"""A line that passes a corner nearer than this share of an edge goes through the corner: no slivers."""
+_NEAR = 0.05  # a line that passes a corner nearer than this share of an edge goes through the corner: no slivers
 
 
 def cut_at_zero(

@@ -34,21 +34,13 @@ from hydrostat.robot import Mount, Robot
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SpacePattern(Pattern):
-    """The pattern of a body in space; `stitches` are as seen from the front, `opening` is on the sheet.
+    """The pattern of a body in space; `stitches` are as seen from the front, `opening` is on the sheet."""
 
-    Attributes:
-        patches: flat, in places of the sheet [mm]; a panel each, in the same order.
-        seams: between them, in places of the sheet [mm].
-        holes: where cables are sewn to the skin, in places of the sheet [mm].
-        skin: area of the skin that was cut [mm^2].
-        distortions: what the cloth has to give, a line for each patch.
-    """
-
-    patches: tuple[Patch, ...]
-    seams: tuple[Seam, ...]
-    holes: tuple[SkinHole, ...]
-    skin: float
-    distortions: tuple[str, ...]
+    patches: tuple[Patch, ...]  # flat, in places of the sheet [mm]; a panel each, in the same order
+    seams: tuple[Seam, ...]  # between them, in places of the sheet [mm]
+    holes: tuple[SkinHole, ...]  # where cables are sewn to the skin, in places of the sheet [mm]
+    skin: float  # area of the skin that was cut [mm^2]
+    distortions: tuple[str, ...]  # what the cloth has to give, a line for each patch
 
 
 def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:

@@ -10,15 +10,10 @@ from hydrostat.fabrication.patches.patch import Patch
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FrontView:
-    """The view of the front.
+    """The view of the front."""
 
-    Attributes:
-        right: unit direction that points to the right in it.
-        up: unit direction that points up in it.
-    """
-
-    right: Float[np.ndarray, " 3"]
-    up: Float[np.ndarray, " 3"]
+    right: Float[np.ndarray, " 3"]  # unit direction that points to the right in it
+    up: Float[np.ndarray, " 3"]  # unit direction that points up in it
 
     def on_paper(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
         """Where points are in it."""

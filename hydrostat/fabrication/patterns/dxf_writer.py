@@ -16,8 +16,7 @@ from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 _COLOURS = {Layer.MARK: colors.WHITE, Layer.PINHOLE: colors.BLUE, Layer.CUT: colors.RED}
 """Index 7 is black on paper and white on a dark screen."""
 
-_WRITING = Lock()
-"""Dates are switched off for all drawings of a process: one at a time."""
+_WRITING = Lock()  # dates are switched off for all drawings of a process: one at a time
 
 
 def pattern_dxf(pattern: Pattern) -> bytes:

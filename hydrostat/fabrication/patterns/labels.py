@@ -15,20 +15,11 @@ from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, 
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.robot import Robot
 
-_CLEARANCE = 1.2
-"""Empty cloth kept round whatever is placed [mm]."""
-
-_TIGHT = 1.05
-"""Empty cloth kept round the small figures at holes [mm]."""
-
-_OVER_TEXT = 10
-"""A label over another is as bad as one over so many more lines."""
-
-_THROUGH_TEXT = 3
-"""So is a line to a label through another, for so many."""
-
-_ROOMY = 6.0
-"""Empty cloth beyond which more is no better [mm]."""
+_CLEARANCE = 1.2  # empty cloth kept round whatever is placed [mm]
+_TIGHT = 1.05  # empty cloth kept round the small figures at holes [mm]
+_OVER_TEXT = 10  # a label over another is as bad as one over so many more lines
+_THROUGH_TEXT = 3  # so is a line to a label through another, for so many
+_ROOMY = 6.0  # empty cloth beyond which more is no better [mm]
 
 
 class FreeSpace:
@@ -120,26 +111,13 @@ def _boxes(centres: np.ndarray, width: float, height: float, clearance: float = 
 
 
 _NAMES = (4.0, 3.0)
-_TITLES = (8.0, 6.0, 5.0, 4.0)
-"""Heights of letters, the best first [mm]."""
-
-_GRAINS = (40.0, 25.0, 15.0)
-"""Lengths of the arrow, the best first [mm]."""
-
-_FIGURE = 2.5
-"""Height of the figure at a hole [mm], the least that a laser writes on felt."""
-
-_FIGURE_GAP = 2.2
-"""From the middle of a hole to its figure [mm]."""
-
-_LETTER = 3.0
-"""Height of the letter at a notch [mm]."""
-
-_ALONG = 15.0
-"""How far from its winch a cable is numbered [mm]."""
-
-_NEAR = 4.0
-"""How far off a label still needs no line to its place [mm]."""
+_TITLES = (8.0, 6.0, 5.0, 4.0)  # heights of letters, the best first [mm]
+_GRAINS = (40.0, 25.0, 15.0)  # lengths of the arrow, the best first [mm]
+_FIGURE = 2.5  # height of the figure at a hole [mm], the least that a laser writes on felt
+_FIGURE_GAP = 2.2  # from the middle of a hole to its figure [mm]
+_LETTER = 3.0  # height of the letter at a notch [mm]
+_ALONG = 15.0  # how far from its winch a cable is numbered [mm]
+_NEAR = 4.0  # how far off a label still needs no line to its place [mm]
 
 
 class PanelLabels:

@@ -12,15 +12,10 @@ _BETWEEN = 2.0
 
 @dataclass(frozen=True)
 class Lettering:
-    """One line of text, about its middle.
+    """One line of text, about its middle."""
 
-    Attributes:
-        text: any text; small letters are drawn as capitals, accents left off, what has no letter drawn as a box.
-        height: of a capital [mm].
-    """
-
-    text: str
-    height: float
+    text: str  # any text; small letters are drawn as capitals, accents left off, what has no letter drawn as a box
+    height: float  # of a capital [mm]
 
     @property
     def width(self) -> float:
@@ -70,11 +65,8 @@ def _points(stroke: str) -> list[Place]:
     return [(float(x), float(y)) for x, y in zip(stroke[::2], stroke[1::2], strict=True)]
 
 
-CAP_HEIGHT = 6
-"""Height of every capital and figure, in units of the font."""
-
-UNKNOWN = "0006464000"
-"""The box drawn for a character that has no glyph."""
+CAP_HEIGHT = 6  # height of every capital and figure, in units of the font
+UNKNOWN = "0006464000"  # the box drawn for a character that has no glyph
 
 GLYPHS = MappingProxyType(
     {

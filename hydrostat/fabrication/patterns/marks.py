@@ -14,17 +14,10 @@ from hydrostat.fabrication.patterns.skin import Notch, Skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, runs_of
 from hydrostat.robot import Robot
 
-_SHEATH = 3.0
-"""Width of the drawn sheath [mm]."""
-
-_STOPPER = 3.0
-"""Radius of the ring round the hole at a stopper [mm]."""
-
-_DASH = 2.0
-"""Length of a dash, and about that of the gap after it [mm]."""
-
-_CLEAR = 0.8
-"""How far lines end before a hole [mm], so that none is engraved into it."""
+_SHEATH = 3.0  # width of the drawn sheath [mm]
+_STOPPER = 3.0  # radius of the ring round the hole at a stopper [mm]
+_DASH = 2.0  # length of a dash, and about that of the gap after it [mm]
+_CLEAR = 0.8  # how far lines end before a hole [mm], so that none is engraved into it
 
 
 def place(point: Iterable[float]) -> Place:

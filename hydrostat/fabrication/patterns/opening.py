@@ -16,8 +16,7 @@ from hydrostat.robot import Robot
 ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
 """Lengths in which zippers are sold [mm]; any can be cut shorter."""
 
-_PLACKET = 4.0
-"""From the slit to the line along which the tape is sewn [mm]."""
+_PLACKET = 4.0  # from the slit to the line along which the tape is sewn [mm]
 
 _TURNS = (0, 90, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75)
 """Directions that are tried, from the row of winches [degrees], the best first."""
@@ -28,15 +27,10 @@ _SHIFTS = (0, 6, -6, 12, -12, 18, -18)
 
 @dataclass(frozen=True)
 class Opening:
-    """A slit and its zipper.
+    """A slit and its zipper."""
 
-    Attributes:
-        slit: as long as the teeth of the zipper, seen from the front [mm].
-        zipper: length to buy [mm]; longer than the slit where none so short is sold.
-    """
-
-    slit: LineString
-    zipper: int
+    slit: LineString  # as long as the teeth of the zipper, seen from the front [mm]
+    zipper: int  # length to buy [mm]; longer than the slit where none so short is sold
 
     @property
     def mark(self) -> LaserLine:

@@ -164,8 +164,7 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
     return tuple(warnings)
 
 
-_GAP = 10.0
-"""Round the plate [mm]."""
+_GAP = 10.0  # round the plate [mm]
 
 
 def cut_sheet(name: str, rings: Iterable[tuple[Place, ...]]) -> Pattern:

@@ -12,25 +12,17 @@ from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Circle, Layer, PatternPart, Place
 from hydrostat.robot import Mount, Robot
 
-_SAME = 0.01
-"""Points nearer than this [mm] are one point."""
+_SAME = 0.01  # points nearer than this [mm] are one point
 
 
 @dataclass(frozen=True)
 class Pinhole:
-    """One hole, for one cable or several.
+    """One hole, for one cable or several."""
 
-    Attributes:
-        centre: [mm].
-        radius: [mm].
-        uses: (cable, point) index pairs of the cable points that it serves.
-        winch: name of the winch whose cables leave through it; empty for a hole further along.
-    """
-
-    centre: Place
-    radius: float
-    uses: tuple[tuple[int, int], ...]
-    winch: str = ""
+    centre: Place  # [mm]
+    radius: float  # [mm]
+    uses: tuple[tuple[int, int], ...]  # (cable, point) index pairs of the cable points that it serves
+    winch: str = ""  # name of the winch whose cables leave through it; empty for a hole further along
 
     @property
     def name(self) -> str:

@@ -9,28 +9,18 @@ import shapely
 from hydrostat.fabrication.patterns.lettering import Lettering
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, PatternPart, Place
 
-_RULER = 100.0
-"""Length of the bar that shows whether the sheet was cut at its true scale [mm]."""
-
-_RULER_HEIGHT = 12.0
-"""Room for the bar and its text below the panels [mm]."""
+_RULER = 100.0  # length of the bar that shows whether the sheet was cut at its true scale [mm]
+_RULER_HEIGHT = 12.0  # room for the bar and its text below the panels [mm]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sheet:
-    """Panels in their places.
+    """Panels in their places."""
 
-    Attributes:
-        panels: in the order in which they were given.
-        ruler: the bar of 100 mm, and what solid and dashed lines are.
-        width: [mm].
-        height: [mm].
-    """
-
-    panels: tuple[Panel, ...]
-    ruler: tuple[LaserLine, ...]
-    width: float
-    height: float
+    panels: tuple[Panel, ...]  # in the order in which they were given
+    ruler: tuple[LaserLine, ...]  # the bar of 100 mm, and what solid and dashed lines are
+    width: float  # [mm]
+    height: float  # [mm]
 
 
 class _PanelBox(NamedTuple):

@@ -13,30 +13,19 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.robot import Body
 
-_STEPS = 24
-"""Straight pieces of a quarter turn: 0.004 mm from the arc of an 8 mm allowance."""
-
-_TOLERANCE = 0.01
-"""How far an offset line may be straightened [mm], a tenth of a laser's kerf."""
+_STEPS = 24  # straight pieces of a quarter turn: 0.004 mm from the arc of an 8 mm allowance
+_TOLERANCE = 0.01  # how far an offset line may be straightened [mm], a tenth of a laser's kerf
 
 
 @dataclass(frozen=True)
 class Skin:
-    """One panel of cloth, seen from the front.
+    """One panel of cloth, seen from the front."""
 
-    Attributes:
-        seam: the body's own outline [mm], counter-clockwise, its holes clockwise.
-        cut: its parallel, one seam allowance out into the cloth [mm].
-        slits: further cuts, in bays too narrow for two allowances [mm].
-        problems: why it cannot be cut and sewn as drawn, a line each.
-        warnings: what to mind while sewing, a line each.
-    """
-
-    seam: Polygon
-    cut: Polygon
-    slits: MultiLineString
-    problems: tuple[str, ...]
-    warnings: tuple[str, ...]
+    seam: Polygon  # the body's own outline [mm], counter-clockwise, its holes clockwise
+    cut: Polygon  # its parallel, one seam allowance out into the cloth [mm]
+    slits: MultiLineString  # further cuts, in bays too narrow for two allowances [mm]
+    problems: tuple[str, ...]  # why it cannot be cut and sewn as drawn, a line each
+    warnings: tuple[str, ...]  # what to mind while sewing, a line each
 
 
 def flat_skin(body: Body, options: PatternOptions) -> Skin:
@@ -132,28 +121,18 @@ def _at(geometry: Polygon | shapely.Point) -> str:
     return f"[{place.x:.4g}, {place.y:.4g}] mm"
 
 
-_SPACING = 80.0
-"""About how far apart notches are along the seam [mm]."""
-
-_PAIR = 5.0
-"""How far apart the two notches of the double notch are [mm]: it tells where top is."""
+_SPACING = 80.0  # about how far apart notches are along the seam [mm]
+_PAIR = 5.0  # how far apart the two notches of the double notch are [mm]: it tells where top is
 
 
 @dataclass(frozen=True)
 class Notch:
-    """One stroke.
+    """One stroke."""
 
-    Attributes:
-        ring: which seam it is on: 0 for the outer one, then the holes in order.
-        along: how far along that seam from its top, with the body on the left [mm].
-        name: a letter, the same on every panel; empty for the second stroke of the double notch.
-        stroke: from the seam to the cut, seen from the front [mm].
-    """
-
-    ring: int
-    along: float
-    name: str
-    stroke: LineString
+    ring: int  # which seam it is on: 0 for the outer one, then the holes in order
+    along: float  # how far along that seam from its top, with the body on the left [mm]
+    name: str  # a letter, the same on every panel; empty for the second stroke of the double notch
+    stroke: LineString  # from the seam to the cut, seen from the front [mm]
 
 
 def find_notches(skin: Skin) -> tuple[Notch, ...]:

@@ -26,37 +26,24 @@ class Side(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Stitch:
-    """Point of a cable, and what the cable does there.
+    """Point of a cable, and what the cable does there."""
 
-    Attributes:
-        number: of the point along its cable, 1 at the winch.
-        place: seen from the front, from the origin of the robot [mm].
-        passes: whether the cable goes through the cloth here. Where it does not, what holds it (its winch, its sheath)
-            is tied to the cloth with thread.
-        after: on which side the cable runs on.
-    """
-
-    number: int
-    place: Place
+    number: int  # of the point along its cable, 1 at the winch
+    place: Place  # seen from the front, from the origin of the robot [mm]
+    # whether the cable goes through the cloth here. Where it does not, what holds it (its winch, its sheath) is tied to
+    # the cloth with thread.
     passes: bool
-    after: Side
+    after: Side  # on which side the cable runs on
 
 
 @dataclass(frozen=True, kw_only=True)
 class CableStitches:
-    """All stitches of a cable, from its winch to its stopper.
+    """All stitches of a cable, from its winch to its stopper."""
 
-    Attributes:
-        cable: its number, 1 for the first cable of the robot.
-        winch: name of its winch.
-        begins: the side on which it comes from its winch.
-        stitches: one for each point of the cable.
-    """
-
-    cable: int
-    winch: str
-    begins: Side
-    stitches: tuple[Stitch, ...]
+    cable: int  # its number, 1 for the first cable of the robot
+    winch: str  # name of its winch
+    begins: Side  # the side on which it comes from its winch
+    stitches: tuple[Stitch, ...]  # one for each point of the cable
 
     @property
     def passes(self) -> tuple[Stitch, ...]:

@@ -13,8 +13,7 @@ COLOURS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"
 
 _HAIRLINE = 0.1
 
-_DIGITS = 3
-"""Micrometres are enough."""
+_DIGITS = 3  # micrometres are enough
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 

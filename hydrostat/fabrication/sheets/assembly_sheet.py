@@ -38,8 +38,7 @@ def assembly_sheet(given: SheetInput) -> bytes:
     return typst.compile(source, sys_inputs={"sheet": facts}, ignore_system_fonts=True, timestamp=0)
 
 
-WIDE, HALF = 182.0, 88.0
-"""Widths of a page and of half a page without its margins [mm]; both fit both papers."""
+WIDE, HALF = 182.0, 88.0  # widths of a page and of half a page without its margins [mm]; both fit both papers
 
 
 def sheet_pictures(given: SheetInput) -> dict[str, Canvas]:

@@ -27,24 +27,14 @@ from hydrostat.fabrication.sheets.label_places import LabelPlaces, box_round
 from hydrostat.fabrication.sheets.sight import Sight
 from hydrostat.robot import Mount, Robot
 
-_MARGIN = 7.0
-"""Room round the body for labels [mm]."""
-
-_HOLE = 0.65
-"""Radius of a drawn hole [mm]."""
-
-_NEAR = 3.2
-"""A number further than this from its hole is led to it by a line [mm]."""
-
-_SHARP = 70.0
-"""On a body, edges are drawn that are sharper than this [degrees]: scans are rough."""
-
-_SOFT = 0.008
-"""Over what share of the picture the light on a body is blurred."""
+_MARGIN = 7.0  # room round the body for labels [mm]
+_HOLE = 0.65  # radius of a drawn hole [mm]
+_NEAR = 3.2  # a number further than this from its hole is led to it by a line [mm]
+_SHARP = 70.0  # on a body, edges are drawn that are sharper than this [degrees]: scans are rough
+_SOFT = 0.008  # over what share of the picture the light on a body is blurred
 
 
-_MANY = 6
-"""More winches than this have smaller marks."""
+_MANY = 6  # more winches than this have smaller marks
 
 
 def winch_mark(index: int) -> str:
@@ -54,21 +44,13 @@ def winch_mark(index: int) -> str:
 
 @dataclass(frozen=True, eq=False)
 class CableRun:
-    """One cable on paper.
+    """One cable on paper."""
 
-    Attributes:
-        cable: number, from 1.
-        spots: of its points, from the winch [mm].
-        solid: which of its segments run on the outside, or in front.
-        sheathed: which of them run in a tube.
-        holes: at which points it goes through the skin or is held by it.
-    """
-
-    cable: int
-    spots: list[Spot]
-    solid: Sequence[bool]
-    sheathed: Sequence[bool]
-    holes: Sequence[bool]
+    cable: int  # number, from 1
+    spots: list[Spot]  # of its points, from the winch [mm]
+    solid: Sequence[bool]  # which of its segments run on the outside, or in front
+    sheathed: Sequence[bool]  # which of them run in a tube
+    holes: Sequence[bool]  # at which points it goes through the skin or is held by it
 
 
 def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:

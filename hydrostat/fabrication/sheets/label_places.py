@@ -11,22 +11,15 @@ from hydrostat.drawing.canvas import Box, Spot
 _WAYS = [(np.cos(turn), np.sin(turn)) for turn in np.radians(np.arange(0, 360, 30))]
 """Directions that are tried, to the right first."""
 
-_RINGS = (0.0, 1.5, 3.5, 6.0)
-"""How much further off than asked for a label may be, each tried in turn [mm]."""
-
-_STEP = 0.5
-"""Between points that stand for a line [mm]."""
+_RINGS = (0.0, 1.5, 3.5, 6.0)  # how much further off than asked for a label may be, each tried in turn [mm]
+_STEP = 0.5  # between points that stand for a line [mm]
 
 
 @dataclass
 class LabelPlaces:
-    """What is taken on a picture, and places that are free.
+    """What is taken on a picture, and places that are free."""
 
-    Attributes:
-        room: nothing is put beyond it.
-    """
-
-    room: Box
+    room: Box  # nothing is put beyond it
     _points: list[np.ndarray] = field(default_factory=list)
     _boxes: list[Box] = field(default_factory=list)
 

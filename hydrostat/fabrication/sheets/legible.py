@@ -12,11 +12,8 @@ from hydrostat.robot import Robot
 FONTS = ("Libertinus Serif", "DejaVu Sans Mono")
 """Come with typst: Latin, Greek, Cyrillic, Hebrew, signs of mathematics."""
 
-_MISSING = "?"
-"""Stands for a letter that no font has."""
-
-_NAMES = ("title", "name")
-"""Under which facts have names: their signs stay."""
+_MISSING = "?"  # stands for a letter that no font has
+_NAMES = ("title", "name")  # under which facts have names: their signs stay
 
 _PAGE = f'#set text(font: ("{FONTS[0]}", "{FONTS[1]}"))\n#set page(width: auto, height: auto)\n#sys.inputs.letter'
 
@@ -102,8 +99,7 @@ def _drawn(letter: str) -> bool:
     return True
 
 
-_SENTENCE, _MOST = 640, 7
-"""Longest sentence in letters, and most sentences."""
+_SENTENCE, _MOST = 640, 7  # longest sentence in letters, and most sentences
 
 _PLACE = re.compile(r"\[[^\]]*\]")
 _CLOTH = re.compile(r"\b(cloth|seam|felt|fabric|snip|notch|skin)", re.IGNORECASE)

@@ -9,14 +9,9 @@ from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.assembly import Placed
 from hydrostat.fabrication.solids.printed import Printed
 
-Facts = dict[str, Any]
-"""Plain data, as JSON has it."""
-
-_TOTAL = "total"
-"""What the bill calls the rows that sum others."""
-
-_BY_DETAIL = ("screw or nut", "geared motor")
-"""Things of the bill that are called by their specification."""
+Facts = dict[str, Any]  # plain data, as JSON has it
+_TOTAL = "total"  # what the bill calls the rows that sum others
+_BY_DETAIL = ("screw or nut", "geared motor")  # things of the bill that are called by their specification
 
 _UNITS = {"piece": "", "m^2": "m²"}
 

@@ -10,8 +10,7 @@ from hydrostat.units import counted
 
 _SILICONE_CURE = ("Mold Max 30 silicone", "24 h, or 6 h at 60 °C")
 
-_MODEL_CURES = (("alginate", "less than 5 min"), ("plaster", "several hours"))
-"""Of what a positive is cast with."""
+_MODEL_CURES = (("alginate", "less than 5 min"), ("plaster", "several hours"))  # of what a positive is cast with
 
 _OTHER_MOULD = (
     "“hydrostat fabricate” with “--mould silicone” writes what it takes instead: positive and frames to print, "

@@ -3,11 +3,8 @@
 from hydrostat.drawing.canvas import MIDDLE, THICK, THIN, Canvas, Spot
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 
-_CLOTH = 1.5
-"""Thickness of drawn cloth [mm]."""
-
-_MOST = 7
-"""Holes that are drawn; of a longer cable the last are left out but for the stopper's."""
+_CLOTH = 1.5  # thickness of drawn cloth [mm]
+_MOST = 7  # holes that are drawn; of a longer cable the last are left out but for the stopper's
 
 
 def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float) -> Canvas:

@@ -14,8 +14,7 @@ from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
 from hydrostat.units import counted
 
-_NAME, _SHORT = 60, 26
-"""Longest name of the robot, of a winch, in letters."""
+_NAME, _SHORT = 60, 26  # longest name of the robot, of a winch, in letters
 
 _POURS = ("first", "second")
 
@@ -27,11 +26,8 @@ _CABLES = {
 }
 """Columns of the list of cables, and what the sheet calls them."""
 
-_TUBES = {"cable": "cable", "from": "from", "to": "to", "cut to": "cut to"}
-"""The same of the list of tubes."""
-
-_PLACES = {"where the cable begins": "body"}
-"""What the list of tubes calls a place, and the sheet, which has less room."""
+_TUBES = {"cable": "cable", "from": "from", "to": "to", "cut to": "cut to"}  # the same of the list of tubes
+_PLACES = {"where the cable begins": "body"}  # what the list of tubes calls a place, and the sheet, which has less room
 
 
 def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:

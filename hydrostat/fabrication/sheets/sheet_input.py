@@ -15,41 +15,24 @@ from hydrostat.robot import Robot
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SheetInput:
-    """What the sheet is made of.
+    """What the sheet is made of."""
 
-    Attributes:
-        robot: that is built.
-        method: how.
-        paper: of the pages.
-        motor: what its motors are, in words.
-        winch: the unit that is drawn apart; of several, that with the most cables.
-        base: with the winches that stand outside the body.
-        stopper: drawn apart.
-        printed: all that comes from the printer.
-        tables: lists by name; told are "bill_of_materials", "cable_cuts" and "sheath_cuts", if they are there.
-        stitches: of each cable of a plush robot.
-        gusset: whether strips between front and back make a plush body thick.
-        mould: of a robot of foam.
-        checks: of the kit on itself.
-        problems: why the robot cannot be built well, if it is built all the same.
-        warnings: what to mind.
-    """
-
-    robot: Robot
-    method: Method
-    paper: Paper
-    motor: str = "geared motor"
-    winch: PartAssembly | None = None
-    base: PartAssembly | None = None
-    stopper: PartAssembly | None = None
-    printed: tuple[Printed, ...] = ()
+    robot: Robot  # that is built
+    method: Method  # how
+    paper: Paper  # of the pages
+    motor: str = "geared motor"  # what its motors are, in words
+    winch: PartAssembly | None = None  # the unit that is drawn apart; of several, that with the most cables
+    base: PartAssembly | None = None  # with the winches that stand outside the body
+    stopper: PartAssembly | None = None  # drawn apart
+    printed: tuple[Printed, ...] = ()  # all that comes from the printer
+    # lists by name; told are "bill_of_materials", "cable_cuts" and "sheath_cuts", if they are there
     tables: Mapping[str, Table] = field(default_factory=dict)
-    stitches: tuple[CableStitches, ...] = ()
-    gusset: bool = False
-    mould: Mould | None = None
-    checks: tuple[Check, ...] = ()
-    problems: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
+    stitches: tuple[CableStitches, ...] = ()  # of each cable of a plush robot
+    gusset: bool = False  # whether strips between front and back make a plush body thick
+    mould: Mould | None = None  # of a robot of foam
+    checks: tuple[Check, ...] = ()  # of the kit on itself
+    problems: tuple[str, ...] = ()  # why the robot cannot be built well, if it is built all the same
+    warnings: tuple[str, ...] = ()  # what to mind
 
     @property
     def print_hours(self) -> float:

@@ -11,27 +11,17 @@ from hydrostat.drawing.depth import DepthBuffer
 from hydrostat.drawing.line_drawing import DrawnSolid
 from hydrostat.robot import Robot
 
-_COARSE = 160
-"""Pixels along a body: enough to know its near and its far side."""
-
-_TURNS = tuple(range(0, 360, 30))
-"""Compass directions that are tried [degrees]."""
-
-_RISES = (15.0, 40.0)
-"""Heights over the horizon that are tried [degrees]."""
+_COARSE = 160  # pixels along a body: enough to know its near and its far side
+_TURNS = tuple(range(0, 360, 30))  # compass directions that are tried [degrees]
+_RISES = (15.0, 40.0)  # heights over the horizon that are tried [degrees]
 
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """The near and the far side of a body.
+    """The near and the far side of a body."""
 
-    Attributes:
-        front: depths of the near side.
-        back: of the far side, as seen from there: x and depth change their sign.
-    """
-
-    front: DepthBuffer
-    back: DepthBuffer
+    front: DepthBuffer  # depths of the near side
+    back: DepthBuffer  # of the far side, as seen from there: x and depth change their sign
 
     @classmethod
     def of(cls, body: DrawnSolid, camera: Camera) -> Self:

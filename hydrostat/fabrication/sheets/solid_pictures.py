@@ -17,8 +17,7 @@ from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import triangles_of
 from hydrostat.robot import Robot
 
-_SIDE = 9.0
-"""Room for balloons to the left and right of the drawing [mm]."""
+_SIDE = 9.0  # room for balloons to the left and right of the drawing [mm]
 
 
 def drawn_solid(solid: Manifold, *, shift: Sequence[float] = (0.0, 0.0, 0.0)) -> DrawnSolid:
@@ -102,11 +101,8 @@ def spread(wished: Sequence[float], step: float, low: float, high: float) -> lis
     return places
 
 
-_TURNS = tuple(range(0, 360, 30))
-"""Compass directions round the pull that are tried [degrees]."""
-
-_HATCH = 0.8
-"""Between the lines of a hatch on paper [mm]."""
+_TURNS = tuple(range(0, 360, 30))  # compass directions round the pull that are tried [degrees]
+_HATCH = 0.8  # between the lines of a hatch on paper [mm]
 
 
 def undercut_picture(
@@ -158,11 +154,8 @@ def _hatch(rings: list[Polyline], gap: float) -> list[np.ndarray]:
     return [shapely.get_coordinates(part) for part in parts if isinstance(part, shapely.LineString)]
 
 
-_PIXELS = 300
-"""Along the longer side of a flat body."""
-
-_SHADES = ((0.60, 0.93), (0.42, 0.84))
-"""Below which light a puffed body is grey, and how bright that grey is."""
+_PIXELS = 300  # along the longer side of a flat body
+_SHADES = ((0.60, 0.93), (0.42, 0.84))  # below which light a puffed body is grey, and how bright that grey is
 
 
 def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) -> Canvas:

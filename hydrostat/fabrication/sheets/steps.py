@@ -13,19 +13,12 @@ from hydrostat.units import counted
 
 @dataclass(frozen=True)
 class AssemblyStep:
-    """One thing to do.
+    """One thing to do."""
 
-    Attributes:
-        title: what.
-        minutes: about how long it keeps a person busy.
-        wait: how long to wait after it, in words; empty for not at all.
-        text: how, in short sentences.
-    """
-
-    title: str
-    minutes: float
-    text: str
-    wait: str = ""
+    title: str  # what
+    minutes: float  # about how long it keeps a person busy
+    text: str  # how, in short sentences
+    wait: str = ""  # how long to wait after it, in words; empty for not at all
 
     @property
     def time(self) -> str:
@@ -69,19 +62,12 @@ _IN_TUBE = ("in its tube", "end of its tube")
 
 @dataclass(frozen=True, kw_only=True)
 class CableDepths:
-    """Names of cables, C1, C2, ...
+    """Names of cables, C1, C2, ..."""
 
-    Attributes:
-        sewn: those that are sewn to the skin all along.
-        drawn: those that are drawn through the body at some points.
-        laid: those of which a point is too deep for a needle: a tube is laid before casting.
-        tubed: those whose own tube runs in the body, deeper than the skin.
-    """
-
-    sewn: tuple[str, ...] = ()
-    drawn: tuple[str, ...] = ()
-    laid: tuple[str, ...] = ()
-    tubed: tuple[str, ...] = ()
+    sewn: tuple[str, ...] = ()  # those that are sewn to the skin all along
+    drawn: tuple[str, ...] = ()  # those that are drawn through the body at some points
+    laid: tuple[str, ...] = ()  # those of which a point is too deep for a needle: a tube is laid before casting
+    tubed: tuple[str, ...] = ()  # those whose own tube runs in the body, deeper than the skin
 
     @classmethod
     def of(cls, given: SheetInput) -> "CableDepths":

@@ -13,57 +13,33 @@ from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Shape
 
-PAPERS = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}
-"""Width and height [mm]."""
-
-MARGIN = 10.0
-"""What a printer leaves white along each edge [mm]."""
-
-FOOTER = 14.0
-"""Room below a tile for its name and the bar [mm]."""
-
-OVERLAP = 10.0
-"""What a tile shares with the next [mm]."""
+PAPERS = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}  # width and height [mm]
+MARGIN = 10.0  # what a printer leaves white along each edge [mm]
+FOOTER = 14.0  # room below a tile for its name and the bar [mm]
+OVERLAP = 10.0  # what a tile shares with the next [mm]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Tile:
-    """What is printed on one page.
+    """What is printed on one page."""
 
-    Attributes:
-        name: column and row, such as "B2".
-        column: from the left, from 0.
-        row: from the top, from 0.
-        left: of its left edge on the sheet [mm].
-        top: how far its upper edge is below that of the sheet [mm].
-        shapes: what lies on it, in places of the sheet.
-    """
-
-    name: str
-    column: int
-    row: int
-    left: float
-    top: float
-    shapes: tuple[Shape, ...]
+    name: str  # column and row, such as "B2"
+    column: int  # from the left, from 0
+    row: int  # from the top, from 0
+    left: float  # of its left edge on the sheet [mm]
+    top: float  # how far its upper edge is below that of the sheet [mm]
+    shapes: tuple[Shape, ...]  # what lies on it, in places of the sheet
 
 
 @dataclass(frozen=True, kw_only=True)
 class TileGrid:
-    """All tiles of a sheet.
+    """All tiles of a sheet."""
 
-    Attributes:
-        columns: of tiles.
-        rows: of tiles.
-        width: of a tile [mm].
-        height: of a tile [mm].
-        tiles: row by row; without shapes where the tiles before it show all that is on it.
-    """
-
-    columns: int
-    rows: int
-    width: float
-    height: float
-    tiles: tuple[Tile, ...]
+    columns: int  # of tiles
+    rows: int  # of tiles
+    width: float  # of a tile [mm]
+    height: float  # of a tile [mm]
+    tiles: tuple[Tile, ...]  # row by row; without shapes where the tiles before it show all that is on it
 
     @property
     def printed(self) -> tuple[Tile, ...]:

@@ -16,11 +16,8 @@ from hydrostat.fabrication.sheets.tile_grid import FOOTER, MARGIN, OVERLAP, PAPE
 _WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
 """Of the lines [mm]: an operation is told by its width too where the printer knows no colour."""
 
-_NAMED = 12
-"""So many empty tiles are named; more would fill the page."""
-
-_BAR = 100.0
-"""Length of the bar that shows whether a page was printed at its true scale [mm]."""
+_NAMED = 12  # so many empty tiles are named; more would fill the page
+_BAR = 100.0  # length of the bar that shows whether a page was printed at its true scale [mm]
 
 _Box = tuple[float, float, float, float]
 _Widths = Mapping[Layer, float]

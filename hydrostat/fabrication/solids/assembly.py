@@ -5,55 +5,35 @@ from itertools import combinations
 
 from manifold3d import Manifold
 
-LEAST = 1e-3
-"""Mean thickness of what two pieces share, above which they are in each other's way [mm]."""
+LEAST = 1e-3  # mean thickness of what two pieces share, above which they are in each other's way [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Placed:
-    """One thing in an assembly.
+    """One thing in an assembly."""
 
-    Attributes:
-        name: of the piece, unique in the assembly, as in `Printed.name` if it is printed.
-        title: what a person calls it.
-        solid: where it belongs when assembled [mm].
-        pulled: how far it is drawn away in an exploded picture [mm].
-        printed: whether it is printed; else it is bought, and this is its envelope.
-    """
-
-    name: str
-    title: str
-    solid: Manifold
-    pulled: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    printed: bool = True
+    name: str  # of the piece, unique in the assembly, as in `Printed.name` if it is printed
+    title: str  # what a person calls it
+    solid: Manifold  # where it belongs when assembled [mm]
+    pulled: tuple[float, float, float] = (0.0, 0.0, 0.0)  # how far it is drawn away in an exploded picture [mm]
+    printed: bool = True  # whether it is printed; else it is bought, and this is its envelope
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PartAssembly:
-    """Things put together, in millimetres.
+    """Things put together, in millimetres."""
 
-    Attributes:
-        name: of the whole.
-        pieces: in the order in which they are put together.
-    """
-
-    name: str
-    pieces: tuple[Placed, ...]
+    name: str  # of the whole
+    pieces: tuple[Placed, ...]  # in the order in which they are put together
 
 
 @dataclass(frozen=True)
 class Interference:
-    """Two pieces that need the same place.
+    """Two pieces that need the same place."""
 
-    Attributes:
-        one: name of a piece.
-        other: name of another.
-        volume: of what they share [mm^3].
-    """
-
-    one: str
-    other: str
-    volume: float
+    one: str  # name of a piece
+    other: str  # name of another
+    volume: float  # of what they share [mm^3]
 
 
 def interferences(assembly: PartAssembly, *, least: float = LEAST) -> tuple[Interference, ...]:

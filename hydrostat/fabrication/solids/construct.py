@@ -14,24 +14,16 @@ from manifold3d import CrossSection, Manifold
 Corner = tuple[float, float]
 """A corner of a profile [mm]."""
 
-Sides = tuple[float, float, float]
-"""Lengths along three axes [mm]."""
-
-_SAG = 0.02
-"""How far a round side is at most from its true place [mm]."""
+Sides = tuple[float, float, float]  # lengths along three axes [mm]
+_SAG = 0.02  # how far a round side is at most from its true place [mm]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cuboid:
-    """Two corners of a box along the axes [mm].
+    """Two corners of a box along the axes [mm]."""
 
-    Attributes:
-        low: the least.
-        high: the largest.
-    """
-
-    low: Sides
-    high: Sides
+    low: Sides  # the least
+    high: Sides  # the largest
 
     @property
     def size(self) -> Sides:

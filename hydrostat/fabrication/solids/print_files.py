@@ -26,25 +26,17 @@ def stl_bytes(printed: Printed) -> bytes:
     return header + np.uint32(len(triangles)).astype("<u4").tobytes() + records.tobytes()
 
 
-_GAP = 5.0
-"""Between parts on the bed [mm]."""
+_GAP = 5.0  # between parts on the bed [mm]
 
 
 @dataclass(frozen=True)
 class PartOnBed:
-    """One part on a bed.
+    """One part on a bed."""
 
-    Attributes:
-        part: its index.
-        x: how far it is moved [mm], after it is turned.
-        y: the same along y.
-        turned: whether it is turned by a quarter, counter-clockwise from above.
-    """
-
-    part: int
-    x: float
-    y: float
-    turned: bool
+    part: int  # its index
+    x: float  # how far it is moved [mm], after it is turned
+    y: float  # the same along y
+    turned: bool  # whether it is turned by a quarter, counter-clockwise from above
 
 
 @dataclass(frozen=True)

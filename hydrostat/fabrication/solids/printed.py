@@ -12,11 +12,8 @@ from scipy.sparse.csgraph import connected_components
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.construct import Construction, solid_of
 
-_DECIMALS = 5
-"""Of a coordinate [mm]: what a file of 32-bit numbers can hold of parts up to 128 mm."""
-
-_STEP = 2e-5
-"""How far apart vertices are put that would fall together, at least [mm]."""
+_DECIMALS = 5  # of a coordinate [mm]: what a file of 32-bit numbers can hold of parts up to 128 mm
+_STEP = 2e-5  # how far apart vertices are put that would fall together, at least [mm]
 
 FileMesh = tuple[Float[np.ndarray, "kept 3"], Int[np.ndarray, "faces 3"]]
 """Vertices [mm], each a number that 32 bits hold, and triangles, counter-clockwise from outside."""
@@ -92,14 +89,9 @@ def _apart(corners: Float[np.ndarray, "corners 3"]) -> Float[np.ndarray, "corner
     return corners
 
 
-PLA = 1.24e-3
-"""Density of PLA [g/mm^3]."""
-
-SHELL = 1.2
-"""Thickness of the shell that slicers print whole by themselves [mm]: three lines of 0.4 mm."""
-
-INFILL = 0.15
-"""Share of what is inside the shell that is plastic, as slicers have it by themselves."""
+PLA = 1.24e-3  # density of PLA [g/mm^3]
+SHELL = 1.2  # thickness of the shell that slicers print whole by themselves [mm]: three lines of 0.4 mm
+INFILL = 0.15  # share of what is inside the shell that is plastic, as slicers have it by themselves
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -157,15 +149,10 @@ class Printed:
 
 @dataclass(frozen=True, eq=False)
 class TriangleMesh:
-    """Surface in triangles.
+    """Surface in triangles."""
 
-    Attributes:
-        vertices: places [mm].
-        triangles: of three vertices each; seen from outside they turn counter-clockwise.
-    """
-
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
+    vertices: Float[np.ndarray, "vertices 3"]  # places [mm]
+    triangles: Int[np.ndarray, "triangles 3"]  # of three vertices each; seen from outside they turn counter-clockwise
 
     @cached_property
     def corners(self) -> Float[np.ndarray, "triangles 3 3"]:

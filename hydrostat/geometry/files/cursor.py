@@ -13,17 +13,11 @@ from hydrostat.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Points and the simplices among the cells of a file.
+    """Points and the simplices among the cells of a file."""
 
-    Attributes:
-        points: places in the file's own unit.
-        tetrahedra: indices of four points each, as declared and thus perhaps wrong.
-        triangles: indices of three points each.
-    """
-
-    points: Float[np.ndarray, "points 3"]
-    tetrahedra: Int[np.ndarray, "tetrahedra 4"]
-    triangles: Int[np.ndarray, "triangles 3"]
+    points: Float[np.ndarray, "points 3"]  # places in the file's own unit
+    tetrahedra: Int[np.ndarray, "tetrahedra 4"]  # indices of four points each, as declared and thus perhaps wrong
+    triangles: Int[np.ndarray, "triangles 3"]  # indices of three points each
 
 
 _PIECE = 1_000_000  # bytes of text taken apart at once

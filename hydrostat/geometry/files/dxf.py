@@ -32,8 +32,7 @@ from hydrostat.units import counted
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
-MOST_ENTITIES = 20_000
-"""A drawing with more entities, counting what its blocks repeat, is refused."""
+MOST_ENTITIES = 20_000  # a drawing with more entities, counting what its blocks repeat, is refused
 
 _MOST_DEPTH = 20
 _FARTHEST = 1e100

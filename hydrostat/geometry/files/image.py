@@ -16,8 +16,7 @@ from hydrostat.units import counted
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-MOST_PIXELS = 50_000_000
-"""A picture with more pixels is refused."""
+MOST_PIXELS = 50_000_000  # a picture with more pixels is refused
 
 _LONGEST = 1600
 _EDGE = 0.35

@@ -11,8 +11,7 @@ from hydrostat.geometry.outline import Outline
 _MOST_BYTES = {".svg": 20_000_000, ".dxf": 10_000_000, ".png": 50_000_000, ".jpg": 50_000_000, ".jpeg": 50_000_000}
 """Larger files are refused."""
 
-OUTLINE_SUFFIXES = tuple(_MOST_BYTES)
-"""Names of files that outlines are read from end in one of these."""
+OUTLINE_SUFFIXES = tuple(_MOST_BYTES)  # names of files that outlines are read from end in one of these
 
 
 def read_outline(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Outline:

@@ -10,17 +10,11 @@ from hydrostat.geometry.outline import Outline, Ring
 
 @dataclass(frozen=True)
 class Page:
-    """A place drawn at d lies at (d - origin) x scale [m] (docs/decisions/0001-coordinates.md).
+    """A place drawn at d lies at (d - origin) x scale [m] (docs/decisions/0001-coordinates.md)."""
 
-    Attributes:
-        kind: what two drawings must have in common to be on one page, in words.
-        origin: what lies at the origin of the body, in the drawing's units.
-        scale: length of one unit along x and y [m], y negative where the drawing counts it downwards.
-    """
-
-    kind: str
-    origin: tuple[float, float]
-    scale: tuple[float, float]
+    kind: str  # what two drawings must have in common to be on one page, in words
+    origin: tuple[float, float]  # what lies at the origin of the body, in the drawing's units
+    scale: tuple[float, float]  # length of one unit along x and y [m], y negative where the drawing counts it downwards
 
     def places(self, ring: Ring) -> Ring:
         """Places [m] of the points of a drawing."""
@@ -62,14 +56,9 @@ def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | N
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """The outline of a drawing or picture, and in words what was done to get it.
+    """The outline of a drawing or picture, and in words what was done to get it."""
 
-    Attributes:
-        outline: the body [m].
-        page: what the drawing's own coordinates mean.
-        notes: one line for each thing that was ignored, filled or mended; empty if there was nothing.
-    """
-
-    outline: Outline
-    page: Page
+    outline: Outline  # the body [m]
+    page: Page  # what the drawing's own coordinates mean
+    # one line for each thing that was ignored, filled or mended; empty if there was nothing
     notes: tuple[str, ...] = ()

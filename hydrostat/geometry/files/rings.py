@@ -14,14 +14,9 @@ from hydrostat.geometry.mesh import joined_groups
 from hydrostat.geometry.outline import Outline, Ring, fault
 from hydrostat.units import counted
 
-MOST_POINTS = 200_000
-"""A drawing with more points, counting what it repeats, is refused."""
-
-MOST_SHAPES = 200
-"""A drawing may have this many closed shapes: the body and its holes."""
-
-CHORD_ERROR = 2e-5
-"""Curves become chords that stray at most this part of their box."""
+MOST_POINTS = 200_000  # a drawing with more points, counting what it repeats, is refused
+MOST_SHAPES = 200  # a drawing may have this many closed shapes: the body and its holes
+CHORD_ERROR = 2e-5  # curves become chords that stray at most this part of their box
 
 _GAP = 1e-3
 _ROUNDING = 1e-6

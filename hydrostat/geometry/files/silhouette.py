@@ -22,21 +22,14 @@ Field = Float[np.ndarray, "rows columns"]
 
 @dataclass(frozen=True, eq=False)
 class Contrast:
-    """A picture against its ground, in steps of colour from 0 to 255 and more.
+    """A picture against its ground, in steps of colour from 0 to 255 and more."""
 
-    Attributes:
-        field: distance in colour of each pixel from the ground there.
-        strong: level halfway between ground and what stands out most (Otsu 1979).
-        faint: level that the noise of the ground does not reach.
-        shaded: which pixels have the colour of the ground, only darker, as in a soft shadow.
-        edge: share of the picture's border that stands out from the ground.
-    """
-
-    field: Field
-    strong: float
-    faint: float
+    field: Field  # distance in colour of each pixel from the ground there
+    strong: float  # level halfway between ground and what stands out most (Otsu 1979)
+    faint: float  # level that the noise of the ground does not reach
+    # which pixels have the colour of the ground, only darker, as in a soft shadow
     shaded: Bool[np.ndarray, "rows columns"]
-    edge: float
+    edge: float  # share of the picture's border that stands out from the ground
 
 
 def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
@@ -128,38 +121,23 @@ _Mask = Bool[np.ndarray, "rows columns"]
 
 @dataclass(frozen=True)
 class PixelPatch:
-    """A connected part of a picture.
+    """A connected part of a picture."""
 
-    Attributes:
-        area: [pixels].
-        place: column and row of its middle.
-        extent: longest side of its box [pixels].
-    """
-
-    area: int
-    place: tuple[float, float]
-    extent: float
+    area: int  # [pixels]
+    place: tuple[float, float]  # column and row of its middle
+    extent: float  # longest side of its box [pixels]
 
 
 @dataclass(frozen=True, eq=False)
 class Silhouette:
-    """A body in a picture.
+    """A body in a picture."""
 
-    Attributes:
-        body: its outer ring, columns and rows [pixels].
-        holes: the rings of its holes.
-        specks: what lies outside the body, too small to be meant.
-        filled: holes that were filled.
-        lines: whether it was drawn with lines only.
-        cut: whether it reaches the border of the picture.
-    """
-
-    body: Ring
-    holes: tuple[Ring, ...]
-    specks: tuple[PixelPatch, ...]
-    filled: tuple[PixelPatch, ...]
-    lines: bool
-    cut: bool
+    body: Ring  # its outer ring, columns and rows [pixels]
+    holes: tuple[Ring, ...]  # the rings of its holes
+    specks: tuple[PixelPatch, ...]  # what lies outside the body, too small to be meant
+    filled: tuple[PixelPatch, ...]  # holes that were filled
+    lines: bool  # whether it was drawn with lines only
+    cut: bool  # whether it reaches the border of the picture
 
 
 def covered(mask: _Mask) -> int:

@@ -9,31 +9,20 @@ from jaxtyping import Float, Int
 
 from hydrostat.errors import SurfaceError
 
-MOST_BYTES = 120_000_000
-"""A surface file larger than this, or that unpacks to more, is refused."""
-
-MOST_TEXT_BYTES = 60_000_000
-"""The same for what is read word by word, which takes longer: text, and the XML of 3MF."""
-
-MOST_TRIANGLES = 2_000_000
-"""A surface with more triangles is refused; of vertices it may have three times as many."""
+MOST_BYTES = 120_000_000  # a surface file larger than this, or that unpacks to more, is refused
+MOST_TEXT_BYTES = 60_000_000  # the same for what is read word by word, which takes longer: text, and the XML of 3MF
+MOST_TRIANGLES = 2_000_000  # a surface with more triangles is refused; of vertices it may have three times as many
 
 _LONGEST_LINE = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class Soup:
-    """Triangles as they stand in a file.
+    """Triangles as they stand in a file."""
 
-    Attributes:
-        vertices: places in the file's own unit.
-        triangles: indices of three vertices each, as declared and thus perhaps wrong.
-        unit: metres of one coordinate, None where the file has no unit.
-    """
-
-    vertices: Float[np.ndarray, "vertices 3"]
-    triangles: Int[np.ndarray, "triangles 3"]
-    unit: float | None = None
+    vertices: Float[np.ndarray, "vertices 3"]  # places in the file's own unit
+    triangles: Int[np.ndarray, "triangles 3"]  # indices of three vertices each, as declared and thus perhaps wrong
+    unit: float | None = None  # metres of one coordinate, None where the file has no unit
 
 
 def check_count(name: str, what: str, count: int, *, room: float, most: int = MOST_TRIANGLES) -> None:

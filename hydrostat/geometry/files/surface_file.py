@@ -20,8 +20,7 @@ __all__ = ["SURFACE_SUFFIXES", "read_surface", "write_ply"]
 
 _READERS = {".stl": read_stl, ".obj": read_obj, ".ply": read_ply, ".off": read_off, ".3mf": read_3mf}
 
-SURFACE_SUFFIXES = tuple(_READERS)
-"""Endings of the files that are read as surfaces."""
+SURFACE_SUFFIXES = tuple(_READERS)  # endings of the files that are read as surfaces
 
 _SMALLEST, _LARGEST = 1e-6, 1e4  # m
 _STRANGERS = {

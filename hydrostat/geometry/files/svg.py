@@ -39,16 +39,12 @@ _NO_SHAPES = {
 
 @dataclass(frozen=True)
 class _SvgDocument:
-    """A drawing without what is no shape, in its own units.
+    """A drawing without what is no shape, in its own units."""
 
-    Attributes:
-        content: the SVG again, with width and height such that one user unit is one pixel.
-        unit: length of one user unit along x and y [m], None if the drawing has no physical size.
-        sheet: left, top, width and height of the page in user units; None if the drawing does not say.
-    """
-
-    content: bytes
+    content: bytes  # the SVG again, with width and height such that one user unit is one pixel
+    # length of one user unit along x and y [m], None if the drawing has no physical size
     unit: tuple[float, float] | None
+    # left, top, width and height of the page in user units; None if the drawing does not say
     sheet: tuple[float, float, float, float] | None
 
 

@@ -21,8 +21,7 @@ _METRES = {
 }  # fmt: skip
 _ROOT_KIND = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 
-_Key = tuple[str, str]
-"""An object: the part of the archive that it stands in, and its number there."""
+_Key = tuple[str, str]  # an object: the part of the archive that it stands in, and its number there
 
 
 @dataclass

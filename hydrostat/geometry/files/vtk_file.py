@@ -7,8 +7,7 @@ import numpy as np
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.cursor import Cells, Cursor, damaged, whole_numbers
 
-TETRAHEDRON, TRIANGLE = 10, 5
-"""VTK's numbers of the two kinds of cells that are read."""
+TETRAHEDRON, TRIANGLE = 10, 5  # VTK's numbers of the two kinds of cells that are read
 
 _MOST_SECTIONS = 100
 _KINDS = {

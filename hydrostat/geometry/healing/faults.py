@@ -13,8 +13,7 @@ from hydrostat.units import counted
 
 _PAIRS = 1_000_000  # about as many are looked at at once
 _BOXES = 4096  # and no more triangles, for the next may cross many more others
-MOST_PAIRS = 100_000
-"""Where so many pairs cross, no more are looked for."""
+MOST_PAIRS = 100_000  # where so many pairs cross, no more are looked for
 
 _NEAR = 1e-9  # of the size of the surface: what is nearer to a plane than this touches it, and does not cross it
 # a turn that no CAD model is aligned with: its walls are not seen from the side, where many boxes overlap
@@ -130,25 +129,17 @@ def _runs_through(
     return within & _straddles(heights, near)
 
 
-SLIVER = 1e-3
-"""A triangle lower than this share of its longest side is a sliver."""
+SLIVER = 1e-3  # a triangle lower than this share of its longest side is a sliver
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of the input that is not in the healed surface.
+    """A part of the input that is not in the healed surface."""
 
-    Attributes:
-        size: longest side of its box [m].
-        place: middle of its box [m].
-        triangles: how many it had.
-        why: what it was.
-    """
-
-    size: float
-    place: tuple[float, float, float]
-    triangles: int
-    why: str
+    size: float  # longest side of its box [m]
+    place: tuple[float, float, float]  # middle of its box [m]
+    triangles: int  # how many it had
+    why: str  # what it was
 
     @classmethod
     def of(cls, surface: Surface, triangles: Int[np.ndarray, " some"], why: str) -> "Piece":

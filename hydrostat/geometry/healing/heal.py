@@ -22,29 +22,18 @@ _SMALL_HOLE = 24.0  # resolutions around: about two elements across
 
 @dataclass(frozen=True, eq=False)
 class Healing:
-    """A closed surface, and how it came to be.
+    """A closed surface, and how it came to be."""
 
-    Attributes:
-        surface: closed, manifold, turned outward, not crossing itself: one body, perhaps with cavities.
-        found: what was found, a line each.
-        done: what was done, a line each.
-        removed: parts that are not in the surface any more.
-        volume_before: of the parts that are kept, once turned [m^3]; overlaps count twice, holes as if closed by fans.
-        volume_after: of the body [m^3].
-        largest_distance: between input and result [m], where both are there: not over closed holes, nor inside.
-        patched: share of the result's area that lies over holes of the input.
-        clean: nothing was to be done, but for vertices in the same place.
-    """
-
-    surface: Surface
-    found: tuple[str, ...]
-    done: tuple[str, ...]
-    removed: tuple[Piece, ...]
+    surface: Surface  # closed, manifold, turned outward, not crossing itself: one body, perhaps with cavities
+    found: tuple[str, ...]  # what was found, a line each
+    done: tuple[str, ...]  # what was done, a line each
+    removed: tuple[Piece, ...]  # parts that are not in the surface any more
+    # of the parts that are kept, once turned [m^3]; overlaps count twice, holes as if closed by fans
     volume_before: float
-    volume_after: float
-    largest_distance: float
-    patched: float
-    clean: bool
+    volume_after: float  # of the body [m^3]
+    largest_distance: float  # between input and result [m], where both are there: not over closed holes, nor inside
+    patched: float  # share of the result's area that lies over holes of the input
+    clean: bool  # nothing was to be done, but for vertices in the same place
 
     def lines(self) -> tuple[str, ...]:
         """The report in plain words."""

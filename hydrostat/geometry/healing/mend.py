@@ -13,17 +13,11 @@ from hydrostat.geometry.surface import Surface
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """Edges of triangles, and which triangle has which.
+    """Edges of triangles, and which triangle has which."""
 
-    Attributes:
-        triangles: indices of three vertices each, no vertex twice in one.
-        ends: both vertices of every edge, the lower first.
-        of: the edges of each triangle: between its corners 0 and 1, 1 and 2, 2 and 0.
-    """
-
-    triangles: Int[np.ndarray, "triangles 3"]
-    ends: Int[np.ndarray, "edges 2"]
-    of: Int[np.ndarray, "triangles 3"]
+    triangles: Int[np.ndarray, "triangles 3"]  # indices of three vertices each, no vertex twice in one
+    ends: Int[np.ndarray, "edges 2"]  # both vertices of every edge, the lower first
+    of: Int[np.ndarray, "triangles 3"]  # the edges of each triangle: between its corners 0 and 1, 1 and 2, 2 and 0
 
     @cached_property
     def counts(self) -> Int[np.ndarray, " edges"]:
@@ -72,27 +66,18 @@ def sides_of(triangles: Int[np.ndarray, "triangles 3"]) -> Sides:
     return Sides(triangles, pairs[first], place.reshape(-1, 3).astype(np.int64))
 
 
-NEAR = 1e-6
-"""Vertices nearer to each other than this part of the surface's size are one."""
+NEAR = 1e-6  # vertices nearer to each other than this part of the surface's size are one
 
 
 @dataclass(frozen=True, eq=False)
 class Welded:
-    """A surface whose triangles have vertices in common, and none of which stands there twice.
+    """A surface whose triangles have vertices in common, and none of which stands there twice."""
 
-    Attributes:
-        surface: what is left, its vertices in the order of the input.
-        merged: how many vertices were the same as another.
-        flat: how many triangles had two corners in one place, and are left out.
-        repeated: how many stood there before, and are left out.
-        walls: how many lay back to back with another between two rooms, and are left out with it.
-    """
-
-    surface: Surface
-    merged: int
-    flat: int
-    repeated: int
-    walls: int
+    surface: Surface  # what is left, its vertices in the order of the input
+    merged: int  # how many vertices were the same as another
+    flat: int  # how many triangles had two corners in one place, and are left out
+    repeated: int  # how many stood there before, and are left out
+    walls: int  # how many lay back to back with another between two rooms, and are left out with it
 
 
 def weld(surface: Surface) -> Welded:
@@ -185,19 +170,12 @@ def one_way(
 
 @dataclass(frozen=True, eq=False)
 class Holes:
-    """Groups of open edges that hang together.
+    """Groups of open edges that hang together."""
 
-    Attributes:
-        edges: open edges, each the way its triangle runs along it.
-        label: number of the hole of each edge.
-        length: way around each hole [m].
-        simple: holes whose edges are a ring that runs one way.
-    """
-
-    edges: Int[np.ndarray, "edges 2"]
-    label: Int[np.ndarray, " edges"]
-    length: Float[np.ndarray, " holes"]
-    simple: Bool[np.ndarray, " holes"]
+    edges: Int[np.ndarray, "edges 2"]  # open edges, each the way its triangle runs along it
+    label: Int[np.ndarray, " edges"]  # number of the hole of each edge
+    length: Float[np.ndarray, " holes"]  # way around each hole [m]
+    simple: Bool[np.ndarray, " holes"]  # holes whose edges are a ring that runs one way
 
     def __len__(self) -> int:
         return len(self.length)

@@ -14,25 +14,17 @@ from hydrostat.geometry.surface import Solid, Surface, spread_points
 
 _ACCURACY = 1e-3  # of the spacing: how near crossings are to where they should be
 _SUM_ERROR = 0.05  # how wrong the fast sum may be, amply
-_SMALL = 0.01
-"""A part with less than this share of the body's volume is removed; one with more is a body of its own."""
+_SMALL = 0.01  # a part with less than this share of the body's volume is removed; one with more is a body of its own
 
 
 @dataclass(frozen=True, eq=False)
 class Remade:
-    """A body made anew.
+    """A body made anew."""
 
-    Attributes:
-        surface: closed, manifold, outward.
-        spacing: of the grid [m].
-        removed: parts beside the body.
-        done: what else was done, in words.
-    """
-
-    surface: Surface
-    spacing: float
-    removed: tuple[Piece, ...]
-    done: tuple[str, ...]
+    surface: Surface  # closed, manifold, outward
+    spacing: float  # of the grid [m]
+    removed: tuple[Piece, ...]  # parts beside the body
+    done: tuple[str, ...]  # what else was done, in words
 
 
 def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolution: float) -> Remade:
@@ -136,18 +128,13 @@ def _describe_second_body(body: Surface, other: Surface) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Deviation:
-    """Distances between two surfaces.
+    """Distances between two surfaces."""
 
-    Attributes:
-        largest: between what the surfaces have in common, from each to the other [m]; not of what is patched or
-            lost, nor where the first lies inside the second.
-        patched: share of the second surface's area that is far from the first, as over its holes.
-        lost: triangles of the first of which most lies outside the second and far from it.
-    """
-
+    # between what the surfaces have in common, from each to the other [m]; not of what is patched or lost, nor where
+    # the first lies inside the second
     largest: float
-    patched: float
-    lost: Int[np.ndarray, " lost"]
+    patched: float  # share of the second surface's area that is far from the first, as over its holes
+    lost: Int[np.ndarray, " lost"]  # triangles of the first of which most lies outside the second and far from it
 
 
 def deviation(before: Surface, after: Surface, near: float) -> Deviation:

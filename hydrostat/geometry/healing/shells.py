@@ -10,8 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.geometry.healing.mend import Sides, sides_of
 from hydrostat.geometry.surface import Surface
 
-SMALL = 0.1
-"""A part whose box has a diagonal below this share of the body's is small."""
+SMALL = 0.1  # a part whose box has a diagonal below this share of the body's is small
 
 _MOST_CONTAINERS = 100
 
@@ -27,25 +26,15 @@ class Role(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Shells:
-    """Parts of a surface whose triangles are joined by edges.
+    """Parts of a surface whose triangles are joined by edges."""
 
-    Attributes:
-        surface: the surface, closed parts turned outward but for cavities.
-        label: number of the part of each triangle.
-        inside_out: parts that looked inward and were turned as a whole.
-        whole: parts that are closed, manifold and turned one way.
-        boxes: lowest and highest coordinates of each [m].
-        volumes: of each [m^3], its holes closed by fans; negative for a cavity.
-        roles: what each is to the body.
-    """
-
-    surface: Surface
-    label: Int[np.ndarray, " triangles"]
-    inside_out: Bool[np.ndarray, " parts"]
-    whole: Bool[np.ndarray, " parts"]
-    boxes: Float[np.ndarray, "parts 2 3"]
-    volumes: Vector
-    roles: tuple[Role, ...]
+    surface: Surface  # the surface, closed parts turned outward but for cavities
+    label: Int[np.ndarray, " triangles"]  # number of the part of each triangle
+    inside_out: Bool[np.ndarray, " parts"]  # parts that looked inward and were turned as a whole
+    whole: Bool[np.ndarray, " parts"]  # parts that are closed, manifold and turned one way
+    boxes: Float[np.ndarray, "parts 2 3"]  # lowest and highest coordinates of each [m]
+    volumes: Vector  # of each [m^3], its holes closed by fans; negative for a cavity
+    roles: tuple[Role, ...]  # what each is to the body
 
     def of_role(self, *roles: Role) -> Bool[np.ndarray, " parts"]:
         """Choose the parts that have one of some roles: (parts,) of bool."""

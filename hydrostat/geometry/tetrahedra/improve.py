@@ -18,25 +18,17 @@ _SAMPLES = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
 _FACING = 0.3
 """Cosine of the angle between a facet and the surface near it, below which that is another part of the surface."""
 
-_REGULAR = (np.sqrt(2) / 12) ** (2 / 3) / 6
-"""Makes the shape of a regular tetrahedron 1."""
+_REGULAR = (np.sqrt(2) / 12) ** (2 / 3) / 6  # makes the shape of a regular tetrahedron 1
 
 
 @dataclass(frozen=True)
 class ImproveStage:
-    """Rounds of improvement under the same weights.
+    """Rounds of improvement under the same weights."""
 
-    Attributes:
-        rounds: times that the outer faces look for their place on the surface.
-        sweeps: times in each that every node moves.
-        power: of the shape of a tetrahedron; the higher, the more the worst count.
-        pull: of the surface, against shape, for a distance of one element size.
-    """
-
-    rounds: int
-    sweeps: int
-    power: float
-    pull: float
+    rounds: int  # times that the outer faces look for their place on the surface
+    sweeps: int  # times in each that every node moves
+    power: float  # of the shape of a tetrahedron; the higher, the more the worst count
+    pull: float  # of the surface, against shape, for a distance of one element size
 
 
 def improve(mesh: Mesh, solid: Solid, *, element_size: float, stages: tuple[ImproveStage, ...]) -> Mesh:

@@ -21,8 +21,7 @@ def turned_outward(nodes: Nodes, elements: Elements) -> Elements:
     return np.where((signed_volumes(nodes, elements) < 0)[:, None], elements[:, [1, 0, 2, 3]], elements)
 
 
-Wanted = Callable[[Points], Bool[np.ndarray, " points"]]
-"""Which of many points [m] to keep."""
+Wanted = Callable[[Points], Bool[np.ndarray, " points"]]  # which of many points [m] to keep
 
 MEAN_EDGE = (6 + 8 * np.sqrt(0.75)) / 14
 """Mean length of its edges, in sides of its cells: each node has 6 of one side, and 8 of half a diagonal."""
@@ -59,20 +58,11 @@ def lattice(box: Float[np.ndarray, "2 3"], cell: float, wanted: Wanted | None = 
     return nodes, turned_outward(nodes, np.concatenate(elements))
 
 
-PAIRS = tuple(combinations(range(4), 2))
-"""The edges of a tetrahedron, by the places of their ends."""
-
-Edges = Int[np.ndarray, "_ 2"]
-"""Pairs of nodes, the lower first."""
-
-Numbers = Int[np.ndarray, " _"]
-"""Numbers of edges, nodes or elements."""
-
-Places = Float[np.ndarray, "_ 3"]
-"""Nodes [m], of whatever number beside others."""
-
-Tetrahedra = Int[np.ndarray, "_ 4"]
-"""Nodes of each tetrahedron, of whatever number beside others."""
+PAIRS = tuple(combinations(range(4), 2))  # the edges of a tetrahedron, by the places of their ends
+Edges = Int[np.ndarray, "_ 2"]  # pairs of nodes, the lower first
+Numbers = Int[np.ndarray, " _"]  # numbers of edges, nodes or elements
+Places = Float[np.ndarray, "_ 3"]  # nodes [m], of whatever number beside others
+Tetrahedra = Int[np.ndarray, "_ 4"]  # nodes of each tetrahedron, of whatever number beside others
 
 
 def edges_of(elements: Elements) -> tuple[Edges, Int[np.ndarray, "elements 6"]]:

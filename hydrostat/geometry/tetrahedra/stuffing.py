@@ -12,11 +12,8 @@ from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.geometry.surface import Solid
 from hydrostat.geometry.tetrahedra.lattice import Edges, Numbers, Places, Tetrahedra, edges_of, turned_outward
 
-_NEAR = 0.3
-"""A cut this near to a node, in lengths of the edge, draws the node onto it."""
-
-_DEEP = 0.1
-"""A tetrahedron with all corners on the surface is kept if its middle is deeper, in lengths of an edge."""
+_NEAR = 0.3  # a cut this near to a node, in lengths of the edge, draws the node onto it
+_DEEP = 0.1  # a tetrahedron with all corners on the surface is kept if its middle is deeper, in lengths of an edge
 
 
 def stuff(solid: Solid, nodes: Nodes, elements: Elements, distances: Vector) -> tuple[Places, Tetrahedra]:
@@ -120,11 +117,8 @@ def _four_corners(elements: Elements) -> Bool[np.ndarray, " elements"]:
     return (ordered[:, 1:] != ordered[:, :-1]).all(axis=1)
 
 
-_ALONG = (0.25, 0.5, 0.75)
-"""Where to look along an edge."""
-
-_OPEN = 0.05
-"""A place of an edge as far outside, in lengths of the edge, is in a gap."""
+_ALONG = (0.25, 0.5, 0.75)  # where to look along an edge
+_OPEN = 0.05  # a place of an edge as far outside, in lengths of the edge, is in a gap
 
 
 def find_bridges(

@@ -14,23 +14,16 @@ from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, PAIRS, Places, Tetr
 from hydrostat.geometry.tetrahedra.manifold import euler, manifold
 from hydrostat.geometry.tetrahedra.stuffing import find_bridges, stuff
 
-CLOSE = 0.25
-"""The boundary of a mesh should be as near to the surface, in element sizes."""
+CLOSE = 0.25  # the boundary of a mesh should be as near to the surface, in element sizes
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Distances between a surface and the boundary of a mesh.
+    """Distances between a surface and the boundary of a mesh."""
 
-    Attributes:
-        places: points of both, those of the mesh first [m].
-        distances: of each point from the other surface [m].
-        volume: enclosed by the mesh, as a fraction of what the surface encloses.
-    """
-
-    places: Points
-    distances: Vector
-    volume: float
+    places: Points  # points of both, those of the mesh first [m]
+    distances: Vector  # of each point from the other surface [m]
+    volume: float  # enclosed by the mesh, as a fraction of what the surface encloses
 
     @property
     def largest(self) -> float:
@@ -57,20 +50,14 @@ _STAGES = (
 )
 """From free to firm: first the shapes, then the surface."""
 
-_CRUMB = 0.01
-"""Parts that break off with this share of the volume are no crumbs of a thin tip."""
-
-_WHOLE = 0.7
-"""If a lattice takes less of the volume, then finer elements in some places do not help."""
+_CRUMB = 0.01  # parts that break off with this share of the volume are no crumbs of a thin tip
+_WHOLE = 0.7  # if a lattice takes less of the volume, then finer elements in some places do not help
 
 _ADVICE = 0.7
 """What is advised is at most as much of a size that was too large: taken again and again it comes to one that does."""
 
-_FINER = 4
-"""Rounds of finer elements where the boundary is not close."""
-
-_BISECTIONS = 2
-"""Of the longest edges, in each round; three halve the elements."""
+_FINER = 4  # rounds of finer elements where the boundary is not close
+_BISECTIONS = 2  # of the longest edges, in each round; three halve the elements
 
 _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
@@ -116,18 +103,12 @@ def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
 
 @dataclass(frozen=True, eq=False)
 class _Filling:
-    """Mesh that a lattice makes of a solid, and what it lacks.
+    """Mesh that a lattice makes of a solid, and what it lacks."""
 
-    Attributes:
-        mesh: its largest part; improved if no other is of any size.
-        whole: volume of all parts, as a share of the solid's.
-        lost: volume of the other parts, as a share of the solid's.
-        places: where the lattice should be finer [m]: the body breaks, a gap is narrow, or its boundary is not close.
-    """
-
-    mesh: Mesh
-    whole: float
-    lost: float
+    mesh: Mesh  # its largest part; improved if no other is of any size
+    whole: float  # volume of all parts, as a share of the solid's
+    lost: float  # volume of the other parts, as a share of the solid's
+    # where the lattice should be finer [m]: the body breaks, a gap is narrow, or its boundary is not close
     places: Points
 
 

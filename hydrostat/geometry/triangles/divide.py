@@ -12,8 +12,7 @@ from hydrostat.errors import OutlineError
 from hydrostat.geometry.outline import Curve, Outline, Stations
 from hydrostat.geometry.triangles.draft import Division, Draft
 
-GROWTH = 0.3
-"""How much the spacing may grow for each unit of distance."""
+GROWTH = 0.3  # how much the spacing may grow for each unit of distance
 
 _STEP = 1 / 12
 _BEND_REACH = 1 / 6
@@ -23,15 +22,10 @@ _LEAST_BEND = 0.35
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Wanted distance of nodes at any place, in units of the element size; 1 far from what is fine.
+    """Wanted distance of nodes at any place, in units of the element size; 1 far from what is fine."""
 
-    Attributes:
-        places: where a finer spacing is known.
-        values: the spacing there.
-    """
-
-    places: Float[np.ndarray, "places 2"]
-    values: Float[np.ndarray, " places"]
+    places: Float[np.ndarray, "places 2"]  # where a finer spacing is known
+    values: Float[np.ndarray, " places"]  # the spacing there
 
     def __call__(self, points: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, " points"]:
         """Wanted distance of neighbours at some points."""
@@ -46,21 +40,13 @@ class Spacing:
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """The rings of an outline, finely and evenly sampled, in units of the element size.
+    """The rings of an outline, finely and evenly sampled, in units of the element size."""
 
-    Attributes:
-        places: (samples, 2).
-        inward: unit normals into the body, (samples, 2).
-        rings: ring of each sample.
-        stations: arc length of each sample on its ring.
-        bends: spacing that the bend of the ring allows.
-    """
-
-    places: Float[np.ndarray, "samples 2"]
-    inward: Float[np.ndarray, "samples 2"]
-    rings: Float[np.ndarray, " samples"]
-    stations: Float[np.ndarray, " samples"]
-    bends: Float[np.ndarray, " samples"]
+    places: Float[np.ndarray, "samples 2"]  # (samples, 2)
+    inward: Float[np.ndarray, "samples 2"]  # unit normals into the body, (samples, 2)
+    rings: Float[np.ndarray, " samples"]  # ring of each sample
+    stations: Float[np.ndarray, " samples"]  # arc length of each sample on its ring
+    bends: Float[np.ndarray, " samples"]  # spacing that the bend of the ring allows
 
 
 def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Samples:
@@ -108,11 +94,8 @@ def widths_at(samples: Samples, curves: tuple[Curve, ...], polygon: Polygon) -> 
     return width, neck
 
 
-SAGITTA = 0.12
-"""An edge stays this near to the outline, in element sizes."""
-
-FLOOR = 1 / 6
-"""Spacing never goes below this part of the element size on account of a thin feature."""
+SAGITTA = 0.12  # an edge stays this near to the outline, in element sizes
+FLOOR = 1 / 6  # spacing never goes below this part of the element size on account of a thin feature
 
 _CORNER_REACH = 1 / 12
 _CORNER_ANGLE = np.radians(33)

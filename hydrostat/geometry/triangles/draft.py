@@ -11,8 +11,7 @@ from shapely import Polygon, contains_xy
 from hydrostat.arrays import Elements, Points
 from hydrostat.geometry.outline import Curve
 
-Edges = Int[np.ndarray, "_ 2"]
-"""Pairs of point indices."""
+Edges = Int[np.ndarray, "_ 2"]  # pairs of point indices
 
 
 def triangles_inside(points: Points, edges: Edges, polygon: Polygon) -> tuple[Elements, Edges]:
@@ -120,17 +119,11 @@ def _in_circle(triangle: Points, point: np.ndarray) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Division:
-    """The nodes on one ring of the outline, all lengths in units of the element size.
+    """The nodes on one ring of the outline, all lengths in units of the element size."""
 
-    Attributes:
-        curve: the ring.
-        stations: arc length of each node, increasing.
-        fixed: whether a node is a true corner, which must stay.
-    """
-
-    curve: Curve
-    stations: Float[np.ndarray, " nodes"]
-    fixed: Bool[np.ndarray, " nodes"]
+    curve: Curve  # the ring
+    stations: Float[np.ndarray, " nodes"]  # arc length of each node, increasing
+    fixed: Bool[np.ndarray, " nodes"]  # whether a node is a true corner, which must stay
 
     @property
     def ends(self) -> Float[np.ndarray, " nodes"]:
@@ -156,15 +149,10 @@ class Division:
 
 @dataclass(frozen=True, eq=False)
 class Draft:
-    """Divided rings and points inside; the triangles follow from them.
+    """Divided rings and points inside; the triangles follow from them."""
 
-    Attributes:
-        divisions: the outer ring, then the holes.
-        interior: points inside, (points, 2), in units of the element size.
-    """
-
-    divisions: tuple[Division, ...]
-    interior: Points
+    divisions: tuple[Division, ...]  # the outer ring, then the holes
+    interior: Points  # points inside, (points, 2), in units of the element size
 
     @cached_property
     def points(self) -> Points:

@@ -12,8 +12,7 @@ from hydrostat.geometry.mesh import angles
 from hydrostat.geometry.triangles.divide import Spacing
 from hydrostat.geometry.triangles.draft import Division, Draft, doubled_areas
 
-STRAY = 0.18
-"""No smoothing takes a side of the mesh farther from the outline than this, in element sizes."""
+STRAY = 0.18  # no smoothing takes a side of the mesh farther from the outline than this, in element sizes
 
 _EQUILATERAL = 2.0 * np.sqrt(3.0)
 
@@ -114,8 +113,7 @@ def _moved(draft: Draft, variables: Vector, slides: Bool[np.ndarray, " boundary"
     return Draft(parts, variables[int(slides.sum()) :].reshape(-1, 2))
 
 
-_GOAL = 31.0
-"""Triangles with a smaller angle than this [degrees] are worth a change."""
+_GOAL = 31.0  # triangles with a smaller angle than this [degrees] are worth a change
 
 _CHANGES = 12
 

@@ -13,11 +13,8 @@ from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.risks.words import mm, place
 from hydrostat.robot.robot import Robot
 
-LEAST_ANGLE = 20.0
-"""Triangles with a smaller angle [degrees] make the simulation less exact."""
-
-LEAST_DIHEDRAL = 10.0
-"""Tetrahedra with a smaller angle between two faces [degrees] do so, too."""
+LEAST_ANGLE = 20.0  # triangles with a smaller angle [degrees] make the simulation less exact
+LEAST_DIHEDRAL = 10.0  # tetrahedra with a smaller angle between two faces [degrees] do so, too
 
 LOCKING_POISSON = 0.35
 """From this Poisson's ratio on, what locking adds to the bending stiffness of linear elements is worth a word."""

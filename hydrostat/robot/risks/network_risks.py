@@ -91,17 +91,10 @@ def _sticking_out(robot: Robot) -> Iterator[Risk]:
             yield Risk(_name(robot, index), radius - depth, text)
 
 
-LEAST_COVER = 0.003
-"""A cable nearer to the edge or the surface than this [m] tears out."""
-
-_STEP = 0.5 * LEAST_COVER
-"""Distance of the places at which a cable is looked at [m]."""
-
-_MOST_STEPS = 400
-"""Places on one segment."""
-
-_CORNER = 0.02
-"""A straight line may cut a corner of a coarse surface by this many elements."""
+LEAST_COVER = 0.003  # a cable nearer to the edge or the surface than this [m] tears out
+_STEP = 0.5 * LEAST_COVER  # distance of the places at which a cable is looked at [m]
+_MOST_STEPS = 400  # places on one segment
+_CORNER = 0.02  # a straight line may cut a corner of a coarse surface by this many elements
 
 
 def cable_risks(robot: Robot) -> Iterator[str]:

@@ -32,8 +32,7 @@ def pin_risks(robot: Robot) -> Iterator[str]:
     yield from told_together(found)
 
 
-FAR = 1.5
-"""A marker is far from any node at this many times the usual length of an element."""
+FAR = 1.5  # a marker is far from any node at this many times the usual length of an element
 
 
 def marker_risks(robot: Robot) -> Iterator[str]:
@@ -62,8 +61,7 @@ def marker_risks(robot: Robot) -> Iterator[str]:
     )
 
 
-_SHORT = 2.0
-"""Ways of fewer elements than this tell nothing of a stretch."""
+_SHORT = 2.0  # ways of fewer elements than this tell nothing of a stretch
 
 
 def pose_risks(robot: Robot) -> Iterator[str]:

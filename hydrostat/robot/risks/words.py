@@ -11,17 +11,11 @@ from hydrostat.robot.material import Material
 
 @dataclass(frozen=True)
 class Risk:
-    """One part with a risk.
+    """One part with a risk."""
 
-    Attributes:
-        part: its name, such as "cable[0]".
-        severity: larger is worse.
-        text: what is the matter.
-    """
-
-    part: str
-    severity: float
-    text: str
+    part: str  # its name, such as "cable[0]"
+    severity: float  # larger is worse
+    text: str  # what is the matter
 
 
 def told_together(found: Iterable[Risk]) -> Iterator[str]:
