@@ -1,11 +1,23 @@
-"""How compiled functions are compiled: once for a machine, and fast.
+"""Compiled functions: `native`, those of the compiled core; and how numba compiles the others, once for a machine.
+
+The core is C++ (folder native/, decision 0022). Where it could not be built, or HYDROSTAT_NATIVE=0 is set, numba's
+kernels do the same, to rounding.
 
 Compiling is half of what a first run costs, so: no wrappers that nobody calls. `KERNEL` is for what Python calls and
 is kept on disk, `INNER` for what only other compiled code calls and thus lies in their files. What else is quick to
 compile: docs/decisions/0013-cold-start.md.
 """
 
+import os
+from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
+
+native: Any = None
+"""The compiled core; None where numba's kernels serve alone."""
+
+if os.environ.get("HYDROSTAT_NATIVE", "1") != "0" and find_spec("hydrostat._native"):
+    native = import_module("hydrostat._native")
 
 KERNEL: dict[str, Any] = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 """Options of `numba.njit` for a function that Python calls."""

@@ -2,17 +2,15 @@
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float
-from numba import njit
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.kernel import KERNEL
 from hydrostat.mechanics.energy import Coupling, Energy
+from hydrostat.mechanics.scatter import Places
 from hydrostat.mechanics.sparsity import SparsityPattern
 from hydrostat.mechanics.stiffness import Stiffness
 
@@ -134,7 +132,7 @@ class Assembly:
         """dE/dx [N], (nodes x dim,)."""
         total = np.zeros(self.shape)
         for energy in self.energies:
-            _add_vectors(energy.stencils, energy.gradient(nodes, controls), total)
+            energy.add_gradient(nodes, controls, total)
         return total.ravel()
 
     def hessian(self, nodes: Nodes, controls: Vector, *, projection: float = 0.0) -> csc_array:
@@ -203,13 +201,8 @@ class Assembly:
         """Values of the sparse part of the Hessian."""
         data = self._quadratic.copy()
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
-            if energy.quadratic:
-                continue
-            if projection and not energy.convex:
-                blocks = energy.projected_hessian(nodes, controls, projection)
-            else:
-                blocks = energy.hessian(nodes, controls)
-            _add_blocks(energy.stencils, slots, self.pattern.strides, blocks, data)
+            if not energy.quadratic:
+                energy.add_hessian(nodes, controls, projection, Places(slots, self.pattern.strides, data))
         return data
 
     @cached_property
@@ -219,32 +212,5 @@ class Assembly:
         rest, idle = np.zeros(self.shape), np.zeros(self.control_count)
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
             if energy.quadratic:
-                _add_blocks(energy.stencils, slots, self.pattern.strides, energy.hessian(rest, idle), data)
+                energy.add_hessian(rest, idle, 0.0, Places(slots, self.pattern.strides, data))
         return data
-
-
-@njit(**KERNEL)
-@no_type_check
-def _add_vectors(stencils, vectors, total):
-    """Add the vector of every corner of every term to its node."""
-    for term in range(stencils.shape[0]):
-        for corner in range(stencils.shape[1]):
-            node = stencils[term, corner]
-            for axis in range(total.shape[1]):
-                total[node, axis] += vectors[term, corner, axis]
-
-
-@njit(**KERNEL)
-@no_type_check
-def _add_blocks(stencils, slots, strides, blocks, data):
-    """Add every dim x dim block of symmetric blocks to the values of the sparse matrix."""
-    corners = stencils.shape[1]
-    dim = blocks.shape[1] // corners
-    for term in range(stencils.shape[0]):
-        for b in range(corners):
-            stride = strides[stencils[term, b]]
-            for a in range(corners):
-                start = slots[term, a, b]
-                for j in range(dim):
-                    for i in range(dim):
-                        data[start + j * stride + i] += blocks[term, b * dim + j, a * dim + i]

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.mechanics.scatter import Places, add_blocks, add_vectors
 
 Stencils = Int[np.ndarray, "terms corners"]
 Blocks = Float[np.ndarray, "terms corners dim"]
@@ -104,6 +105,18 @@ class Energy(ABC):
         """Hessian blocks with this share, 0 to 1, of what is negative in them taken out: projected Newton (E6)."""
         blocks = self.hessian(nodes, controls)
         return blocks if self.convex else blocks + share * (nearest_semidefinite(blocks) - blocks)
+
+    def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
+        """Add dE/dx to the forces of all nodes [N]; to be told anew only where that is faster than by `gradient`."""
+        add_vectors(self.stencils, self.gradient(nodes, controls), total)
+
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+        """Add d2E/dx2, with a share of what is negative taken out, to the values of a sparse matrix; as above."""
+        if share and not self.convex:
+            blocks = self.projected_hessian(nodes, controls, share)
+        else:
+            blocks = self.hessian(nodes, controls)
+        add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
     def coupling(self, nodes: Nodes, controls: Vector) -> Coupling | None:
         """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""

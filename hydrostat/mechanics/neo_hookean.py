@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import cached_property
 from typing import ClassVar, no_type_check
 
 import numpy as np
@@ -9,8 +10,10 @@ from jaxtyping import Float
 from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL, native
+from hydrostat.mechanics.element_groups import ElementGroups, element_groups
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
+from hydrostat.mechanics.scatter import Places
 
 
 class NeoHookean(Energy):
@@ -23,12 +26,19 @@ class NeoHookean(Energy):
     convex: ClassVar[bool] = False
 
     def __init__(
-        self, nodes: Nodes, elements: Elements, *, mu: float, lame: float | None, thickness: float = 1.0
+        self,
+        nodes: Nodes,
+        elements: Elements,
+        *,
+        mu: float,
+        lame: float | None,
+        thickness: float = 1.0,
+        volumes: Float[np.ndarray, " elements"] | None = None,
     ) -> None:
         """Material of Lame's parameters `mu` and `lame` [Pa] on the rest shape `nodes`.
 
         `lame` is None where another energy resists a change of volume, such as `PatchVolume`. `thickness` [m] is that
-        of a flat body; leave it out in space.
+        of a flat body; leave it out in space. `volumes` [m^3] stand for those of the rest shape if given.
         """
         dim = nodes.shape[1]
         corners = nodes[elements]
@@ -36,7 +46,8 @@ class NeoHookean(Energy):
         inverse = np.linalg.inv(spans)
         self.stencils = np.ascontiguousarray(elements)
         self.mu, self.lame, self.volumetric = mu, lame or 0.0, lame is not None
-        self.volumes = np.linalg.det(spans) / (2.0 if dim == 2 else 6.0) * thickness
+        own = np.linalg.det(spans) / (2.0 if dim == 2 else 6.0) * thickness
+        self.volumes = own if volumes is None else volumes
         self.shape_gradients = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
         self._rest = nodes
         self._padded = np.zeros((*elements.shape, 3))
@@ -49,6 +60,8 @@ class NeoHookean(Energy):
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient G = F - I, so that little is lost to rounding near rest."""
+        if native is not None:
+            return native.value(nodes - self._rest, *self._groups, self.mu, self.lame)
         return _value(nodes - self._rest, *self._element_data)
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
@@ -65,6 +78,18 @@ class NeoHookean(Energy):
         _hessian(blocks, share, nodes - self._rest, *self._element_data)
         return blocks
 
+    def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
+        if native is None:
+            super().add_gradient(nodes, controls, total)
+        else:
+            native.gradient(nodes - self._rest, *self._groups, self.mu, self.lame, total)
+
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+        if native is None:
+            super().add_hessian(nodes, controls, share, places)
+        else:
+            native.hessian(nodes - self._rest, *self._groups, self.mu, self.lame, share, *places)
+
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         works = {"mu": self._work(nodes, field, 1.0, 0.0)}
         if self.volumetric:
@@ -77,6 +102,10 @@ class NeoHookean(Energy):
         blocks = np.empty((*self.stencils.shape, nodes.shape[1]))
         _gradient(blocks, nodes - self._rest, self.stencils, self._padded, self.volumes, mu, lame, self._axes)
         return np.array([float((blocks * field[self.stencils]).sum())])
+
+    @cached_property
+    def _groups(self) -> ElementGroups:
+        return element_groups(self.stencils, self.shape_gradients, self.volumes)
 
     @property
     def _element_data(self) -> tuple:

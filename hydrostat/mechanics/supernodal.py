@@ -20,7 +20,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL, native
 from hydrostat.mechanics.blas import (
     Scratch,
     divide_right,
@@ -33,6 +33,9 @@ from hydrostat.mechanics.symbolic import EliminationTree, children
 
 BLOCK = 24
 """Columns eliminated together by plain loops, before BLAS applies them to the rest."""
+
+SPARE = 8
+"""Numbers behind the end of an array that the compiled core may read."""
 
 FINE = {"contract", "reassoc", "nsz"}
 """What the compiler may do with sums; NaN and infinity stay what they are."""
@@ -456,7 +459,7 @@ class _Workspace(threading.local):
         self.sizes = spare, stacks
         self.call: Scratch = scratch()
         self.spare = np.empty(spare)
-        self.stacks = np.empty(stacks[0]), np.empty(stacks[1])
+        self.stacks = np.empty(stacks[0] + SPARE), np.empty(stacks[1] + SPARE)
 
     def __reduce__(self) -> tuple:
         return _Workspace, self.sizes
@@ -476,10 +479,13 @@ class SupernodalAnalysis:
 
     def factorise(self, data: np.ndarray, tiny: float) -> "SupernodalFactors":
         """Factors of the matrix with these values."""
-        lower = np.empty(self.entries)
+        lower = np.empty(self.entries + SPARE)
         signs = np.ones(len(self.place))
         work = self.workspace
-        negative = factorise_fronts(self.fronts, data, lower, signs, *work.stacks, work.spare, work.call, tiny)
+        if native is not None:
+            negative = native.factorise(*self.fronts, data, lower, signs, *work.stacks, work.spare, tiny)
+        else:
+            negative = factorise_fronts(self.fronts, data, lower, signs, *work.stacks, work.spare, work.call, tiny)
         return SupernodalFactors(self, lower, signs, int(negative))
 
 
@@ -500,6 +506,8 @@ class SupernodalFactors:
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution for one or several right-hand sides."""
         analysis = self._analysis
+        if native is not None:
+            return self._by_core(right, 0)
         values = np.empty(right.shape)
         values[analysis.place] = right
         if right.ndim == 1:
@@ -508,3 +516,12 @@ class SupernodalFactors:
             work = np.empty((analysis.height, right.shape[1]))
             solve_matrix(analysis.fronts, self._lower, self._signs, values, work, analysis.workspace.call)
         return values[analysis.place]
+
+    def _by_core(self, right: np.ndarray, way: int) -> np.ndarray:
+        """Solve by the compiled core: 0 for all of it, 1 for L^-1, 2 for L^-T S."""
+        analysis, fronts = self._analysis, self._analysis.fronts
+        given = np.ascontiguousarray(right, dtype=float).reshape(len(right), -1)
+        found = np.empty(given.shape)
+        places = fronts.table, fronts.rows, analysis.place
+        native.solve(*places, self._lower, self._signs, given, found, way, analysis.height)
+        return found.reshape(right.shape)

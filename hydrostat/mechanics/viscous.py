@@ -39,8 +39,8 @@ class ViscousEnergy(Energy):
         crept = np.linalg.solve(roots(metrics), np.swapaxes(corners - corners[:, :1], 1, 2))
         apart = np.arange(elements.size).reshape(elements.shape)
         self.stencils = elements
-        self._solid = NeoHookean(np.swapaxes(crept, 1, 2).reshape(-1, dim), apart, mu=modulus, lame=0.0)
-        self._solid.volumes = volumes
+        corners_crept = np.swapaxes(crept, 1, 2).reshape(-1, dim)
+        self._solid = NeoHookean(corners_crept, apart, mu=modulus, lame=0.0, volumes=volumes)
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         return self._solid.value(self._apart(nodes), controls)

@@ -8,7 +8,8 @@ from jaxtyping import Float, Int
 from numba import njit
 
 from hydrostat.arrays import Nodes
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL, native
+from hydrostat.mechanics.element_groups import element_groups
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.factorisation import Analysis
 
@@ -44,12 +45,16 @@ class Warp:
         indptr = np.searchsorted(columns, np.arange(count + 1)).astype(np.int32)
         self._factors = Analysis(indptr, rows.astype(np.int32), dim=1, points=rest).factorise(data)
         self._elements = stencils, np.ascontiguousarray(shape_gradients), volumes
+        self._groups = element_groups(stencils, shape_gradients, volumes)
         self._axes = tuple(range(rest.shape[1]))
 
     def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:
         """Where the nodes go if each element follows its own spin and stretch [m]."""
         right = np.zeros_like(nodes)
-        _turn(nodes, step, *self._elements, self._axes, right)
+        if native is None:
+            _turn(nodes, step, *self._elements, self._axes, right)
+        else:
+            native.turn(nodes, step, *self._groups, right)
         return nodes + (step + self._factors.solve(right))
 
 

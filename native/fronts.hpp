@@ -1,0 +1,390 @@
+// The multifrontal factorisation A = L S L^T of supernodal.py, with products of its own in place of BLAS.
+//
+// Panels are column by column, their columns as high as the front. Vectors read past the end of a column, never past
+// the end of an array, which must have 8 numbers to spare; what they write ends where the column does.
+#pragma once
+#include "kernels.hpp"
+#include "vectors.hpp"
+
+namespace {
+
+enum { COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES, WIDTH };
+
+#if defined(__AVX512F__)
+typedef V8 Wide;
+constexpr int TALL = 3;  // vectors in a tile's column: 3 x 8 accumulators fill the registers
+#else
+typedef V4 Wide;
+constexpr int TALL = 1;
+#endif
+constexpr int LANES = sizeof(Wide) / 8, BLOCK = 8;
+
+INLINE Wide wide(double value) {
+    Wide found;
+    for (int lane = 0; lane < LANES; lane++) found[lane] = value;
+    return found;
+}
+
+// C -= A B^T for a tile of `high` vectors x `count` columns; B is packed, BLOCK numbers for each step of the depth.
+template <int HIGH, int COUNT>
+INLINE void tile(double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth, int rows) {
+    Wide sums[COUNT][HIGH];
+    for (int j = 0; j < COUNT; j++)
+        for (int i = 0; i < HIGH; i++) sums[j][i] = load<Wide>(c + j * ldc + i * LANES);
+    for (int64_t k = 0; k < depth; k++, a += lda, b += BLOCK) {
+        Wide left[HIGH];
+        for (int i = 0; i < HIGH; i++) left[i] = load<Wide>(a + i * LANES);
+        for (int j = 0; j < COUNT; j++)
+            for (int i = 0; i < HIGH; i++) sums[j][i] -= left[i] * b[j];
+    }
+    for (int j = 0; j < COUNT; j++)
+        for (int i = 0; i < HIGH; i++) {
+            double* at = c + j * ldc + i * LANES;
+            int left = rows - i * LANES;
+            if (left >= LANES) store<Wide>(at, sums[j][i]);
+            else
+                for (int lane = 0; lane < left; lane++) at[lane] = sums[j][i][lane];
+        }
+}
+
+template <int COUNT>
+void strip(double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth, int64_t rows) {
+    int64_t row = 0;
+    for (; row + TALL * LANES <= rows; row += TALL * LANES)
+        tile<TALL, COUNT>(c + row, ldc, a + row, lda, b, depth, TALL * LANES);
+    if constexpr (TALL > 1) {
+        if (rows - row > 2 * LANES) tile<3, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
+        else if (rows - row > LANES) tile<2, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
+        else if (rows > row) tile<1, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
+    } else if (rows > row) tile<1, COUNT>(c + row, ldc, a + row, lda, b, depth, (int)(rows - row));
+}
+
+INLINE void any_strip(int count, double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth,
+                      int64_t rows) {
+    switch (count) {
+        case 1: return strip<1>(c, ldc, a, lda, b, depth, rows);
+        case 2: return strip<2>(c, ldc, a, lda, b, depth, rows);
+        case 3: return strip<3>(c, ldc, a, lda, b, depth, rows);
+        case 4: return strip<4>(c, ldc, a, lda, b, depth, rows);
+        case 5: return strip<5>(c, ldc, a, lda, b, depth, rows);
+        case 6: return strip<6>(c, ldc, a, lda, b, depth, rows);
+        case 7: return strip<7>(c, ldc, a, lda, b, depth, rows);
+        default: return strip<8>(c, ldc, a, lda, b, depth, rows);
+    }
+}
+
+// C -= P S P^T below the diagonal, for `wide` columns of C; P begins at the row of C's first column.
+INLINE void subtract(double* c, int64_t ldc, const double* panel, int64_t height, int64_t depth, const double* sign,
+                     int64_t columns, int64_t rows, double* packed) {
+    for (int64_t column = 0; column < columns; column += BLOCK) {
+        int count = columns - column < BLOCK ? (int)(columns - column) : BLOCK;
+        for (int64_t k = 0; k < depth; k++)
+            for (int j = 0; j < count; j++) packed[k * BLOCK + j] = sign[k] * panel[k * height + column + j];
+        any_strip(count, c + column * ldc + column, ldc, panel + column, height, packed, depth, rows - column);
+    }
+}
+
+// Eliminate COUNT columns of a panel, `rows` high from the first pivot on; how many pivots are negative, -1: too small.
+template <int COUNT> int eliminate(double* panel, int64_t height, int64_t rows, double* sign, double least) {
+    double L[COUNT][COUNT], scale[COUNT];
+    int negative = 0;
+    for (int j = 0; j < COUNT; j++)
+        for (int i = j; i < COUNT; i++) L[i][j] = panel[j * height + i];
+    for (int j = 0; j < COUNT; j++) {
+        for (int k = 0; k < j; k++)
+            for (int i = j; i < COUNT; i++) L[i][j] -= L[i][k] * (sign[k] * L[j][k]);
+        double pivot = L[j][j], size = pivot < 0 ? -pivot : pivot;
+        if (!(size > least && size < __builtin_inf())) return -1;
+        sign[j] = pivot > 0 ? 1.0 : -1.0;
+        negative += pivot < 0;
+        L[j][j] = __builtin_sqrt(size);
+        scale[j] = sign[j] / L[j][j];
+        for (int i = j + 1; i < COUNT; i++) L[i][j] *= scale[j];
+    }
+    for (int64_t row = COUNT; row < rows; row += LANES) {
+        Wide own[COUNT];
+        int left = rows - row < LANES ? (int)(rows - row) : LANES;
+        for (int j = 0; j < COUNT; j++) {
+            Wide value = load<Wide>(panel + j * height + row);
+            for (int k = 0; k < j; k++) value -= own[k] * (sign[k] * L[j][k]);
+            own[j] = value * scale[j];
+        }
+        for (int j = 0; j < COUNT; j++) {
+            double* at = panel + j * height + row;
+            if (left == LANES) store<Wide>(at, own[j]);
+            else
+                for (int lane = 0; lane < left; lane++) at[lane] = own[j][lane];
+        }
+    }
+    for (int j = 0; j < COUNT; j++)
+        for (int i = j; i < COUNT; i++) panel[j * height + i] = L[i][j];
+    return negative;
+}
+
+INLINE int any_eliminate(int count, double* panel, int64_t height, int64_t rows, double* sign, double least) {
+    switch (count) {
+        case 1: return eliminate<1>(panel, height, rows, sign, least);
+        case 2: return eliminate<2>(panel, height, rows, sign, least);
+        case 3: return eliminate<3>(panel, height, rows, sign, least);
+        case 4: return eliminate<4>(panel, height, rows, sign, least);
+        case 5: return eliminate<5>(panel, height, rows, sign, least);
+        case 6: return eliminate<6>(panel, height, rows, sign, least);
+        case 7: return eliminate<7>(panel, height, rows, sign, least);
+        default: return eliminate<8>(panel, height, rows, sign, least);
+    }
+}
+
+// Add what a child hands up to its parent's front, lower triangle only.
+INLINE void extend_add(const Fronts& fronts, int64_t child, const double* stack, double* panel, int64_t columns,
+                       int64_t height, double* update, int64_t below) {
+    const int64_t* row = fronts.table + child * WIDTH;
+    const int64_t size = row[BELOW], high = row[WIDTH + RUNS];
+    const double* given = stack + row[OFFSET];
+    for (int64_t run = row[RUNS]; run < high; run++) {
+        const int64_t* piece = fronts.runs + run * 3;
+        for (int64_t step = 0; step < piece[2]; step++) {
+            const double* source = given + (piece[0] + step) * size;
+            int64_t column = piece[1] + step, start = step, shift = column < columns ? 0 : columns;
+            double* target = column < columns ? panel + column * height : update + (column - columns) * below;
+            for (int64_t other = run; other < high; other++, start = 0) {
+                const int64_t* part = fronts.runs + other * 3;
+                const double* from = source + part[0] + start;
+                double* to = target + part[1] + start - shift;
+                int64_t length = part[2] - start, place = 0;
+                for (; place + 4 <= length; place += 4) store<V4>(to + place, load<V4>(to + place) + load<V4>(from + place));
+                for (; place < length; place++) to[place] += from[place];
+            }
+        }
+    }
+}
+
+int64_t factorise(const Fronts& fronts, const double* data, double* lower, double* signs, double* first,
+                  double* second, double* spare, double tiny) {
+    double largest = 0.0;
+    for (int64_t dof = 0; dof < fronts.dofs; dof++)
+        if (fronts.diagonal[dof] >= 0) {
+            double size = data[fronts.diagonal[dof]];
+            size = size < 0 ? -size : size;
+            if (!(size <= largest)) largest = size;
+        }
+    if (!(largest < __builtin_inf())) return -1;
+    int64_t negative = 0;
+    for (int64_t which = 0; which < fronts.count; which++) {
+        const int64_t* row = fronts.table + which * WIDTH;
+        const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
+        double* panel = lower + row[PANEL];
+        __builtin_memset(panel, 0, columns * height * sizeof(double));
+        for (int64_t entry = row[ENTRIES]; entry < row[WIDTH + ENTRIES]; entry++)
+            panel[fronts.entries[2 * entry + 1]] = data[fronts.entries[2 * entry]];
+        double* mine = row[STACK] ? second : first;
+        double* theirs = row[STACK] ? first : second;
+        double* update = mine + row[OFFSET];
+        for (int64_t column = 0; column < below; column++)
+            __builtin_memset(update + column * (below + 1), 0, (below - column) * sizeof(double));
+        for (int64_t child = row[CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING])
+            extend_add(fronts, child, theirs, panel, columns, height, update, below);
+        double* sign = signs + row[FIRST];
+        for (int64_t low = 0; low < columns; low += BLOCK) {
+            int count = columns - low < BLOCK ? (int)(columns - low) : BLOCK;
+            double* corner = panel + low * height + low;
+            if (low) {
+                for (int64_t k = 0; k < low; k++)
+                    for (int j = 0; j < count; j++) spare[k * BLOCK + j] = sign[k] * panel[k * height + low + j];
+                any_strip(count, corner, height, panel + low, height, spare, low, height - low);
+            }
+            int found = any_eliminate(count, corner, height, height - low, sign + low, tiny * largest);
+            if (found < 0) return -1;
+            negative += found;
+        }
+        if (below) subtract(update, below, panel + columns, height, columns, sign, below, below, spare);
+    }
+    return negative;
+}
+
+// Right-hand sides row by row, VECTORS vectors V a row; `work` holds as many rows as the highest front has.
+template <class V, int VECTORS> void forward(const Fronts& fronts, const double* lower, double* values, double* work) {
+    constexpr int ROW = VECTORS * (int)(sizeof(V) / 8), TILE = 4;
+    for (int64_t which = 0; which < fronts.count; which++) {
+        const int64_t* row = fronts.table + which * WIDTH;
+        const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
+        const double* panel = lower + row[PANEL];
+        const int64_t* rows = fronts.rows + row[STARTS];
+        double* own = values + row[FIRST] * ROW;
+        for (int64_t column = 0; column < columns; column++) {
+            V sums[VECTORS];
+            for (int v = 0; v < VECTORS; v++) sums[v] = load<V>(own + column * ROW + v * (sizeof(V) / 8));
+            for (int64_t k = 0; k < column; k++) {
+                double factor = panel[k * height + column];
+                for (int v = 0; v < VECTORS; v++) sums[v] -= factor * load<V>(own + k * ROW + v * (sizeof(V) / 8));
+            }
+            double scale = 1.0 / panel[column * height + column];
+            for (int v = 0; v < VECTORS; v++) store<V>(own + column * ROW + v * (sizeof(V) / 8), sums[v] * scale);
+        }
+        int64_t at = 0;
+        for (; at + TILE <= below; at += TILE) {
+            V sums[TILE][VECTORS] = {};
+            const double* factors = panel + columns + at;
+            for (int64_t k = 0; k < columns; k++, factors += height)
+                for (int v = 0; v < VECTORS; v++) {
+                    V value = load<V>(own + k * ROW + v * (sizeof(V) / 8));
+                    for (int i = 0; i < TILE; i++) sums[i][v] += factors[i] * value;
+                }
+            for (int i = 0; i < TILE; i++)
+                for (int v = 0; v < VECTORS; v++) {
+                    double* to = values + rows[at + i] * ROW + v * (sizeof(V) / 8);
+                    store<V>(to, load<V>(to) - sums[i][v]);
+                }
+        }
+        for (; at < below; at++)
+            for (int v = 0; v < VECTORS; v++) {
+                double* to = values + rows[at] * ROW + v * (sizeof(V) / 8);
+                V total = load<V>(to);
+                for (int64_t k = 0; k < columns; k++)
+                    total -= panel[k * height + columns + at] * load<V>(own + k * ROW + v * (sizeof(V) / 8));
+                store<V>(to, total);
+            }
+    }
+}
+
+template <class V, int VECTORS> void backward(const Fronts& fronts, const double* lower, double* values, double* work) {
+    constexpr int ROW = VECTORS * (int)(sizeof(V) / 8), TILE = 4;
+    for (int64_t which = fronts.count - 1; which >= 0; which--) {
+        const int64_t* row = fronts.table + which * WIDTH;
+        const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
+        const double* panel = lower + row[PANEL];
+        const int64_t* rows = fronts.rows + row[STARTS];
+        double* own = values + row[FIRST] * ROW;
+        for (int64_t i = 0; i < below; i++)
+            for (int v = 0; v < VECTORS; v++)
+                store<V>(work + i * ROW + v * (sizeof(V) / 8), load<V>(values + rows[i] * ROW + v * (sizeof(V) / 8)));
+        int64_t high = columns;
+        while (high > 0) {
+            int64_t low = high >= TILE ? high - TILE : 0;
+            int count = (int)(high - low);
+            V sums[TILE][VECTORS] = {};
+            if (count == TILE)
+                for (int64_t i = 0; i < below; i++)
+                    for (int v = 0; v < VECTORS; v++) {
+                        V value = load<V>(work + i * ROW + v * (sizeof(V) / 8));
+                        for (int j = 0; j < TILE; j++) sums[j][v] += panel[(low + j) * height + columns + i] * value;
+                    }
+            else
+                for (int64_t i = 0; i < below; i++)
+                    for (int v = 0; v < VECTORS; v++) {
+                        V value = load<V>(work + i * ROW + v * (sizeof(V) / 8));
+                        for (int j = 0; j < count; j++) sums[j][v] += panel[(low + j) * height + columns + i] * value;
+                    }
+            for (int64_t i = high; i < columns; i++)
+                for (int v = 0; v < VECTORS; v++) {
+                    V value = load<V>(own + i * ROW + v * (sizeof(V) / 8));
+                    for (int j = 0; j < count; j++) sums[j][v] += panel[(low + j) * height + i] * value;
+                }
+            for (int j = count - 1; j >= 0; j--)
+                for (int v = 0; v < VECTORS; v++) {
+                    V value = load<V>(own + (low + j) * ROW + v * (sizeof(V) / 8)) - sums[j][v];
+                    for (int i = j + 1; i < count; i++)
+                        value -= panel[(low + j) * height + low + i] * load<V>(own + (low + i) * ROW + v * (sizeof(V) / 8));
+                    store<V>(own + (low + j) * ROW + v * (sizeof(V) / 8), value / panel[(low + j) * height + low + j]);
+                }
+            high = low;
+        }
+    }
+}
+
+INLINE double total(Wide a) {
+    double found = 0.0;
+    for (int lane = 0; lane < LANES; lane++) found += a[lane];
+    return found;
+}
+
+// One right-hand side: along the columns of the panels, four at a time.
+void forward_one(const Fronts& fronts, const double* lower, double* values, double* work) {
+    for (int64_t which = 0; which < fronts.count; which++) {
+        const int64_t* row = fronts.table + which * WIDTH;
+        const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
+        const double* panel = lower + row[PANEL];
+        const int64_t* rows = fronts.rows + row[STARTS];
+        double* own = values + row[FIRST];
+        for (int64_t i = 0; i < columns; i++) work[i] = own[i];
+        for (int64_t i = columns; i < height; i++) work[i] = 0.0;
+        for (int64_t low = 0; low < columns; low += 4) {
+            int count = columns - low < 4 ? (int)(columns - low) : 4;
+            double factor[4] = {};
+            for (int j = 0; j < count; j++) {
+                double value = work[low + j];
+                for (int k = 0; k < j; k++) value -= panel[(low + k) * height + low + j] * factor[k];
+                own[low + j] = factor[j] = value / panel[(low + j) * height + low + j];
+            }
+            const double* one = panel + low * height;
+            const double* two = one + (count > 1 ? height : 0);
+            const double* three = two + (count > 2 ? height : 0);
+            const double* four = three + (count > 3 ? height : 0);
+            int64_t i = low + count;
+            for (; i + LANES <= height; i += LANES)
+                store<Wide>(work + i, load<Wide>(work + i) - (factor[0] * load<Wide>(one + i) + factor[1] * load<Wide>(two + i) +
+                                                              (factor[2] * load<Wide>(three + i) + factor[3] * load<Wide>(four + i))));
+            for (; i < height; i++)
+                work[i] -= factor[0] * one[i] + factor[1] * two[i] + (factor[2] * three[i] + factor[3] * four[i]);
+        }
+        for (int64_t i = 0; i < below; i++) values[rows[i]] += work[columns + i];
+    }
+}
+
+void backward_one(const Fronts& fronts, const double* lower, double* values, double* work) {
+    for (int64_t which = fronts.count - 1; which >= 0; which--) {
+        const int64_t* row = fronts.table + which * WIDTH;
+        const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
+        const double* panel = lower + row[PANEL];
+        const int64_t* rows = fronts.rows + row[STARTS];
+        double* own = values + row[FIRST];
+        for (int64_t i = 0; i < below; i++) work[columns + i] = values[rows[i]];
+        int64_t high = columns;
+        while (high > 0) {
+            int count = high % 4 ? (int)(high % 4) : 4;
+            int64_t low = high - count;
+            const double* one = panel + low * height;
+            const double* two = one + (count > 1 ? height : 0);
+            const double* three = two + (count > 2 ? height : 0);
+            const double* four = three + (count > 3 ? height : 0);
+            Wide a{}, b{}, c{}, d{};
+            int64_t i = high;
+            for (; i + LANES <= height; i += LANES) {
+                Wide value = load<Wide>(work + i);
+                a += load<Wide>(one + i) * value, b += load<Wide>(two + i) * value;
+                c += load<Wide>(three + i) * value, d += load<Wide>(four + i) * value;
+            }
+            double sums[4] = {total(a), total(b), total(c), total(d)};
+            for (; i < height; i++) {
+                sums[0] += one[i] * work[i], sums[1] += two[i] * work[i];
+                sums[2] += three[i] * work[i], sums[3] += four[i] * work[i];
+            }
+            for (int j = count - 1; j >= 0; j--) {
+                double value = own[low + j] - sums[j];
+                for (int k = j + 1; k < count; k++) value -= panel[(low + j) * height + low + k] * own[low + k];
+                own[low + j] = work[low + j] = value / panel[(low + j) * height + low + j];
+            }
+            high = low;
+        }
+    }
+}
+
+// `sides` right-hand sides a row: 1, 4, 8 or 16.
+void any_forward(const Fronts& fronts, const double* lower, double* values, int sides, double* work) {
+    switch (sides) {
+        case 1: return forward_one(fronts, lower, values, work);
+        case 4: return forward<V4, 1>(fronts, lower, values, work);
+        case 8: return forward<V8, 1>(fronts, lower, values, work);
+        default: return forward<V8, 2>(fronts, lower, values, work);
+    }
+}
+
+void any_backward(const Fronts& fronts, const double* lower, double* values, int sides, double* work) {
+    switch (sides) {
+        case 1: return backward_one(fronts, lower, values, work);
+        case 4: return backward<V4, 1>(fronts, lower, values, work);
+        case 8: return backward<V8, 1>(fronts, lower, values, work);
+        default: return backward<V8, 2>(fronts, lower, values, work);
+    }
+}
+
+}  // namespace

@@ -1,0 +1,43 @@
+// What the compiled core offers, as plain functions on arrays; one table of them for each instruction set.
+#pragma once
+#include <cstdint>
+
+// Simplices in groups of eight, whose numbers lie side by side: stencils (groups, corners, 8), shape gradients
+// (groups, corners, dim, 8), volumes (groups, 8). The last group is filled up with elements of no volume.
+struct Elements {
+    int64_t groups, terms;
+    int dim;
+    const int32_t* stencils;
+    const double* gradients;
+    const double* volumes;
+    double mu, lame;
+};
+
+// Where the fronts of a factorisation lie; the columns of `table` are those of `Fronts` in supernodal.py.
+struct Fronts {
+    int64_t count, dofs;
+    const int64_t* table;
+    const int64_t* rows;
+    const int64_t* runs;
+    const int32_t* entries;
+    const int64_t* diagonal;
+};
+
+struct Kernels {
+    const char* name;
+    double (*value)(const Elements&, const double* displacements);
+    void (*gradient)(const Elements&, const double* displacements, double* total);
+    void (*hessian)(const Elements&, const double* displacements, double share, const int64_t* slots,
+                    const int64_t* strides, double* data);
+    void (*turn)(const Elements&, const double* nodes, const double* step, double* right);
+    int64_t (*factorise)(const Fronts&, const double* data, double* lower, double* signs, double* first,
+                         double* second, double* spare, double tiny);
+    void (*forward)(const Fronts&, const double* lower, double* values, int sides, double* work);
+    void (*backward)(const Fronts&, const double* lower, double* values, int sides, double* work);
+};
+
+extern const Kernels kernels_base;
+#ifdef WITH_X86_LEVELS
+extern const Kernels kernels_v3;
+extern const Kernels kernels_v4;
+#endif
