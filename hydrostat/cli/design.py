@@ -9,78 +9,93 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
-from hydrostat.cli.design_wishes import TypedLimits, TypedRequest, asked_of
+from hydrostat.cli.design_wishes import TypedRequest, asked_of
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
-from hydrostat.cli.waiting import one_interrupt, read_robot
+from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import counted
 
 if TYPE_CHECKING:
-    from hydrostat.design import Network
+    from hydrostat.design import DesignRequest, Network
+    from hydrostat.fabrication import Kit
+    from hydrostat.robot import Robot
 
 STOPPING = "stopping: the best network so far is solved and written ..."  # said when Ctrl-C ends a search
+
+
+Winches = Annotated[
+    str | None,
+    typer.Option(
+        metavar="N|auto", help="How many winches, 2 if left out; auto finds the fewest that keep the tolerance."
+    ),
+]
+Cables = Annotated[int | None, typer.Option(metavar="N", help="How many cables in all, at most; 6 if left out.")]
+Poses = Annotated[
+    list[str] | None, typer.Option(metavar="NAME", help="Design for this pose; may be repeated; all if left out.")
+]
+Method = Annotated[
+    str | None,
+    typer.Option(
+        metavar="routes|trees", help="Routes priced by the pose error, or the thesis's winch trees; routes if left out."
+    ),
+]
+ConstraintsFile = Annotated[
+    Path | None, typer.Option(metavar="FILE.toml", help="What can be built; the options below come before it.")
+]
+CablesPerWinch = Annotated[int | None, typer.Option(metavar="N", help="Most of one winch.")]
+Clearance = Annotated[
+    str | None, typer.Option(metavar="LENGTH", help="Least distance of a cable from the edge; 5 mm if left out.")
+]
+Tension = Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears; 20 N if left out.")]
+Slack = Annotated[
+    str | None, typer.Option(metavar="LENGTH", help="The most that a stopper may leave loose; 0 if left out.")
+]
+SteppedSpools = Annotated[
+    bool, typer.Option("--stepped-spools", help="Cables may have spools up to twice as large or small.")
+]
+Symmetric = Annotated[
+    str | None, typer.Option(metavar="x|y|z", help="The same on both sides of the mirror across this axis.")
+]
+LockWinch = Annotated[
+    list[str] | None, typer.Option(metavar="NAME", help="A winch of the robot that stays; may be repeated.")
+]
+LockCable = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME", help="A cable that stays, by its name or its number from 1; may be repeated."),
+]
+Improve = Annotated[bool, typer.Option("--improve", help="Begin with the robot's own network.")]
+Tolerance = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LENGTH", help="With --winches auto: rms error of each pose; 1 % of the body's size if left out."
+    ),
+]
+Fibres = Annotated[
+    str | None, typer.Option(metavar="edges|elements", help="Muscles of trees; on mesh edges if left out.")
+]
+WithKit = Annotated[bool, typer.Option("--kit", help="Also write the fabrication kit.")]
 
 
 def design(
     robot: RobotFolder,
     out: OutFolder,
-    winches: Annotated[
-        str | None,
-        typer.Option(
-            metavar="N|auto",
-            help="How many winches, 2 if left out; auto finds the fewest that keep the tolerance.",
-        ),
-    ] = None,
-    cables: Annotated[
-        int | None, typer.Option(metavar="N", help="How many cables in all, at most; 6 if left out.")
-    ] = None,
-    pose: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Design for this pose; may be repeated; all if left out.")
-    ] = None,
-    method: Annotated[
-        str | None,
-        typer.Option(
-            metavar="routes|trees",
-            help="Routes priced by the pose error, or the thesis's winch trees; routes if left out.",
-        ),
-    ] = None,
-    constraints: Annotated[
-        Path | None, typer.Option(metavar="FILE.toml", help="What can be built; the options below come before it.")
-    ] = None,
-    cables_per_winch: Annotated[int | None, typer.Option(metavar="N", help="Most of one winch.")] = None,
-    clearance: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="Least distance of a cable from the edge; 5 mm if left out.")
-    ] = None,
-    tension: Annotated[
-        str | None, typer.Option(metavar="FORCE", help="The most that a cable bears; 20 N if left out.")
-    ] = None,
-    slack: Annotated[
-        str | None, typer.Option(metavar="LENGTH", help="The most that a stopper may leave loose; 0 if left out.")
-    ] = None,
-    stepped_spools: Annotated[
-        bool, typer.Option("--stepped-spools", help="Cables may have spools up to twice as large or small.")
-    ] = False,
-    symmetric: Annotated[
-        str | None, typer.Option(metavar="x|y|z", help="The same on both sides of the mirror across this axis.")
-    ] = None,
-    lock_winch: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="A winch of the robot that stays; may be repeated.")
-    ] = None,
-    lock_cable: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="A cable that stays, by its name or its number from 1; may be repeated."),
-    ] = None,
-    improve: Annotated[bool, typer.Option("--improve", help="Begin with the robot's own network.")] = False,
-    tolerance: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH", help="With --winches auto: rms error of each pose; 1 % of the body's size if left out."
-        ),
-    ] = None,
-    fibres: Annotated[
-        str | None, typer.Option(metavar="edges|elements", help="Muscles of trees; on mesh edges if left out.")
-    ] = None,
-    kit: Annotated[bool, typer.Option("--kit", help="Also write the fabrication kit.")] = False,
+    winches: Winches = None,
+    cables: Cables = None,
+    pose: Poses = None,
+    method: Method = None,
+    constraints: ConstraintsFile = None,
+    cables_per_winch: CablesPerWinch = None,
+    clearance: Clearance = None,
+    tension: Tension = None,
+    slack: Slack = None,
+    stepped_spools: SteppedSpools = False,
+    symmetric: Symmetric = None,
+    lock_winch: LockWinch = None,
+    lock_cable: LockCable = None,
+    improve: Improve = False,
+    tolerance: Tolerance = None,
+    fibres: Fibres = None,
+    kit: WithKit = False,
 ) -> None:
     """Find winches and cables that reach a robot's poses.
 
@@ -91,12 +106,15 @@ def design(
 
     Example: hydrostat design examples/starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
-    from hydrostat.cli.waiting import progress_bar
-    from hydrostat.design import AUTO, find_network
-    from hydrostat.fabrication.kit import forget_files
-
     require_folder(out)
-    limits = TypedLimits(
+    typed = TypedRequest(
+        poses=pose or [],
+        winches=winches,
+        cables=cables,
+        method=method,
+        improve=improve,
+        tolerance=tolerance,
+        fibres=fibres,
         file=constraints,
         cables_per_winch=cables_per_winch,
         clearance=clearance,
@@ -104,22 +122,28 @@ def design(
         slack=slack,
         stepped=stepped_spools,
         symmetric=symmetric,
-        lock_winch=tuple(lock_winch or ()),
-        lock_cable=tuple(lock_cable or ()),
-    )
-    typed = TypedRequest(
-        poses=tuple(pose or ()),
-        winches=winches,
-        cables=cables,
-        method=method,
-        improve=improve,
-        tolerance=tolerance,
-        fibres=fibres,
-        limits=limits,
+        lock_winch=lock_winch or [],
+        lock_cable=lock_cable or [],
     )
     began = time.perf_counter()
     source = read_robot(robot)
     request = asked_of(source, typed)
+    network, made = _search(source, request, out, kit=kit)
+    print_poses(network, time.perf_counter() - began)
+    _tell_count(network, request)
+    if made is not None:
+        print_kit(made)
+    _tell_next(network, out, kit=kit)
+    if not network.complete:
+        print("stopped early: the best network so far")
+        raise typer.Exit(130)
+
+
+def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) -> "tuple[Network, Kit | None]":
+    """Search, and write what is found, with its kit if wanted."""
+    from hydrostat.design import find_network
+    from hydrostat.fabrication.kit import forget_files
+
     with progress_bar() as progress, one_interrupt(STOPPING) as pass_over:
         try:
             network = find_network(source, request, progress=progress)
@@ -133,19 +157,19 @@ def design(
         forget_files(out / "kit")
         made = write_kit(network.robot, out / "kit") if kit else None
         progress("Writing results", 1, 1)
-    print_poses(network, time.perf_counter() - began)
+    return network, made
+
+
+def _tell_count(network: "Network", request: "DesignRequest") -> None:
+    """Say it if there are fewer than were asked for, or what each number gains where that was left open."""
+    from hydrostat.design import AUTO
+
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
         words = f"{counted(request.winches, 'winch')} and {counted(request.cables, 'cable')}"
         print(f"fewer than the {words} asked for: more would not help, or could not be built")
     if request.winches == AUTO:
         print_front(network)
-    if made is not None:
-        print_kit(made)
-    _tell_next(network, out, kit=kit)
-    if not network.complete:
-        print("stopped early: the best network so far")
-        raise typer.Exit(130)
 
 
 def _tell_next(network: "Network", out: Path, *, kit: bool) -> None:

@@ -1,10 +1,11 @@
 """What `hydrostat design` was asked for, from its options and its file of constraints."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from hydrostat.cli.options import positive
+from hydrostat.cli.options import asked, positive
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 
@@ -14,32 +15,25 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TypedLimits:
-    """Limits from the command line, as text; None where the file or the default counts."""
-
-    file: Path | None = None
-    cables_per_winch: int | None = None
-    clearance: str | None = None
-    tension: str | None = None
-    slack: str | None = None
-    stepped: bool = False
-    symmetric: str | None = None
-    lock_winch: tuple[str, ...] = ()
-    lock_cable: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
 class TypedRequest:
-    """What a design is asked on the command line, as text; None where the default counts."""
+    """What a design is asked on the command line, as text; None where the file or the default counts."""
 
-    poses: tuple[str, ...] = ()
+    poses: Sequence[str] = ()
     winches: str | None = None
     cables: int | None = None
     method: str | None = None
     improve: bool = False
     tolerance: str | None = None
     fibres: str | None = None
-    limits: TypedLimits = TypedLimits()
+    file: Path | None = None  # of constraints; what follows comes before it
+    cables_per_winch: int | None = None
+    clearance: str | None = None
+    tension: str | None = None
+    slack: str | None = None
+    stepped: bool = False
+    symmetric: str | None = None
+    lock_winch: Sequence[str] = ()
+    lock_cable: Sequence[str] = ()
 
 
 def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
@@ -54,7 +48,7 @@ def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
     trees = method is DesignMethod.TREES
     request = DesignRequest(
         poses=tuple(poses),
-        constraints=_constraints(robot, typed.limits),
+        constraints=_constraints(robot, typed),
         options=_options(typed, trees=trees, open_winches=isinstance(winches, str)),
         improve=typed.improve,
         **given,
@@ -68,13 +62,26 @@ def _winch_count(text: str | None) -> int | str | None:
     return int(text) if text is not None and text.isascii() and text.isdigit() and len(text) < 4 else text
 
 
-def _constraints(robot: "Robot", limits: TypedLimits) -> "Constraints":
+def _constraints(robot: "Robot", typed: TypedRequest) -> "Constraints":
     """The constraints of a file, with those of the command line before them."""
     from hydrostat.design import Constraints
     from hydrostat.design.constraints_file import read_constraints
+    from hydrostat.units import FORCE, LENGTH
 
-    constraints = Constraints() if limits.file is None else read_constraints(limits.file, robot)
-    return replace(constraints, **_given(limits, robot))
+    constraints = Constraints() if typed.file is None else read_constraints(typed.file, robot)
+    if typed.symmetric not in (None, "x", "y", "z"):
+        raise InputError(f"--symmetric {typed.symmetric}: must be the axis across the mirror: x, y or z")
+    given = {
+        "cables_per_winch": typed.cables_per_winch,
+        "clearance": asked("--clearance", typed.clearance, LENGTH),
+        "tension": asked("--tension", typed.tension, FORCE),
+        "slack": asked("--slack", typed.slack, LENGTH, zero=True),
+        "spool_ratio": 2.0 if typed.stepped else None,
+        "mirror": typed.symmetric,
+        "locked_winches": tuple(dict.fromkeys(_winch(name, robot) for name in typed.lock_winch)) or None,
+        "locked_cables": tuple(dict.fromkeys(_cable(name, robot) for name in typed.lock_cable)) or None,
+    }
+    return replace(constraints, **{name: value for name, value in given.items() if value is not None})
 
 
 def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteOptions | TreeOptions | None":
@@ -92,32 +99,6 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
     if typed.tolerance is not None and not trees:
         return RouteOptions(tolerance=positive("--tolerance", typed.tolerance, LENGTH))
     return None
-
-
-def _given(limits: TypedLimits, robot: "Robot") -> dict[str, Any]:
-    """Fields of `Constraints` that the command line sets."""
-    from hydrostat.units import FORCE, LENGTH
-
-    given: dict[str, Any] = {}
-    if limits.cables_per_winch is not None:
-        given["cables_per_winch"] = limits.cables_per_winch
-    if limits.clearance is not None:
-        given["clearance"] = positive("--clearance", limits.clearance, LENGTH)
-    if limits.tension is not None:
-        given["tension"] = positive("--tension", limits.tension, FORCE)
-    if limits.slack is not None:
-        given["slack"] = positive("--slack", limits.slack, LENGTH, zero=True)
-    if limits.stepped:
-        given["spool_ratio"] = 2.0
-    if limits.symmetric is not None:
-        if limits.symmetric not in ("x", "y", "z"):
-            raise InputError(f"--symmetric {limits.symmetric}: must be the axis across the mirror: x, y or z")
-        given["mirror"] = limits.symmetric
-    if limits.lock_winch:
-        given["locked_winches"] = tuple(dict.fromkeys(_winch(name, robot) for name in limits.lock_winch))
-    if limits.lock_cable:
-        given["locked_cables"] = tuple(dict.fromkeys(_cable(name, robot) for name in limits.lock_cable))
-    return given
 
 
 def _winch(name: str, robot: "Robot") -> str:

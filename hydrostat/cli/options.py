@@ -35,6 +35,11 @@ def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = Fal
     return value
 
 
+def asked(option: str, text: str | None, dimension: "Dimension", *, zero: bool = False) -> float | None:
+    """What `positive` gives; None for an option that is left out."""
+    return None if text is None else positive(option, text, dimension, zero=zero)
+
+
 def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
     """Limits from --tension and --equal, such as "left,right" (InputError: no force, a group of fewer than two)."""
     from hydrostat.ik import Limits
@@ -44,7 +49,7 @@ def pose_limits(tension: str | None, equal: Sequence[str] | None) -> "Limits":
     for text, names in zip(equal or [], groups, strict=True):
         if len(names) < 2:
             raise InputError(f'--equal {text}: name two winches or more, such as "left,right"')
-    return Limits(tension=None if tension is None else positive("--tension", tension, FORCE), equal=groups)
+    return Limits(tension=asked("--tension", tension, FORCE), equal=groups)
 
 
 def check_width(width: int) -> None:

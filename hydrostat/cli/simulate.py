@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import Contract, check_contraction, contractions, positive
+from hydrostat.cli.options import Contract, asked, check_contraction, contractions, positive
 from hydrostat.cli.profiling import profiled
 from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.errors import InputError
@@ -105,7 +105,7 @@ def _move(
     from hydrostat.units import TIME
 
     profile = _profile(simulation, contractions, ramp, play)
-    seconds = max(float(profile.times[-1]), 1.0) if duration is None else positive("--duration", duration, TIME)
+    seconds = asked("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--step", step, TIME)
     start = simulation.still(simulation.solve(profile.at(0.0)))
     began = time.process_time()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import EqualWinches, MostTension, PictureWidth, check_width, pose_limits, positive
+from hydrostat.cli.options import EqualWinches, MostTension, PictureWidth, asked, check_width, pose_limits, positive
 from hydrostat.cli.waiting import prepared, progress_bar, read_robot
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
@@ -60,7 +60,7 @@ def trajectory(
 
     require_folder(out)
     fastest = positive("--speed", speed, SPEED)
-    hardest = None if acceleration is None else positive("--acceleration", acceleration, ACCELERATION)
+    hardest = asked("--acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
     limits = pose_limits(tension, equal)
     kind = member(PathKind, path, what="--path")

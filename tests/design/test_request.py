@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from builders import strip_robot
 
-from hydrostat.cli.design_wishes import TypedLimits, TypedRequest, asked_of
+from hydrostat.cli.design_wishes import TypedRequest, asked_of
 from hydrostat.design import Constraints, DesignMethod, DesignRequest, FibreKind, RouteOptions, TreeOptions
 from hydrostat.design.constraints import RANGES, Range
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
@@ -32,8 +32,8 @@ def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: Non
 
 
 def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
-    limits = TypedLimits(tension="12 N", clearance="4 mm", slack="3 mm", stepped=True, lock_winch=("up",))
-    typed = TypedRequest(winches="auto", cables=4, tolerance="2 mm", limits=limits)
+    limits = {"tension": "12 N", "clearance": "4 mm", "slack": "3 mm", "stepped": True, "lock_winch": ("up",)}
+    typed = TypedRequest(winches="auto", cables=4, tolerance="2 mm", **limits)  # type: ignore[arg-type]
     lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
     wishes = Wishes(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)  # type: ignore[arg-type]
     assert asked_of(robot(), typed) == wished_request(robot(), wishes)
