@@ -1,11 +1,9 @@
 """From contractions in time to motors: the contract of a link, motors within limits, playing (R58)."""
 
-from hydrostat.control.link import SILENCE, Link
+from hydrostat.control.link import SILENCE, Link, SimulatedLink
 from hydrostat.control.motors import FASTEST, Motors
 from hydrostat.control.player import Player, play
-from hydrostat.control.simulated_link import SimulatedLink
-from hydrostat.control.timeline import Key, Timeline
-from hydrostat.control.timeline_table import read_timeline, timeline_table
+from hydrostat.control.timeline import Key, Timeline, read_timeline, timeline_table
 
 __all__ = [
     "FASTEST",

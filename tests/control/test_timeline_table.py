@@ -7,7 +7,7 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
-from hydrostat.control.timeline_table import LARGEST, read_timeline, timeline_table
+from hydrostat.control.timeline import LARGEST, read_timeline, timeline_table
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import read_profile

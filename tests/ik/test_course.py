@@ -5,9 +5,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.ik.trajectory.course import Course
-from hydrostat.ik.trajectory.pace import Pace, earliest, linear
-from hydrostat.ik.trajectory.straight import StraightCourse
+from hydrostat.ik.trajectory.course import Course, Pace, StraightCourse, earliest, linear
 
 FREE = np.nan
 

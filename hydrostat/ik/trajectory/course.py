@@ -1,5 +1,6 @@
-"""`Course`: contractions in time, from one key to the next."""
+"""`Course`: contractions in time from key to key; `StraightCourse`: through many poses of a leg; within a `Pace`."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -7,6 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
+from hydrostat.ik.limits import limit_by_winch
+from hydrostat.robot import Robot
 
 Keys = Float[np.ndarray, "keys winches"]
 Samples = Float[np.ndarray, "samples winches"]
@@ -117,3 +120,149 @@ def _inside(above: Peaks, below: Peaks) -> Peaks:
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found = above / below
     return np.where((found > 0) & (found < 1), found, 0.0)
+
+
+ByWinch = float | Mapping[str, float]  # one number for all winches, or numbers by name
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pace:
+    """The most that each winch may do."""
+
+    speed: Vector  # of its contraction [m/s]; infinite without a limit
+    acceleration: Vector  # of its contraction [m/s^2]; infinite without a limit
+
+    @classmethod
+    def of(cls, robot: Robot, speed: ByWinch | None, acceleration: ByWinch | None) -> Self:
+        """Limits on the winches of a robot (InputError: a winch that it does not have, or a limit not above 0)."""
+        return cls(
+            speed=limit_by_winch(robot, speed, "speed", "m/s"),
+            acceleration=limit_by_winch(robot, acceleration, "acceleration", "m/s^2"),
+        )
+
+    def share(self, speeds: Peaks, accelerations: Peaks) -> Vector:
+        """What each leg uses of the limits: it would keep to them if it took so many times as long."""
+        used = np.maximum(speeds / self.speed, np.sqrt(accelerations / self.acceleration))
+        return used.max(axis=1, initial=0.0)
+
+    def rest_to_rest(self, keys: Keys) -> Vector:
+        """The least time of each leg, were it to begin and end at rest [s]."""
+        ways = np.abs(np.diff(keys, axis=0))
+        return self.share(SPEED_OF_REST * ways, ACCELERATION_OF_REST * ways)
+
+
+def earliest(keys: Keys, lengths: Vector, pace: Pace, *, least: float) -> Course:
+    """The smooth course that is soon at its end: keys [m] are passed without a stop where that saves time.
+
+    Lengths [s], NaN where free, and passing speeds depend on each other. From stops at all keys on, each leg is
+    lengthened or shortened by what it uses of the limits, to no less than the least [s]; each course on the way is then
+    scaled as a whole, so that the limits hold exactly, and the shortest is kept. So it never takes longer than with
+    stops at all keys.
+    """
+    free = np.isnan(lengths)
+    lengths = np.where(free, np.maximum(pace.rest_to_rest(keys), least), lengths)
+    best = Course.smooth(_times(lengths), keys, passing=False)
+    if not free.any():
+        return Course.smooth(_times(lengths), keys)
+    for _ in range(_ROUNDS):
+        course = Course.smooth(_times(lengths), keys)
+        used = np.where(free, pace.share(*course.peaks()), 0.0)
+        scaled = Course.smooth(_times(np.where(free, np.maximum(used.max() * lengths, least), lengths)), keys)
+        if scaled.seconds < best.seconds and pace.share(*scaled.peaks()).max() <= 1 + _HAIR:
+            best = scaled
+        lengths = np.where(free, np.maximum(lengths * np.sqrt(used), least), lengths)
+    return best
+
+
+def linear(keys: Keys, lengths: Vector, pace: Pace, *, least: float) -> Course:
+    """The linear course whose speeds keep to the limits in free legs."""
+    soonest = (np.abs(np.diff(keys, axis=0)) / pace.speed).max(axis=1, initial=least)
+    return Course.linear(_times(np.where(np.isnan(lengths), soonest, lengths)), keys)
+
+
+def _times(lengths: Vector) -> Vector:
+    return np.concatenate([[0.0], np.cumsum(lengths)])
+
+
+_ROUNDS = 60
+
+_HAIR = 1e-9  # limits hold to this share of them
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StraightCourse:
+    """Markers along straight lines, and at rest in each keyframe: a line that ends in a corner cannot go through it.
+
+    In a leg the contractions are a course c(s) through the knots of that leg,
+    and s = 10 u^3 - 15 u^4 + 6 u^5 with u = (t - t_0) / T. So da/dt = c' s' and d2a/dt2 = c'' s'^2 + c' s''.
+    """
+
+    times: Vector  # of the keyframes, from 0 [s]
+    legs: tuple[Course, ...]  # course of each leg, of length 1
+
+    @classmethod
+    def earliest(cls, knots: Sequence[Keys], lengths: Vector, pace: Pace, *, least: float) -> Self:
+        """The earliest one through the knots of each leg [m], of given lengths [s] (NaN where free), within limits."""
+        legs = tuple(_leg(keys) for keys in knots)
+        soonest = np.array([float(pace.share(*_peaks(leg))[0]) for leg in legs])
+        # Between the places that are looked at a leg may be faster by a hair.
+        free = np.maximum(_ROOM * soonest, least)
+        times = np.concatenate([[0.0], np.cumsum(np.where(np.isnan(lengths), free, lengths))])
+        return cls(times=times, legs=legs)
+
+    @property
+    def seconds(self) -> float:
+        """How long it takes [s]."""
+        return float(self.times[-1])
+
+    def at(self, times: Vector) -> tuple[Samples, Samples, Samples]:
+        """Contractions [m], speeds [m/s] and accelerations [m/s^2] at times from 0 to the last keyframe [s]."""
+        which = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.legs) - 1)
+        shape = (len(times), self.legs[0].keys.shape[1])
+        values, speeds, accelerations = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+        for index, leg in enumerate(self.legs):
+            own = which == index
+            length = self.times[index + 1] - self.times[index]
+            found = _along(leg, (times[own] - self.times[index]) / length)
+            values[own], speeds[own], accelerations[own] = found[0], found[1] / length, found[2] / length**2
+        return values, speeds, accelerations
+
+    def peaks(self) -> tuple[Peaks, Peaks]:
+        """The largest speed [m/s] and acceleration [m/s^2] of each winch in each leg, at many places."""
+        lengths = np.diff(self.times)[:, None]
+        found = [_peaks(leg) for leg in self.legs]
+        fastest, hardest = np.concatenate([one for one, _ in found]), np.concatenate([two for _, two in found])
+        return fastest / lengths, hardest / lengths**2
+
+
+def _leg(keys: Keys) -> Course:
+    """Through knots; at its ends as steep as the first and last step.
+
+    Where a winch must go far for little, the way is stretched: shares grow as the largest change of a contraction.
+    """
+    steps = np.abs(np.diff(keys, axis=0)).max(axis=1, initial=0.0)
+    steps = steps + _LEAST * steps.sum() if steps.any() else np.ones(len(steps))
+    times = np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
+    course = Course.smooth(times, keys)
+    begins, ends = course.begins.copy(), course.ends.copy()
+    slopes = np.diff(keys, axis=0) / np.diff(times)[:, None]
+    begins[0], ends[-1] = slopes[0], slopes[-1]
+    return Course(times=times, keys=keys, begins=begins, ends=ends)
+
+
+def _along(leg: Course, shares: Vector) -> tuple[Samples, Samples, Samples]:
+    """Contractions of a leg at shares of its time, and their derivatives by that."""
+    u = shares[:, None]
+    s, rate, rise = u**3 * (10 - 15 * u + 6 * u**2), 30 * u**2 * (1 - u) ** 2, 60 * u * (1 - u) * (1 - 2 * u)
+    values, slopes, bends = leg.at(s[:, 0])
+    return values, slopes * rate, bends * rate**2 + slopes * rise
+
+
+def _peaks(leg: Course) -> tuple[Peaks, Peaks]:
+    _, speeds, accelerations = _along(leg, np.linspace(0.0, 1.0, _PLACES * len(leg.keys)))
+    return np.abs(speeds).max(axis=0, keepdims=True), np.abs(accelerations).max(axis=0, keepdims=True)
+
+
+_LEAST = 0.01  # a step of the way has at least this share of it
+_PLACES = 400  # places for each knot where speed and acceleration are looked at
+_ROOM = 1.0005  # a leg takes so many times as long as the limits ask at these places

@@ -11,12 +11,9 @@ from hydrostat.errors import InputError
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.search.problem import InverseOptions
-from hydrostat.ik.trajectory.course import Course
-from hydrostat.ik.trajectory.given import check_given, check_robot
-from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes
-from hydrostat.ik.trajectory.pace import ByWinch, Pace, earliest, linear
+from hydrostat.ik.trajectory.course import ByWinch, Course, Pace, StraightCourse, earliest, linear
+from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes, check_given, check_robot
 from hydrostat.ik.trajectory.poses import Tell, follow
-from hydrostat.ik.trajectory.straight import StraightCourse
 from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory, legs_of, stray
 from hydrostat.simulation import Simulation, SolvedPose
 

@@ -10,8 +10,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.ik.reached_pose import ReachedPose
-from hydrostat.ik.trajectory.course import Samples
-from hydrostat.ik.trajectory.pace import Pace
+from hydrostat.ik.trajectory.course import Pace, Samples
 from hydrostat.ik.trajectory.poses import Snap
 from hydrostat.robot import Pose
 from hydrostat.simulation import Profile, SolvedPose
