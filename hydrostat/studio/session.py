@@ -97,11 +97,17 @@ class Session:
         return self.stages[self.stage]
 
     def go(self, name: StageName | str) -> None:
-        """Show another stage (InputError: there is none of this name, or it needs a robot, and none is open)."""
+        """Show another stage; where it is shown already nothing happens, and nothing is let go.
+
+        Raises:
+            InputError: there is none of this name, or it needs a robot, and none is open.
+        """
         name = member(StageName, name, what="stage")
         if name is not StageName.START:
             _ = self.document.work
         with self._lock:
+            if name is self.stage:
+                return
             self._let_go()
             self.current.leave()
             self.stage = name

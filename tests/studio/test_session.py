@@ -135,6 +135,17 @@ def test_another_stage_lets_go_first(session: Session) -> None:
     assert diary(session) == ["enter"]
 
 
+def test_the_stage_that_is_shown_already_lets_go_of_nothing(session: Session) -> None:
+    """A click on its button may come late, when a drag has begun; a second window may click it at any time."""
+    session.grab("a", BODY)
+    rung: list[Topic] = []
+    session.bell.listen(rung.append)
+    session.go(StageName.POSE)
+    assert rung == []
+    session.drag("a", there(1.0))
+    assert diary(session) == ["enter", ("grab", "body"), ("drag", (1.0, 0.0))]
+
+
 def test_a_drag_is_one_step_to_undo(session: Session, work: Work) -> None:
     class Mover(Diary):
         def drag(self, hit: Hit) -> None:
