@@ -47,17 +47,10 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
 
 
 def pulls(robot: Robot, reached: Sequence[ReachedPose], constraints: Constraints) -> list[str]:
-    """What poses ask of winches and cables beyond what they can do: tension, contraction and torque.
+    """What poses ask of winches and cables beyond what they can do: sentences on tension, contraction and torque.
 
-    Tensions and torques may exceed their limit by 0.1 %, contractions by 0.02 mm.
-
-    Args:
-        robot: with the network.
-        reached: poses of it.
-        constraints: that tell how hard cables and motors pull; travel and release are each winch's own.
-
-    Returns:
-        Sentences that name the pose, the part, its value and the limit; none if all is within.
+    Tensions and torques may exceed their limit by 0.1 %, contractions by 0.02 mm. Travel and release are each winch's
+    own. Each sentence names the pose, the part, its value and the limit.
     """
     return [sentence for number, one in enumerate(reached) for sentence in _pulled(robot, number, one, constraints)]
 

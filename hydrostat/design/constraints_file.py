@@ -79,18 +79,11 @@ ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "still": "still"}
 
 
 def read_constraints(path: str | Path, robot: Robot) -> Constraints:
-    """Constraints from a file; what it leaves out is as in `Constraints`.
+    """Constraints for a robot from a file; what it leaves out is as in `Constraints`.
 
     Keys are the fields of `Constraints`: quantities as text with their unit ("5 mm"), zones as tables [[winch_zone]],
     [[keep_out]] and [[still]] in the length unit of the robot's file, cables by their names, or by numbers that count
-    from 1.
-
-    Args:
-        path: of the file.
-        robot: for which they are.
-
-    Raises:
-        InputError: one line that names the file, the line, the key, what is wrong and what is allowed.
+    from 1. Raises InputError: one line that names the file, the line, the key, what is wrong and what is allowed.
     """
     path = Path(path)
     return _ConstraintsReader(path, read_text(path), robot).constraints()

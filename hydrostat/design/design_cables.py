@@ -57,11 +57,7 @@ def find_network(
 ) -> Network:
     """Find the network that a request asks for; `design_cables` for one that is made already.
 
-    Args:
-        robot: that is designed for.
-        request: what is asked.
-        progress: called as the work goes on.
-        watch: called with each better network that is found on the way.
+    `watch` is told each better network that is found on the way.
 
     Raises:
         InputError: a request that does not fit the robot.

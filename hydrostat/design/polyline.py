@@ -49,19 +49,12 @@ def least_along(
     *,
     resolution: float = np.inf,
 ) -> Float[np.ndarray, " segments"]:
-    """The least of a distance along each segment [m], as far as it matters whether it is below a limit.
+    """The least of a distance along each segment [m], as far as it matters whether it is below a limit [m].
 
-    A stretch of a segment is halved only while its ends leave open whether the least is lower in between, as a
-    distance cannot fall faster than one goes. What is told is found at a place of the segment; if it is not below the
-    limit, then nothing on the segment is, by more than half of `FINEST`.
-
-    Args:
-        measure: the distance.
-        starts: of the segments [m].
-        ends: of the segments [m].
-        limit: that is asked about [m].
-        resolution: how near to the least what is told must be where it is below the limit [m]; by default any place
-            below the limit will do.
+    A stretch of a segment is halved only while its ends leave open whether the least is lower in between, as a distance
+    cannot fall faster than one goes. What is told is found at a place of the segment; if it is not below the limit,
+    then nothing on the segment is, by more than half of `FINEST`. Where it is below, it is as near to the least as the
+    resolution [m] says; by default any place below the limit will do.
     """
     lengths = np.linalg.norm(ends - starts, axis=1)
     first, last = measure(starts), measure(ends)

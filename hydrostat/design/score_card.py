@@ -11,12 +11,7 @@ from hydrostat.robot import Robot, robot_hash
 
 
 def score_card(network: Network, *, version: str) -> dict[str, Any]:
-    """Errors per pose and marker, tensions, contractions, lengths and time; SI units throughout.
-
-    Args:
-        network: what was designed.
-        version: of hydrostat.
-    """
+    """Errors per pose and marker, tensions, contractions, lengths and time; SI units throughout."""
     robot = network.robot
     request = network.request.as_values()
     return {

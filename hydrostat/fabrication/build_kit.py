@@ -45,12 +45,7 @@ def export_kit(
 
 
 def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Progress | None = None) -> Kit:
-    """Make the kit of a robot; the same robot and options give the same bytes.
-
-    Args:
-        robot: with winches and cables.
-        options: how it is built.
-        progress: told the stages.
+    """Make the kit of a robot; the same robot and options give the same bytes. `progress` is told the stages.
 
     Raises:
         UnbuildableError: the robot cannot be built well (unless `force`).

@@ -45,11 +45,7 @@ def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = N
     """Find what the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at full travel.
 
     Winches are pulled alone too if no pose could be solved. Where cables have friction, contractions are found without
-    it, and loads with it.
-
-    Args:
-        robot: with its poses.
-        progress: told how many poses are solved, of how many.
+    it, and loads with it. `progress` is told how many poses are solved, of how many.
     """
     if not robot.cables:
         count = len(robot.winches)

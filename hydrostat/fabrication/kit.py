@@ -72,15 +72,7 @@ class Kit:
 def manifest(
     robot: Robot, options: KitOptions, files: Mapping[str, bytes], *, checks: Sequence[Check], told: Mapping[str, Any]
 ) -> bytes:
-    """The text of manifest.json.
-
-    Args:
-        robot: that is built.
-        options: of the kit.
-        files: content by path in the kit.
-        checks: the self-check table.
-        told: what else to keep, such as warnings and sizes.
-    """
+    """The text of manifest.json; `told` is what else to keep, such as warnings and sizes."""
     told = {
         "robot": {"name": robot.name, "sha256": robot_hash(robot)},
         **told,
@@ -96,19 +88,10 @@ def manifest(
 
 
 def write_files(files: Mapping[str, bytes], folder: str | Path) -> list[Path]:
-    """Write all files of a kit, the manifest last.
+    """Write all files of a kit, by path, the manifest last, into a folder made if need be; returns them sorted.
 
-    What an earlier kit left in the folder and this one has not is removed, unless it was changed since.
-
-    Args:
-        files: content by path in the kit, the manifest among them.
-        folder: made if need be.
-
-    Returns:
-        The files, sorted.
-
-    Raises:
-        InputError: the folder or a file cannot be written.
+    What an earlier kit left in the folder and this one has not is removed, unless it was changed since. Raises
+    InputError if the folder or a file cannot be written.
     """
     folder = Path(folder)
     stale = [path for path in _written_before(folder) if path not in files]

@@ -34,13 +34,13 @@ def contour(
 ) -> Surface:
     """Closed surface of the region where a field is negative, outward oriented and manifold; the same on every run.
 
-    Marching cubes tell which edges of a grid are crossed and how the crossings join (Lorensen & Cline 1987, with
-    tables that leave no gaps); every crossing is then moved along its edge to where the field changes its sign, so
-    that fields with a jump (winding numbers) are met as exactly as smooth ones. Between the crossings the surface
-    is flat: edges and corners are cut by up to about half a spacing, and what is thinner than it may be missed.
+    Marching cubes tell which edges of a grid are crossed and how the crossings join (Lorensen & Cline 1987, with tables
+    that leave no gaps); every crossing is then moved along its edge to where the field changes its sign, so that fields
+    with a jump (winding numbers) are met as exactly as smooth ones. Between the crossings the surface is flat: edges
+    and corners are cut by up to about half a spacing, and what is thinner than it may be missed.
 
     Args:
-        field: the field; called with many points at once, all within the box.
+        field: called with many points at once, all within the box.
         box: lowest and highest coordinates [m]; the region ends at its sides.
         spacing: of the grid [m].
         distance: the field changes by at most the way between two points (a signed distance), so what is far from

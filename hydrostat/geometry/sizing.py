@@ -22,8 +22,8 @@ _DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
 def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: float = 0.0, dim: int) -> float:
     """Element size [m], to three digits, with which a mesh has a number of nodes to within a tenth.
 
-    Steps on logarithms, kept between the sizes that gave too many and too few. Bodies of few elements, or with
-    thin places that need finer ones, may jump over the number; then the size that comes nearest.
+    Steps on logarithms, kept between the sizes that gave too many and too few. Bodies of few elements, or with thin
+    places that need finer ones, may jump over the number; then the size that comes nearest.
 
     Args:
         nodes: wanted.

@@ -86,9 +86,7 @@ def covering_points(surface: Surface, spacing: float) -> Float[np.ndarray, "poin
 def spread_points(surface: Surface, spacing: float) -> tuple[Float[np.ndarray, "points 3"], Int[np.ndarray, " points"]]:
     """Points spread evenly over the triangles of a surface, one at least on each, and the triangle each is on.
 
-    Args:
-        surface: any.
-        spacing: about one point for each square of this side [m].
+    There is about one point for each square whose side is the spacing [m].
     """
     areas = np.linalg.norm(surface.crosses, axis=1) / 2
     square = max(spacing**2, float(areas.sum()) / _MOST_POINTS)

@@ -195,10 +195,10 @@ def surface_body(
     thickness: float | None = None,
     volume: Volume = Volume.ELEMENT,
 ) -> Body:
-    """Body in space from the bytes of a scan or CAD model, healed if need be.
+    """Body in space from the bytes of a scan or CAD model (STL, OBJ, PLY, OFF or 3MF, by its name), healed if need be.
 
     Args:
-        content: of the file: STL, OBJ, PLY, OFF or 3MF.
+        content: of the file.
         file: its name.
         unit: metres that a coordinate counts, if the file does not say.
         material: what it is made of.

@@ -240,9 +240,7 @@ def _update_points(points: Any, fresh: Any, was: Sequence[Any], now: Sequence[An
 def matched(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> dict[int, int]:
     """Number of the old entry of each new one that has one: by name, else the same, else the most alike.
 
-    Args:
-        old: what the keys of each entry meant.
-        new: what they mean now.
+    Entries are what their keys mean.
     """
     pairs: dict[int, int] = {}
     for likeness in (_same_name, _same, _alike):

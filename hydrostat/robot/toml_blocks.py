@@ -23,11 +23,7 @@ class TomlBlock:
 
 
 def split_blocks(text: str) -> tuple[list[TomlBlock], str]:
-    """The blocks of a TOML file in order, and what comes after the last; together they are all of the text.
-
-    Args:
-        text: that tomllib can read.
-    """
+    """The blocks of a TOML file that tomllib can read, in order, and what is after the last; together all of the text."""
     starts = [(0, "", True), *_headers(text)]
     blocks: list[TomlBlock] = []
     free = lead = ""

@@ -54,12 +54,9 @@ class Limb:
         return self.spine[-1] + self.caps[1] * self._directions[-1]
 
     def at(self, share: float, across: float = 0.0, up: float = 0.0) -> tuple[float, float, float]:
-        """A place in the limb [m].
+        """A place in the limb [m]: a share of the way along the spine from its root, and offsets from there.
 
-        Args:
-            share: how far along the spine, 0 at its root, 1 at its end.
-            across: to the side, in half breadths.
-            up: towards the back, in half depths; negative towards the belly.
+        `across` counts half breadths, `up` half depths towards the back, negative towards the belly.
         """
         station = share * self.length
         side, back = self._frame(np.array([station]))

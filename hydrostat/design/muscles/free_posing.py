@@ -38,14 +38,10 @@ class FreePosing:
         strength: float = 1.8,
         body: BodyPhysics | None = None,
     ) -> None:
-        """Begin at rest.
+        """Begin at rest, with muscles on all edges of the mesh if none are given.
 
-        Args:
-            robot: whose body it is; its cables do not matter.
-            fibres: the muscles; on all edges of the mesh if left out.
-            effort: weight of squared tensions, as for `activate`.
-            strength: the most that muscles pull, as the pressure of all of them together in Young's moduli.
-            body: the physics of the body, if they are at hand.
+        Effort weighs squared tensions, as for `activate`; strength is the most that muscles pull, as the pressure of
+        all of them together in Young's moduli.
         """
         mesh = robot.body.mesh
         self.robot = robot

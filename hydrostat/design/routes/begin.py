@@ -90,10 +90,6 @@ def layout_of(robot: Robot, constraints: Constraints) -> Layout:
 
     A cable sheathed anywhere but from its winch on is kept as it is too, and its winch: what is sheathed in the middle
     is not moved. Parts that mirror each other are tied together where the design should be symmetric.
-
-    Args:
-        robot: with the network.
-        constraints: that it should keep.
     """
     names = [winch.name for winch in robot.winches]
     routes = []

@@ -65,10 +65,7 @@ class Bench:
     def reached(self, layout: Layout, before: Trial | None, *, iterations: int = 30) -> Trial | None:
         """The layout with contractions that bring every pose nearest; None where no equilibrium is found.
 
-        Args:
-            layout: of the same body.
-            before: a trial to begin from: its winches come first among those of the layout.
-            iterations: most steps of inverse kinematics for each pose.
+        It begins from a trial `before`, whose winches come first among those of the layout.
         """
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)

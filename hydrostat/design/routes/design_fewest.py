@@ -16,13 +16,8 @@ def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, w
     """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
 
     Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
-    that miss the tolerance the best one is returned.
-
-    Args:
-        robot: that is designed for.
-        request: what is asked; locked winches count, and cables are the most in all.
-        progress: told how the work goes on.
-        watch: told each better network on the way, whatever its number of winches.
+    that miss the tolerance the best one is returned. Locked winches count; `watch` is told each better network on the
+    way, whatever its number of winches.
     """
     size = robot.body.mesh.size
     constraints, options, cables = request.constraints, request.route_options, request.cables

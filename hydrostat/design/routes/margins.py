@@ -21,13 +21,7 @@ class Margins(NamedTuple):
 
 
 def margins(layout: Layout, region: Region, *, reach: float) -> Margins:
-    """All limits that a layout is within `reach` [m] of, with a hair of margin each.
-
-    Args:
-        layout: what is to be moved.
-        region: where cables may be.
-        reach: how far anything will move.
-    """
+    """All limits that a layout is within `reach` [m] of, as far as anything will move, with a hair of margin each."""
     return _MarginRows(layout, region, reach).found()
 
 

@@ -73,23 +73,16 @@ def price_paths(
 ) -> list[PricedPath]:
     """Paths along which a cable lowers the residual most, the best first, unlike one another.
 
-    A path moves the rows by J, the sum over its edges. By Gauss and Newton it lowers half the squares of the residual
-    r (target less marker) by
+    A path moves the rows by J, the sum over its edges. By Gauss and Newton it lowers half the squares of the residual r
+    (target less marker) by
 
         D(J) = sum over poses of max over t in [0, most] of t r.J - t^2 (|J|^2 + ridge) / 2.
 
-    That is not additive, so a dynamic program over directed edges and hops keeps a few paths for each: those of the
-    largest D, and those of the largest r.J, which become good when they are longer. Two passes, one from the winches
-    and one towards them, see different paths; the better ones of both are returned. Exact for one and two edges, else
-    a heuristic: how near it comes to the best of all paths is tested.
-
-    Args:
-        graph: of via points.
-        missed: what is to be lowered, and what each edge does to it.
-        limits: hops, turn, length and lead.
-        count: of paths wanted.
-        winches: graph points where a winch may stand; all winch places of the graph if left out.
-        slots: paths that each directed edge keeps for each number of hops.
+    That is not additive, so a dynamic program over directed edges and hops keeps a few paths for each (`slots`): those
+    of the largest D, and those of the largest r.J, which become good when they are longer. Two passes, one from the
+    winches and one towards them, see different paths; the better ones of both are returned. Exact for one and two
+    edges, else a heuristic: how near it comes to the best of all paths is tested. `winches` are the points of the graph
+    where one may stand; all its winch places if left out.
     """
     places = graph.winch_places if winches is None else np.asarray(winches, dtype=np.int64)
     search = _PathSearch(graph, missed, limits, slots)

@@ -88,11 +88,8 @@ class Proposals:
     def grown(self, trial: Trial, *, winches: int, needed: int, count: int) -> list[Layout]:
         """Layouts with one cable more, that can be built, the most promising first.
 
-        Args:
-            trial: where the network is now.
-            winches: most winches.
-            needed: cables that are still to come, this one included.
-            count: of layouts from new winches, and of those from winches that there are.
+        `needed` cables are still to come, this one included; `count` is of layouts from new winches, and of those from
+        winches that there are.
         """
         layout = trial.layout
         missing = winches - len(layout.sites)
@@ -201,16 +198,10 @@ _REACH = 0.03  # what is farther than this share of the body's size from a limit
 
 
 def route_along(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spacing: float) -> CableRoute | None:
-    """A via point about every `spacing` along the bare path, as few as the body allows along the lead.
+    """A via point about every `spacing` [m] along the bare path, as few as the body allows along the lead.
 
-    Args:
-        path: through the graph.
-        graph: of via points.
-        winch: number of the winch that pulls it.
-        place: of that winch, at or near the first point of the path [m].
-        spacing: of via points [m].
-
-    Returns None for a path that is too short to have a via point.
+    The winch that pulls it stands at `place` [m], at or near the first point of the path. None for a path that is too
+    short to have a via point.
     """
     bare, winch_point = graph.points[list(path.nodes)], path.winch
     lead = graph.points[list(path.lead)][:-1] if len(path.lead) > 1 else np.zeros((0, len(place)))

@@ -81,15 +81,11 @@ class RouteGraph:
         return np.lexsort((ends, starts))
 
     def edge_moves(self, posed: Nodes, fields: Float[np.ndarray, "nodes dim rows"]) -> Float[np.ndarray, "edges rows"]:
-        """What a tension of 1 N along each edge adds to each row, at an equilibrium [m/N].
+        """What a tension of 1 N along each edge adds to each row, at an equilibrium of the nodes [m]: in m/N.
 
         The ends of the edge are pulled together, so it is (field at the first - field at the second) . direction, and a
         cable moves the rows by the sum over its edges. Still edges move nothing; a point in the world neither moves nor
-        has a field.
-
-        Args:
-            posed: nodes at the equilibrium [m].
-            fields: H^-1 of each row's slope by the nodes, H being the full Hessian there [m/N].
+        has a field. Fields are H^-1 of each row's slope by the nodes, H being the full Hessian there [m/N].
         """
         held = len(self.anchors.stencils)
         places, priced = self.points.copy(), np.zeros((len(self.points), *fields.shape[1:]))
@@ -106,14 +102,8 @@ class RouteGraph:
 def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spacing: float) -> RouteGraph:
     """The graph of a body: mesh nodes moved inside the clearance, each joined to those around it that it sees.
 
-    Args:
-        robot: whose body it is; its winches matter only where they stand in the world.
-        region: where cables may be.
-        constraints: zones, clearances, and where winches are mounted.
-        spacing: rough distance between via points, such as the element size [m].
-
-    Raises:
-        InputError: no place for a via point or for a winch.
+    Winches of the robot matter only where they stand in the world. The spacing [m] is a rough distance between via
+    points, such as the element size. Raises InputError if there is no place for a via point or for a winch.
     """
     mesh = robot.body.mesh
     nodes, points = _via_points(mesh.nodes, region, constraints, spacing)

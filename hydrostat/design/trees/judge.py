@@ -26,15 +26,9 @@ def judge(
 ) -> tuple[int, tuple[ReachedPose, ...]]:
     """The index of the robot of least cost, and what it reaches of each pose.
 
-    In rounds of inverse kinematics, each of which takes up where the last one ended, for ever fewer robots.
-
-    Args:
-        robots: the candidates.
-        poses: what they should reach.
-        tension: what a cable should bear at most [N], see `cost`.
-        body: physics of the body that they share.
-        progress: called as the work goes on.
-        watch: told each robot that is better than all before and keeps to the tension.
+    In rounds of inverse kinematics, each of which takes up where the last one ended, for ever fewer robots. Cables
+    should bear at most the tension [N], see `cost`; `watch` is told each robot that is better than all before and keeps
+    to it.
     """
     simulations = [Simulation(robot, body=body) for robot in robots]
     reached: dict[int, tuple[ReachedPose, ...]] = {}
@@ -76,15 +70,7 @@ def prune(
 ) -> tuple[Robot, tuple[ReachedPose, ...]]:
     """Leave out cables, the shortest first, while the cost stays within 1 + `loss` of what it was.
 
-    Every winch keeps a cable.
-
-    Args:
-        robot: with its network.
-        poses: what it should reach.
-        reached: what it reaches of them.
-        tension: what a cable should bear at most [N].
-        body: physics of its body.
-        loss: how much of the cost all omissions together may add, as a fraction.
+    All omissions together may add that share. Every winch keeps a cable. Cables should bear at most the tension [N].
     """
     allowed = (1.0 + loss) * cost(reached, tension)
     for cable in sorted(robot.cables, key=lambda cable: float(cable.segments[cable.bare].sum())):

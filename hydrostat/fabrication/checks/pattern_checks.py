@@ -19,18 +19,7 @@ HOLES = 0.1  # how far a hole may be from where the simulated cable passes [mm]
 def pattern_checks(
     robot: Robot, pattern: Pattern, svg: bytes, dxf: bytes, options: PatternOptions
 ) -> tuple[Check, ...]:
-    """Holes and scale of the SVG, and whether the DXF shows the same.
-
-    Args:
-        robot: as it was simulated.
-        pattern: tells where the robot's origin lies on the sheet.
-        svg: the bytes of the drawing.
-        dxf: the bytes of the other drawing.
-        options: with which it was drawn.
-
-    Raises:
-        InputError: no drawing in millimetres.
-    """
+    """Holes and scale of the SVG, and whether the DXF shows the same; InputError if it is no drawing in millimetres."""
     seen = SeenSvg(svg)
     front = seen.circles(PatternPart.PINHOLE, panel="front")
     return _flat_holes(robot, pattern, front, options), *drawing_checks(seen, SeenDxf(dxf))
@@ -58,17 +47,7 @@ def _flat_holes(
 
 
 def patch_checks(robot: Robot, pattern: SpacePattern, svg: bytes, dxf: bytes) -> tuple[Check, ...]:
-    """Holes, seams, outlines, area and scale.
-
-    Args:
-        robot: as it was simulated.
-        pattern: tells where on the sheet the patches of its skin are.
-        svg: the bytes of the drawing.
-        dxf: the bytes of the other drawing.
-
-    Raises:
-        InputError: no drawing in millimetres.
-    """
+    """Holes, seams, outlines, area and scale; InputError if it is no drawing in millimetres."""
     seen = SeenSvg(svg)
     drawn = (_space_holes(robot, pattern, seen), _crosses(robot, pattern, seen), _outlines(pattern, seen))
     return (*drawn, *drawing_checks(seen, SeenDxf(dxf)), _seams(pattern), _area(pattern))

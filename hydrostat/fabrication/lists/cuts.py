@@ -63,13 +63,10 @@ class CableCut:
 def cable_cuts(
     robot: Robot, *, leads: Mapping[int, float], outside: Mapping[int, float], spare_wraps: float
 ) -> tuple[CableCut, ...]:
-    """Find how long each cable of a robot is cut.
+    """Find how long each cable of a robot is cut; `spare_wraps` are turns that stay on each spool.
 
-    Args:
-        robot: whose cables.
-        leads: line from the winch's exit to its spool, by cable index [mm]; none if left out.
-        outside: tube from the base with the motors to where the cable begins, by cable index [mm].
-        spare_wraps: turns that stay on each spool.
+    By cable index [mm]: `leads` from the winch's exit to its spool, 0 if left out, and tube `outside` the body, from
+    the base with the motors to where the cable begins.
     """
     cuts = []
     for index, (cable, ratio) in enumerate(zip(robot.cables, robot.spool_ratios, strict=True)):
@@ -162,11 +159,8 @@ class SheathCut:
 def sheath_cuts(robot: Robot, *, seats: Mapping[int, float], outside: Mapping[int, float]) -> tuple[SheathCut, ...]:
     """The pieces of tube of a robot; stretches that touch are one piece.
 
-    Args:
-        robot: whose cables.
-        seats: depth of the seat of the tube at its winch, by cable index [mm]; none if left out.
-        outside: tube from the base with the motors to where the cable begins, by cable index [mm]; a sheath that begins
-            there goes on from it in one piece.
+    By cable index [mm]: depth of the `seats` of tubes at winches, 0 if left out, and tube `outside`, from the base with
+    the motors to where the cable begins; a sheath that begins there goes on from it in one piece.
     """
     cuts = []
     for index, cable in enumerate(robot.cables):
@@ -191,14 +185,7 @@ def sheath_cuts(robot: Robot, *, seats: Mapping[int, float], outside: Mapping[in
 
 
 def sheath_table(robot: Robot, cuts: tuple[SheathCut, ...], *, bore: float, tube: float) -> Table:
-    """The cut list, with its total in the last row.
-
-    Args:
-        robot: whose cables.
-        cuts: its pieces of tube.
-        bore: inner diameter [mm].
-        tube: outer diameter [mm].
-    """
+    """The cut list, with its total in the last row; bore and outer diameter of the tube in mm."""
     rows = [
         (f"C{cut.cable}", cut.winch, *_tube_ends(robot, cut), bore, tube, cut.run, cut.seat, cut.length) for cut in cuts
     ]
@@ -239,10 +226,7 @@ def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
 def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
     """Check whether the tubes of the list cover what the simulation leaves out of the lengths of the cables.
 
-    Args:
-        table: the cut list.
-        simulation: of the robot.
-        outside: tube from the base with the motors, which no simulation knows, by cable index [mm].
+    No simulation knows the tube `outside`, from the base with the motors, by cable index [mm].
     """
     robot = simulation.robot
     listed = np.array([-outside.get(index, 0.0) for index in range(len(robot.cables))])

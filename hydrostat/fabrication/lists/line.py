@@ -83,16 +83,9 @@ class LineCheck:
 
 
 def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float | None = None) -> LineCheck:
-    """Check whether a line and its stopper bear the largest tension of each cable [N].
+    """Check whether a line, and its stopper, which slips at `hold` [N], bear the largest tension of each cable [N].
 
-    Args:
-        robot: whose cables.
-        tensions: largest of each cable [N].
-        line: what they are made of.
-        hold: tension at which a stopper slips [N]; None: not known.
-
-    Raises:
-        InputError: not as many tensions as cables.
+    Raises InputError if there are not as many tensions as cables.
     """
     if len(tensions) != len(robot.cables):
         raise InputError(f"{len(tensions)} tensions given for {len(robot.cables)} cables")

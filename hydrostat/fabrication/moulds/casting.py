@@ -46,10 +46,7 @@ class Casting:
 def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -> tuple[Casting, tuple[str, ...]]:
     """Amounts and times, and why the body that is cast would not be the one that was simulated.
 
-    Args:
-        material: of the robot's body.
-        fill: volume of cavity, sprue and vents [mm^3].
-        pours: volumes of silicone [mm^3]; none for printed halves.
+    `fill` is the volume of cavity, sprue and vents, `pours` are those of silicone, none for printed halves [mm^3].
     """
     cast, problems = _castable(material)
     foams = _is_foam(cast)

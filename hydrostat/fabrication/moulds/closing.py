@@ -56,13 +56,9 @@ class Closing:
 
 
 def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, ...], clearance: float) -> Closing:
-    """Keys at the corners, bolts along the sides, slots to pry at left and right.
+    """Keys at the corners with a clearance on each side [mm], bolts along the sides, slots to pry at left and right.
 
-    Args:
-        block: outside of the mould.
-        sprue: bolts keep off its funnel.
-        vents: x of what leaves through the top [mm]; bolts keep off these.
-        clearance: between keys and sockets [mm], on each side.
+    Bolts keep off the sprue's funnel and off `vents`, the x of what leaves through the top [mm].
     """
     (left, bottom, low), (right, top, high) = block.low, block.high
     xs, ys = (left + INSET, right - INSET), (bottom + INSET, top - INSET)

@@ -86,10 +86,7 @@ class _Inside:
 def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sides | WinchRoom] | None = None) -> Mould:
     """The mould for a robot's body.
 
-    Args:
-        robot: what is built.
-        options: how its mould is made.
-        pockets: what winches that sit in the body take up, by name; three sides [mm] if the shaft is in the middle.
+    `pockets` are what winches that sit in the body take up, by name; three sides [mm] if the shaft is in the middle.
 
     Raises:
         InputError: the body is not closed, or a pocket is of a winch that is not there.

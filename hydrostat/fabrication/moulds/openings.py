@@ -51,11 +51,8 @@ class Vent:
 def make_sprue(body: Manifold, *, top: float, room: tuple[float, float], deep: float) -> Sprue | None:
     """The widest sprue over the highest place of the parting plane that is wide enough; None if there is none.
 
-    Args:
-        body: in the coordinates of the mould [mm].
-        top: height of the top of the mould [mm].
-        room: lowest and highest x that the funnel may reach [mm].
-        deep: from the parting plane to the nearer back of the mould [mm].
+    In the coordinates of the mould [mm]: its funnel ends at the `top` and reaches over the x in `room`; `deep` is the
+    way from the parting plane to the nearer back.
     """
     across, tops = roof(body)
     if not len(across):
@@ -90,15 +87,9 @@ def _sprue(x: float, mouth: float, radius: float, top: float, room: tuple[float,
 def make_vents(cavity: Manifold, sprue: Sprue | None, *, low: float, high: float, top: float) -> tuple[Vent, ...]:
     """A vent at each high point of the cavity that does not lie under the sprue.
 
-    Where the high point is at the parting plane, a groove leads up from it; elsewhere a hole leads straight out of the
-    back of the half, so that the foam in it is drawn out as the half comes off.
-
-    Args:
-        cavity: what is filled, in the coordinates of the mould [mm].
-        sprue: of the mould.
-        low: z of the back of the lower half [mm].
-        high: z of the back of the upper half [mm].
-        top: height of the top of the mould [mm].
+    Where the high point is at the parting plane, a groove leads up from it to the `top`; elsewhere a hole leads
+    straight out of the back of the half, at z = `low` or `high` [mm], so that the foam in it is drawn out as the half
+    comes off.
     """
     vertices, triangles = triangles_of(cavity)
     across, tops = roof(cavity)

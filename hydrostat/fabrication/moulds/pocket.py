@@ -68,15 +68,9 @@ def make_pockets(
 ) -> tuple[Pocket, ...]:
     """A pocket for each winch that sits in the body, from its place straight out along the pull.
 
-    The shaft is at the winch's place, whichever way the winch is laid. Pockets that meet become one room.
-
-    Args:
-        robot: whose winches they are.
-        body: in the coordinates of the mould [mm].
-        stance: of the mould.
-        rooms: what each winch takes up, or its sides [mm] if the shaft is in the middle; winches that are missing get
-            no pocket.
-        clearance: between a winch and the foam, on each side [mm].
+    The shaft is at the winch's place, whichever way the winch is laid. Pockets that meet become one room. `rooms` are
+    what winches take up, or three sides [mm] if the shaft is in the middle; those that are missing get no pocket. The
+    clearance [mm] is between a winch and the foam, on each side.
 
     Raises:
         InputError: a size for a winch that is not there, or that is not above 0.
@@ -261,11 +255,7 @@ def clashes(pockets: tuple[Pocket, ...]) -> list[str]:
 def cable_dents(robot: Robot, surface: FineSurface, stance: Stance, *, deepest: float) -> Manifold:
     """Cones on the wall, in the coordinates of the mould, at the spot nearest to each cable point.
 
-    Args:
-        robot: whose cables they are.
-        surface: surface of the body, in its own coordinates.
-        stance: of the mould.
-        deepest: cable points further below the surface leave no mark [mm].
+    Cable points further below the surface than `deepest` [mm] leave no mark.
     """
     points = [_spot(point) for cable in robot.cables for point in cable.points]
     if not points:

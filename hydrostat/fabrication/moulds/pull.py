@@ -71,11 +71,9 @@ def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
 
 
 def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
-    """The best direction and height for a flat parting, by a search over all directions.
+    """The best direction and height for a flat parting of a body [mm], by a search over all directions.
 
-    Args:
-        solid: the body [mm].
-        count: directions tried on half of the sphere, before those about the best of them.
+    `count` directions are tried on half of the sphere, before those about the best of them.
     """
     surface = fine_surface(solid)
     tried = np.vstack([_own_axes(surface), np.eye(3), _flat_directions(surface), half_sphere(count)])

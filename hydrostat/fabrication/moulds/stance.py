@@ -45,12 +45,9 @@ class Stance:
 def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> Stance:
     """Find the way to stand the closed mould on an edge, parting plane upright, so that little air is caught.
 
-    Sides of the box are along axes of the robot or those of the smallest box. That edge is chosen that needs the
-    fewest vents, has what is held at the top, is not too narrow to stand on and does not make the mould much larger.
-
-    Args:
-        pull: of the mould.
-        held: nodes at pins, in the body's coordinates [mm].
+    Sides of the box are along axes of the robot or those of the smallest box. That edge is chosen that needs the fewest
+    vents, has what is held at the top (nodes at pins, in the body's coordinates [mm]), is not too narrow to stand on
+    and does not make the mould much larger.
     """
     first, second, along = axes_along(pull.direction)
     flat = pull.surface.vertices @ np.column_stack([first, second])

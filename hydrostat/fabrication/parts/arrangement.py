@@ -23,16 +23,11 @@ class LaidUnit:
 
 
 def arranged(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
-    """Lay each unit, in their order, and tell what is wrong with it.
+    """Lay each unit, in their order, within a seam and a thickness [mm], and tell what is wrong with it.
 
     Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
     and is moved least, until none changes. Those that meet all the same lie one above the other, if the body is thick
     enough for that.
-
-    Args:
-        boxes: of the units.
-        seam: of the body [mm].
-        thickness: of the body [mm].
     """
     ways = [_Ways(ways_to_lie(box, seam), thickness) for box in boxes]
     total, places = _settled(ways)

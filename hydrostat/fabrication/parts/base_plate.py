@@ -49,14 +49,7 @@ class BasePlate:
 def base_plate(
     robot: Robot, units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]
 ) -> BasePlate | None:
-    """The base of all winches outside the body; None if there are none.
-
-    Args:
-        robot: for its name.
-        units: of all winches.
-        options: sizes of the parts.
-        bed: largest piece that the printer takes, along x, y and z [mm].
-    """
+    """The base of all winches outside the body, in pieces that fit the bed (x, y, z) [mm]; None if there are none."""
     outside = [unit for unit in units if unit.mount is Mount.WORLD]
     if not outside:
         return None

@@ -213,16 +213,8 @@ by then. Assumed, measured on none."""
 def choose_motor(key: str, torques: Iterable[float], *, inside: bool = False) -> Motor:
     """The motor of a key; "auto": the first of the table that carries the largest torque [N m], with the margin.
 
-    Outside the body it must carry it for long; in the body, where there is little room, for seconds. Where none does it
-    is the strongest.
-
-    Args:
-        key: of a motor in the table, or "auto".
-        torques: largest on each winch [N m].
-        inside: whether winches sit in the body.
-
-    Raises:
-        InputError: no motor has this key.
+    Outside the body it must carry it for long; `inside`, where there is little room, for seconds. Where none does it is
+    the strongest. Raises InputError if no motor has this key.
     """
     if key == "auto":
         needed = MARGIN * 1e3 * max((float(torque) for torque in torques), default=0.0) - 1e-9

@@ -90,14 +90,8 @@ def rigid_parts(
 ) -> RigidParts:
     """The rigid parts of a robot.
 
-    Args:
-        robot: that is built.
-        demand: what its poses ask of motors and cables.
-        motor: key of a motor in the table, or "auto".
-        options: sizes of the parts.
-        bed: largest piece that the printer takes, along x, y and z [mm].
-        holes: pinholes that get a grommet.
-        hole: diameter of a pinhole [mm].
+    The motor is a key of the table, or "auto"; the bed is the largest piece that the printer takes, along x, y and z
+    [mm]; so many pinholes of the diameter `hole` [mm] get a grommet.
 
     Raises:
         InputError: there is no such motor, or a pinhole is too small for a grommet.

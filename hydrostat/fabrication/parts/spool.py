@@ -26,16 +26,10 @@ def width_for(turns: float, cable: float) -> float:
 
 
 def capacity(width: float, radius: float, cable: float, layers: int) -> float:
-    """Length of cable [mm] in a groove.
+    """Length of cable [mm] in so many full layers of a groove of this width [mm].
 
-    A layer has n = (width - cable) / (LAY cable) turns; the first lies at the radius, the next each a cable further
-    out: 2 pi n (layers radius + cable layers (layers - 1) / 2).
-
-    Args:
-        width: of the groove [mm].
-        radius: of the middle of the cable in the first layer [mm].
-        cable: its diameter [mm].
-        layers: that are filled.
+    A layer has n = (width - cable) / (LAY cable) turns; the first lies at the radius [mm], to the middle of the cable,
+    the next each a cable further out: 2 pi n (layers radius + cable layers (layers - 1) / 2).
     """
     turns = max(0.0, (width - cable) / (LAY * cable))
     return 2 * math.pi * turns * (layers * radius + cable * layers * (layers - 1) / 2)

@@ -78,12 +78,9 @@ def flatten(disc: Disc, *, settled: float = SETTLED) -> Patch:
     """The flat image with the least symmetric Dirichlet energy, by scalable locally injective maps.
 
     The energy counts stretch and squeeze alike and grows without bound before a triangle would turn over (Rabinovich,
-    Poranne, Panozzo, Sorkine-Hornung 2017). It begins with Tutte's map onto a circle, which turns none over. A tooth on
-    each edge of the rim, a triangle whose tip is free, holds the length of that edge only: seams keep their lengths.
-
-    Args:
-        disc: in space.
-        settled: relative change of the energy at which it ends.
+    Poranne, Panozzo, Sorkine-Hornung 2017). It begins with Tutte's map onto a circle, which turns none over, and ends
+    at a relative change of `settled`. A tooth on each edge of the rim, a triangle whose tip is free, holds the length
+    of that edge only: seams keep their lengths.
     """
     import igl
 

@@ -37,17 +37,7 @@ def patch_panel(
     opening: Opening | None,
     options: PatternOptions,
 ) -> Panel:
-    """The panel of a patch.
-
-    Args:
-        name: of the panel.
-        title: written on it.
-        skin: seam line and cut [mm].
-        notches: on its seams.
-        cables: number of each cable with its holes on this patch, in stitch order, and where they are [mm].
-        opening: the slit in it, if any.
-        options: how it is drawn.
-    """
+    """The panel of a patch; of each cable its number, and its holes on this patch in stitch order, with places [mm]."""
     strokes = [(notch.name, _stroke(notch.place, skin)) for notch in notches]
     cables = tuple(cables)
     shapes: list[Shape] = [

@@ -51,9 +51,8 @@ class SkinMesh(TriangleMesh):
     ) -> tuple["SkinMesh", Int[np.ndarray, " parts"]]:
         """Put a vertex on each marked edge, at a share of it, and divide triangles there.
 
-        Returns:
-            The new mesh, its new vertices after the old ones in the order of the edges; and of each of its triangles
-            the old one.
+        Returns the new mesh, its new vertices after the old ones in the order of the edges; and of each triangle the
+        old one.
         """
         edges, of = self.edges
         ends = self.vertices[edges[marked]]
@@ -139,8 +138,7 @@ def cut_at_zero(
 ) -> tuple[SkinMesh, Int[np.ndarray, " parts"], Int[np.ndarray, " parts"]]:
     """Divide triangles along the zero line of a field over part of a mesh.
 
-    Returns:
-        The new mesh; of each of its triangles the old one; and 1 above zero, -1 below, 0 outside the part.
+    Returns the new mesh; of each of its triangles the old one; and 1 above zero, -1 below, 0 outside the part.
     """
     edges = mesh.edges[0]
     touched = np.zeros(len(edges), dtype=bool)

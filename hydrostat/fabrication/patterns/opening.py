@@ -63,10 +63,8 @@ class Opening:
 def find_opening(robot: Robot, seam: Polygon, pinholes: tuple[Pinhole, ...], options: PatternOptions) -> Opening | None:
     """The opening along the row of winches and `opening_reach` beyond, as long as a zipper that is sold.
 
-    Turned and shifted if need be, so as to stay inside the seam and off the pinholes of its panel.
-
-    Returns:
-        None without a winch in the body, without reach, or without room.
+    Turned and shifted if need be, so as to stay inside the seam and off the pinholes of its panel. None without a winch
+    in the body, without reach, or without room.
     """
     return opening_at([(1e3 * winch.at[0], 1e3 * winch.at[1]) for winch in robot.winches], seam, pinholes, options)
 

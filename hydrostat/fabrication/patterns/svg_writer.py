@@ -60,14 +60,9 @@ def shape_element(drawn: Shape, height: float) -> Html:
 def shapes_svg(
     shapes: Iterable[Shape], height: float, view: str, size: tuple[float, float], widths: Mapping[Layer, float]
 ) -> Html:
-    """A window of a sheet as a picture, a group for each layer.
+    """A window of a sheet as a picture of this size, a group for each layer with its line width; all in mm.
 
-    Args:
-        shapes: what is drawn.
-        height: of the sheet [mm].
-        view: the window: left, top, width and height [mm].
-        size: width and height of the picture [mm].
-        widths: of the lines of each layer [mm].
+    The view is left, top, width and height of the window on a sheet of this height.
     """
     shapes = tuple(shapes)
     groups = [

@@ -54,13 +54,9 @@ class CableRun:
 
 
 def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:
-    """A flat body from the front; dashed is what runs on the inside of the cloth.
+    """A flat body from the front, so wide and at most so high [mm]; dashed is what runs on the inside of the cloth.
 
-    Args:
-        robot: with a flat body.
-        stitches: of each cable; none if the body is cast, and cables run in the middle of its thickness.
-        width: of the picture [mm].
-        height: of the picture at most [mm]; it is no higher than what is drawn.
+    Without stitches the body is cast, and cables run in the middle of its thickness.
     """
     rings = [1e3 * ring for ring in flat_rings(robot)]
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
@@ -94,11 +90,7 @@ class _Pane:
 def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Camera]) -> Canvas:
     """A body in space, side by side as it is seen from one or several places; dashed is what lies in its far half.
 
-    Args:
-        robot: with a body in space.
-        width: of the picture [mm].
-        height: of the picture at most [mm]; it is no higher than what is drawn.
-        views: from where.
+    The picture is so wide and at most so high [mm].
     """
     pixels = round(PIXELS * max(width / len(views), height))
     panes = [_pane(robot, view, pixels) for view in views]

@@ -39,12 +39,8 @@ class LabelPlaces:
     ) -> Spot | None:
         """The middle of the best free place for a box near a spot, which is then taken; None if none is free.
 
-        Args:
-            at: the spot.
-            size: width and height of the box [mm].
-            gap: between spot and box [mm].
-            most: points of lines that may be covered.
-            rings: how many distances are tried.
+        The box has this size and is a gap away [mm]; it may cover `most` points of lines; so many rings of places are
+        tried.
         """
         best, least = None, float("inf")
         points = self._points_about(at, gap + _RINGS[-1] + max(size))

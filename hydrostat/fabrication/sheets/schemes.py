@@ -8,14 +8,7 @@ _MOST = 7  # holes that are drawn; of a longer cable the last are left out but f
 
 
 def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float) -> Canvas:
-    """A cut through the stuffed body along a cable: which way it goes at each hole.
-
-    Args:
-        sewn: how the cable is sewn.
-        mark: of its winch.
-        width: of the picture [mm].
-        height: of the picture [mm].
-    """
+    """A cut through the stuffed body along a cable: which way it goes at each hole; `mark` is that of its winch."""
     canvas = Canvas(width, height)
     front, back = 0.36 * height, height - 4.5
     stitches = [stitch for stitch in sewn.stitches if stitch.passes or stitch is sewn.stitches[-1]]
@@ -55,14 +48,7 @@ def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float
 
 
 def skin_scheme(*, sewn: bool, drawn: bool, tubes: bool, width: float) -> Canvas:
-    """A cut through foam and skin: a cable that is sewn to the skin, and one that is drawn through the foam.
-
-    Args:
-        sewn: whether there are cables on the skin.
-        drawn: whether there are cables within the foam.
-        tubes: whether they begin in tubes.
-        width: of the picture [mm].
-    """
+    """A cut through foam and skin: cables sewn to the skin, cables drawn through the foam, with or without tubes."""
     top = 9.5 if sewn else 7.0
     canvas = Canvas(width, top + (20.0 if drawn else 9.0))
     canvas.box((0, top, width - 12, canvas.height - 1), grey=0.9)
@@ -128,13 +114,7 @@ def _put_cloth(canvas: Canvas, top: float, holes: list[float], width: float) -> 
 
 
 def stopper_scheme(*, cloth: str, width: float, height: float) -> Canvas:
-    """A cable pulled straight, its winch at zero: the stopper touches the cloth, and goes back by the slack.
-
-    Args:
-        cloth: what the cable comes out of last.
-        width: of the picture [mm].
-        height: of the picture [mm].
-    """
+    """A cable pulled straight, its winch at zero: the stopper touches the cloth, and goes back by the slack."""
     canvas = Canvas(width, height)
     line, exit_at, body_end, stopper = 0.48 * height, 16.0, width - 27.0, width - 15.0
     canvas.box((exit_at, line - 5, body_end, line + 5), grey=0.93)

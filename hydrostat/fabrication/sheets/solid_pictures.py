@@ -31,12 +31,8 @@ def exploded_picture(
 ) -> Canvas:
     """Pieces drawn away from each other, a dashed line on the way of each, and a number in a circle beside it.
 
-    Args:
-        assembly: what is drawn.
-        numbers: of the pieces, by name; pieces without one get no circle, several of one number a single one.
-        width: of the picture [mm].
-        height: of the picture at most [mm]; it is no higher than what is drawn.
-        view: from where; isometric if left out.
+    Numbers go by name: pieces without one get no circle, several of one number a single one. The picture is so wide and
+    at most so high [mm]; the view is isometric if left out.
     """
     solids = [drawn_solid(placed.solid, shift=placed.pulled) for placed in assembly.pieces]
     drawing = line_drawing(solids, view or Camera.isometric(), pixels=round(PIXELS * max(width, height)))

@@ -48,13 +48,9 @@ class _BedPiece:
 
 
 def lay_plates(parts: Iterable[Printed], bed: tuple[float, float]) -> tuple[tuple[PartOnBed, ...], ...]:
-    """The parts of each bed, every part as often as it is needed, in rows, the deepest first.
+    """The parts of each bed [mm], every part as often as it is needed, in rows, the deepest first.
 
     A part is turned where only so it fits; one that does not fit at all has a bed of its own.
-
-    Args:
-        parts: to print.
-        bed: its width and depth [mm].
     """
     pieces = [_piece(number, part, bed) for number, part in enumerate(parts) for _ in range(part.count)]
     pieces.sort(key=lambda piece: (-piece.size[1], piece.part))
@@ -103,16 +99,7 @@ _RELATIONS = (
 
 
 def three_mf_plates(parts: tuple[Printed, ...], title: str, *, bed: tuple[float, float]) -> tuple[bytes, ...]:
-    """Parts as 3MF in millimetres, a file for each bed, each part as often as it is needed.
-
-    Args:
-        parts: one or several; one larger than the bed has a file of its own.
-        title: of the files.
-        bed: its width and depth [mm].
-
-    Raises:
-        ValueError: no parts.
-    """
+    """Parts as 3MF in millimetres, a file for each bed, each part as often as it is needed; ValueError without parts."""
     if not parts:
         raise ValueError("a 3MF needs a part")
     plates = lay_plates(parts, bed)

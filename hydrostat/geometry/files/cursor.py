@@ -78,15 +78,7 @@ class Cursor:
         self.at = place + len(mark)
 
     def numbers(self, count: int, kind: str) -> np.ndarray:
-        """The next numbers.
-
-        Args:
-            count: how many, as declared.
-            kind: NumPy's code of their type, without order.
-
-        Raises:
-            InputError: there are not as many, or there is something else.
-        """
+        """The next numbers, of a kind given by NumPy's code without order; InputError if there are fewer, or others."""
         dtype = np.dtype(self.order + kind)
         room = (len(self.content) - self.at + 1) // 2 if self.text else (len(self.content) - self.at) // dtype.itemsize
         if not 0 <= count <= room:

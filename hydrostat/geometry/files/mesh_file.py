@@ -14,13 +14,8 @@ from hydrostat.geometry.mesh import Mesh
 def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Mesh:
     """Mesh of tetrahedra, or of triangles if there are none, from a VTK, VTU or Gmsh file.
 
-    Args:
-        path: the file.
-        unit: metres that one coordinate counts.
-        size: longest side of the bounding box [m] to scale to, instead of `unit`.
-
-    Raises:
-        InputError: the file cannot be read or holds neither tetrahedra nor flat triangles.
+    A coordinate counts `unit` metres, unless the longest side of the bounding box is to be `size` [m]. Raises
+    InputError if the file cannot be read or holds neither tetrahedra nor flat triangles.
     """
     reader = _READERS.get(path.suffix.lower())
     if reader is None:

@@ -15,16 +15,11 @@ OUTLINE_SUFFIXES = tuple(_MOST_BYTES)  # names of files that outlines are read f
 
 
 def read_outline(content: bytes, *, name: str, size: float | None = None, page: Page | None = None) -> Outline:
-    """Read the outline of a body from a drawing or a picture; its name says which kind it is.
+    """Read the outline of a body [m] from a drawing or a picture; its name says which kind it is, and stands in errors.
 
-    Args:
-        content: the bytes of the file.
-        name: its name, which errors call it.
-        size: longest side of the body's bounding box [m]; not needed where the file has a unit.
-        page: of another drawing, which this one was drawn over; it says the size and where the origin is.
-
-    Returns:
-        The outline [m], x to the right, y up, origin at the centre of its bounding box, or that of the page.
+    The x axis points right, y up, the origin is the centre of the bounding box or that of the `page`: of another
+    drawing, which this one was drawn over. `size` is the longest side of the bounding box [m], not needed where the
+    file has a unit.
 
     Raises:
         OutlineError: no kind of file that is read, or no body can be made of it; the message says why.

@@ -38,13 +38,10 @@ class Page:
 
 
 def page_about(body: Ring, kind: str, unit: tuple[float, float], size: float | None) -> Page:
-    """The page whose origin is the middle of a body's box.
+    """The page whose origin is the middle of the box of an outer ring in the drawing's units.
 
-    Args:
-        body: the outer ring in the drawing's units.
-        kind: of the drawing.
-        unit: length of one unit along x and y [m], y negative where the drawing counts it downwards.
-        size: longest side of the box [m]; None: as the unit says.
+    One of its units is so long along x and y [m], y negative where the drawing counts it downwards, unless the longest
+    side of the box is to be `size` [m].
     """
     low, high = body.min(axis=0), body.max(axis=0)
     scale = np.array(unit)

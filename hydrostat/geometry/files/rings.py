@@ -23,14 +23,9 @@ _ROUNDING = 1e-6
 
 
 def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ring], tuple[str, ...]]:
-    """The lines of a drawing that are closed.
+    """The rings among a drawing's lines, in its units, and a note on the open lines that were left out.
 
-    Args:
-        lines: points in the drawing's units, and whether the line closes itself; ends that all but meet are closed.
-        name: what errors call the file.
-
-    Returns:
-        The rings in the drawing's units, and a note on the open lines that were left out.
+    Each line is said to close itself or not; ends that all but meet are closed. Errors call the file by its name.
 
     Raises:
         OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
@@ -116,17 +111,7 @@ def _shapes(rings: list[Ring], name: str) -> list[Polygon]:
 
 
 def outline_on_page(body: Ring, holes: list[Ring], page: Page, name: str) -> Outline:
-    """The outline in metres.
-
-    Args:
-        body: the outer ring in the drawing's units.
-        holes: the same of each hole.
-        page: what these mean.
-        name: what errors call the file.
-
-    Raises:
-        OutlineError: the rings are no outline.
-    """
+    """The outline in metres of rings in the drawing's units; OutlineError, with the file's name, if they are none."""
     try:
         return Outline(page.places(body), tuple(page.places(hole) for hole in holes))
     except OutlineError as error:
@@ -155,20 +140,11 @@ _Ends = Int[np.ndarray, "lines 2"]
 
 
 def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
-    """Join open lines at their ends, whichever way each runs.
+    """Join open lines of finite points at their ends, whichever way each runs; tells of each if it is closed.
 
     Ends that are a millionth of the drawing apart are one; a free end and the free end nearest to it are one when they
     are a thousandth apart or less. A line drawn twice counts once. Lines with a free end that lead nowhere stay open.
-
-    Args:
-        lines: points of each, finite.
-        name: what errors call the file.
-
-    Returns:
-        Rings and chains, and whether each is closed.
-
-    Raises:
-        OutlineError: lines branch, so that it is not clear which of them are the outline.
+    Raises OutlineError if lines branch, so that it is not clear which of them are the outline.
     """
     if not lines:
         return []

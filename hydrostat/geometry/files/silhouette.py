@@ -33,13 +33,10 @@ class Contrast:
 
 
 def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
-    """Compare a picture with its ground: a colour that changes slowly (a quadratic of the place), as light does.
+    """Compare a picture (red, green, blue from 0 to 255) with its ground: a colour that changes slowly, as light does.
 
-    The ground is fitted to the border of the picture and then to all that is like it; what stands out is left out of
-    the fit, so a body may reach the border in places.
-
-    Args:
-        pixels: red, green, blue from 0 to 255.
+    The ground, a quadratic of the place, is fitted to the border of the picture and then to all that is like it; what
+    stands out is left out of the fit, so a body may reach the border in places.
     """
     border = np.zeros(pixels.shape[:2], dtype=bool)
     width = max(2, round(0.02 * min(border.shape)))
@@ -149,18 +146,12 @@ def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouett
     """The body in a picture: where the field is above a level, or within the lines where it is drawn with lines.
 
     Of all that stands out, the part that covers most with its holes filled is the body. Where hardly anything in it is
-    thicker than a line, it is a line drawing: all within the outer line is body. Else parts of the ground inside it
-    are holes, if they are larger than 1 % of it and hold nothing: the white of an eye holds a pupil. Parts outside are
-    specks if they are smaller than 2 % of it.
-
-    Args:
-        field: what tells the body from the ground.
-        level: above which it is body.
-        faint: up to which it is surely ground; at most `level`.
-        name: what errors call the picture.
+    thicker than a line, it is a line drawing: all within the outer line is body. Else parts of the ground inside it,
+    where the field is surely `faint`, are holes, if they are larger than 1 % of it and hold nothing: the white of an
+    eye holds a pupil. Parts outside are specks if they are smaller than 2 % of it.
 
     Raises:
-        OutlineError: nothing there, too small, a second body, or lines that do not close.
+        OutlineError: nothing there, too small, a second body, or lines that do not close; it names the picture.
     """
     mask = field > level
     filled = _filled(mask)

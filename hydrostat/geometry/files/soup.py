@@ -28,15 +28,8 @@ class Soup:
 def check_count(name: str, what: str, count: int, *, room: float, most: int = MOST_TRIANGLES) -> None:
     """Refuse a declared count before anything is made of that size.
 
-    Args:
-        name: of the file.
-        what: is counted.
-        count: as declared.
-        room: for how many of them the file has bytes.
-        most: how many are allowed.
-
-    Raises:
-        SurfaceError: the count is negative, too large, or more than the file can hold.
+    Raises SurfaceError, with the file's name and `what` is counted, where the count is negative, above `most`, or more
+    than the file has `room` for.
     """
     if count < 0 or count > room:
         raise SurfaceError(
@@ -82,10 +75,8 @@ def fans(
 ) -> Int[np.ndarray, "triangles 3"]:
     """Triangles of polygons, each a fan about its first corner; of four corners, about the one that folds nothing.
 
-    Args:
-        corners: vertex indices of all polygons, one after the other.
-        counts: corners of each polygon; those with fewer than three are left out.
-        vertices: what the indices count; indices out of range are let through, for others to refuse.
+    Corners are vertex indices of all polygons, one after the other; counts below three are left out. Indices out of
+    range are let through, for others to refuse.
     """
     starts = np.cumsum(counts) - counts
     fours = np.flatnonzero(counts == 4)

@@ -35,11 +35,8 @@ _STRANGERS = {
 def read_surface(content: bytes, *, name: str, unit: float = 1e-3, size: float | None = None) -> Surface:
     """The surface in a file, as it is: with all its faults, which `heal` mends.
 
-    Args:
-        content: bytes of the file.
-        name: of the file; its ending tells the format.
-        unit: metres of one coordinate where the file has no unit (all but 3MF).
-        size: longest side of the bounding box [m] to scale to, instead of any unit.
+    The ending of its name tells the format. A coordinate counts `unit` metres where the file has no unit (all but 3MF);
+    `size`, the longest side of the bounding box [m], overrules any unit.
 
     Raises:
         SurfaceError: another ending, another content than the ending says, empty, too large, damaged, cut short,

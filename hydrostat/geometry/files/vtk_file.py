@@ -53,17 +53,10 @@ def read_vtk(content: bytes, name: str) -> Cells:
 
 
 def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types: np.ndarray, name: str) -> Cells:
-    """The simplices among cells.
+    """The simplices among cells, each of one of VTK's types; InputError, with the file's name, where these do not fit.
 
-    Args:
-        points: places, (points, 3).
-        starts: where the corners of each cell begin among all corners, and where the last ends.
-        corners: indices of points, of all cells one after the other.
-        types: VTK's number of the kind of each cell.
-        name: of the file.
-
-    Raises:
-        InputError: these do not fit each other.
+    Corners are indices of points, of all cells one after the other; `starts` tells where those of each cell begin, and
+    where the last ends.
     """
     counts = np.diff(starts)
     if (

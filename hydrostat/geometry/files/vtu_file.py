@@ -202,13 +202,10 @@ class _Reader:
 
 
 def write_vtu(mesh: Mesh, nodes: Nodes, point_data: Mapping[str, np.ndarray]) -> bytes:
-    """Give a mesh with its nodes moved as a VTU file, which ParaView opens; the same bytes for the same mesh.
+    """Give a mesh with its nodes at these places [m] as a VTU file for ParaView; the same bytes for the same mesh.
 
-    Args:
-        mesh: its elements are written.
-        nodes: where its nodes are [m], (nodes, dim).
-        point_data: numbers at the nodes by name, (nodes,) or (nodes, components); to vectors of the plane a third
-            component zero is added, as to the nodes: VTK wants it.
+    Data at the nodes are (nodes,) or (nodes, components); to vectors of the plane a third component zero is added, as
+    to the nodes: VTK wants it.
     """
     count, corners = mesh.elements.shape
     sections: dict[str, Mapping[str, np.ndarray]] = {

@@ -189,14 +189,8 @@ def describe_faults(
 ) -> tuple[str, ...]:
     """Describe what was found in a surface, a line each.
 
-    Args:
-        welded: how its vertices and triangles were joined.
-        surface: the same turned one way, with its holes.
-        holes: of it.
-        flipped: triangles that looked another way than most of their patch.
-        crossing: pairs of triangles that cross.
-        shells: its parts.
-        slivers: how many there are.
+    The surface is turned one way already: `flipped` triangles looked another way than most of their patch; `crossing`
+    are pairs of triangles.
     """
     sides = sides_of(surface.triangles)
     longest = 1e3 * holes.length.max(initial=0.0)

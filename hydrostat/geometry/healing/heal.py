@@ -59,16 +59,13 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     """One closed body of a surface that may have holes, flipped triangles, crossings, overlaps, slivers and specks.
 
     Triangles are kept, and with them sharp edges, as long as that gives a closed body: vertices are merged, repeated
-    triangles left out, patches turned one way, holes closed that are no longer around than 24 times the
-    resolution, specks removed. Only where this is not enough (crossings, overlaps, larger holes, edges with more
-    than two triangles) the body is made anew, as the region whose generalised winding number is above one half
-    (Jacobson et al. 2013, by the fast sum of Barill et al. 2018), on a grid of the resolution; edges and corners are
-    rounded then by up to about half of it. What overlaps is united. Cavities stay if they are closed and clean:
-    all their triangles look one way, inward; a closed part that looks outward inside another is overlap.
-
-    Args:
-        surface: as it was read.
-        resolution: how fine a grid may be needed [m]; a quarter of the element size is a good choice.
+    triangles left out, patches turned one way, holes closed that are no longer around than 24 times the resolution [m],
+    specks removed. Only where this is not enough (crossings, overlaps, larger holes, edges with more than two
+    triangles) the body is made anew, as the region whose generalised winding number is above one half (Jacobson et al.
+    2013, by the fast sum of Barill et al. 2018), on a grid of the resolution; edges and corners are rounded then by up
+    to about half of it. A quarter of the element size is a good choice. What overlaps is united. Cavities stay if they
+    are closed and clean: all their triangles look one way, inward; a closed part that looks outward inside another is
+    overlap.
 
     Raises:
         SurfaceError: it encloses nothing, its holes are too large, it is too thin for the resolution, or it is

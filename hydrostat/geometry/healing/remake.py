@@ -28,15 +28,11 @@ class Remade:
 
 
 def remake(surface: Surface, cavities: Float[np.ndarray, "cavities 2 3"], resolution: float) -> Remade:
-    """The region that triangles wind around by more than one half.
+    """The region that triangles, turned outward as far as is known, wind around by more than one half.
 
-    Args:
-        surface: triangles, turned outward as far as that is known.
-        cavities: boxes of cavities that stay [m]; other pockets of air are filled.
-        resolution: spacing of the grid [m]; coarser where the grid would have too many points.
-
-    Raises:
-        SurfaceError: there is no such region, or it is several bodies.
+    Cavities that stay are given by their boxes [m]; other pockets of air are filled. The resolution is the spacing of
+    the grid [m], coarser where it would have too many points. Raises SurfaceError if there is no such region, or
+    several bodies.
     """
     field = WindingField(surface)
     spacing = _allowed_spacing(surface, resolution)
@@ -138,12 +134,9 @@ class Deviation:
 
 
 def deviation(before: Surface, after: Surface, near: float) -> Deviation:
-    """Measure how far a closed surface is from what it was made of.
+    """Measure how far a closed surface is from what it was made of, with holes and overlaps.
 
-    Args:
-        before: as it was, with holes and overlaps.
-        after: closed.
-        near: what is farther away than this is patched, lost or inside [m].
+    What is farther away than `near` [m] is patched, lost or inside.
     """
     import igl
 

@@ -44,18 +44,12 @@ class Shells:
 def shells_of(
     surface: Surface, flipped: Bool[np.ndarray, " triangles"], crossing: Int[np.ndarray, "pairs 2"], near: float
 ) -> Shells:
-    """Parts of a surface whose patches are each turned one way.
+    """Parts of a surface without repeated vertices, whose patches are each turned one way.
 
     Closed parts that lie in no other are turned outward. A closed part within others has a meaning only by what is on
     its two sides: it is a cavity if it looks inward where the others look outward and none of its triangles was
-    flipped; else it lies within the body, whose overlap is body all the same. Small parts that neither cross nor
-    touch others are specks.
-
-    Args:
-        surface: without repeated vertices.
-        flipped: triangles that looked another way than most of their patch.
-        crossing: pairs of triangles that cross.
-        near: parts nearer to others than this are no specks, if they are open [m].
+    flipped, to look as most of their patch; else it lies within the body, whose overlap is body all the same. Small
+    parts that neither cross nor touch others are specks; open ones must be further from others than `near` [m].
     """
     triangles = surface.triangles
     sides = sides_of(triangles)

@@ -28,15 +28,11 @@ MEAN_EDGE = (6 + 8 * np.sqrt(0.75)) / 14
 
 
 def lattice(box: Float[np.ndarray, "2 3"], cell: float, wanted: Wanted | None = None) -> tuple[Nodes, Elements]:
-    """Nodes [m] and tetrahedra of a lattice that covers a box with a cell to spare, centred on it.
+    """Nodes [m] and tetrahedra of a lattice of cells [m] that covers a box with a cell to spare, centred on it.
 
     Its tetrahedra are all alike, with dihedral angles of 60 and 90 degrees: each edge of a face between two cells makes
-    one with the middles of both (Labelle and Shewchuk 2007).
-
-    Args:
-        box: lowest and highest coordinates [m].
-        cell: side of a cell [m].
-        wanted: tells of the middles of cells [m] which tetrahedra to make: those with a wanted one; None: all.
+    one with the middles of both (Labelle and Shewchuk 2007). Only those with a cell that is `wanted`, by its middle
+    [m], are made.
     """
     cells = np.ceil(np.ptp(box, axis=0) / cell).astype(int) + 3
     low = box.mean(axis=0) - 0.5 * cells * cell

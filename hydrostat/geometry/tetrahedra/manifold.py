@@ -14,10 +14,8 @@ def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:
 
     So what touches at an edge or a node only, such as two fingers, is parted. Where an edge is left between two groups
     about it that are joined elsewhere, the smaller group goes; where two hollows meet at a node, what lies at the
-    smaller. Nodes keep their order.
-
-    Returns:
-        the mesh; and for each other part its places nearest to the rest, and the middles of what went [m].
+    smaller. Nodes keep their order. Returns for each other part, too, its places nearest to the rest, and the middles
+    of what went [m].
     """
     part = _parts(elements)
     mesh, breaks = _parted(nodes, elements[part == _largest(part)]), [_breaks(nodes, elements, part)]

@@ -104,11 +104,8 @@ _CORNER_ANGLE = np.radians(33)
 def divide(outline: Outline, element_size: float) -> Draft:
     """Place nodes on the rings of an outline: corners kept, closer together at bends and at thin places.
 
-    Returns:
-        A draft without points inside, in units of `element_size`.
-
-    Raises:
-        OutlineError: some place is too thin for this element size.
+    Returns a draft without points inside, in units of `element_size`. Raises OutlineError where a place is too thin for
+    it.
     """
     curves = tuple(Curve(ring / element_size) for ring in outline.rings)
     corners = tuple(_corners(curve) for curve in curves)

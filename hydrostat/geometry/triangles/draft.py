@@ -15,15 +15,9 @@ Edges = Int[np.ndarray, "_ 2"]  # pairs of point indices
 
 
 def triangles_inside(points: Points, edges: Edges, polygon: Polygon) -> tuple[Elements, Edges]:
-    """Triangulate the inside of a polygon.
+    """Triangulate the inside of a polygon, given its sides, its corners and any points inside it, about one apart.
 
-    Args:
-        points: corners of the polygon and any points inside it, about one apart.
-        edges: the sides of the polygon.
-        polygon: the same polygon.
-
-    Returns:
-        Positively oriented triangles, and the sides that could not be had (split these).
+    Returns positively oriented triangles, and the sides that could not be had (split these).
     """
     triangles = Delaunay(points).simplices.astype(np.int64)
     for start, end in missing(triangles, edges):

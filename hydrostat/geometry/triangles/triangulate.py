@@ -16,14 +16,10 @@ _FEWEST, _MOST = 8, 200_000
 
 
 def triangulate(outline: Outline, element_size: float) -> Mesh:
-    """Fill an outline with triangles as near to equilateral as it allows.
+    """Fill an outline with triangles as near to equilateral as it allows, with edges of about the element size [m].
 
     Corners stay; elsewhere the sides of the mesh follow the outline to within a fifth of an element. Elements are
     smaller where the body is thin or the outline bends much. The same outline and size give the same mesh.
-
-    Args:
-        outline: the body.
-        element_size: wanted length of the edges [m].
 
     Raises:
         InputError: so large that the body has too few elements, or so small that it has too many.
