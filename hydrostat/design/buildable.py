@@ -14,10 +14,11 @@ from hydrostat.robot import Robot
 
 
 def violations(robot: Robot, constraints: Constraints, region: Region) -> list[str]:
-    """What about a network cannot be built: a sentence for each place where a constraint is broken.
+    """What about a network cannot be built: a sentence with part, value and limit for each broken constraint.
 
     Lengths may miss a limit by 0.02 mm and angles by 0.1 degrees, for coordinates are rounded to 0.01 mm. What is
-    locked is not looked at, but what is new must keep its distances from it.
+    locked is not looked at, but what is new must keep its distances from it. The region is `body_region(robot.body,
+    constraints.clearance)`.
 
     - Points of cables keep the clearance from the edge or surface, straight segments half of it. Where a cable enters
       from the world, or begins at a winch that is locked, neither that point nor a clearance's way on from it counts.
@@ -27,14 +28,6 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
       radii from holes of cables that others pull.
     - The bend at a point is the arc that touches both segments half-way along the shorter.
     - Whether a winch in the world stands where one may is not looked at.
-
-    Args:
-        robot: with the network.
-        constraints: that it should keep.
-        region: of its body, `body_region(robot.body, constraints.clearance)`.
-
-    Returns:
-        Sentences that name the part, its value and the limit; none for a network that can be built.
     """
     parts = Parts(robot, constraints, region)
     return [

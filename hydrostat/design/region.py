@@ -172,8 +172,7 @@ def space_region(body: Body, clearance: float) -> SpaceRegion | None:
 def body_region(body: Body, clearance: float) -> Region:
     """The region of a body, as it was drawn or scanned; of its mesh where there is no such thing.
 
-    Raises:
-        InputError: the body is too thin for the clearance everywhere.
+    Raises InputError: the body is too thin for the clearance everywhere.
     """
     region = (flat_region if body.mesh.dim == 2 else space_region)(body, clearance)
     if region is None:

@@ -22,11 +22,7 @@ MUCH_PLASTIC = 5e3  # more plastic for a mould than that is a warning [g]: five 
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
-    """Make the mould of a body, with room for the winches that sit in it.
-
-    Raises:
-        InputError: the body is not closed.
-    """
+    """Make the mould of a body, with room for the winches that sit in it. Raises InputError: the body is not closed."""
     pockets = {
         unit.winch: WinchRoom(low=unit.room.low, high=unit.room.high) for unit in units if unit.mount is Mount.BODY
     }

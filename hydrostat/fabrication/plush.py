@@ -19,8 +19,7 @@ from hydrostat.units import counted
 def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
     """Make the pattern of a body: of a flat one front and back, of one in space its skin in patches.
 
-    Raises:
-        InputError: the body is in several pieces, or its skin cannot be cut into patches.
+    Raises InputError: the body is in several pieces, or its skin cannot be cut into patches.
     """
     drawn = replace(options.pattern, force=True)
     if robot.body.mesh.dim == 2:

@@ -40,9 +40,8 @@ LONGEST_NAME = 60  # a name has at most this many characters
 def check_name(name: str) -> str:
     """The name itself.
 
-    Raises:
-        InputError: it is empty, too long, has another character than letters (of any language), digits, space and
-            . _ -, or begins with none of the first two.
+    Raises InputError: it is empty, too long, has another character than letters (of any language), digits, space and .
+    _ -, or begins with none of the first two.
     """
     if not name:
         raise InputError("a name must not be empty")

@@ -152,11 +152,7 @@ class RobotReader(TablesFile):
 
 
 def read_material(entry: Any) -> Material:
-    """A material by its name, or by its numbers.
-
-    Raises:
-        InputError: an unknown name, or a number out of its range.
-    """
+    """A material by its name, or by its numbers. Raises InputError: an unknown name, or a number out of its range."""
     if isinstance(entry, str):
         return find_material(entry)
     viscous = _given(entry, "viscosity")

@@ -23,7 +23,7 @@ class TomlBlock:
 
 
 def split_blocks(text: str) -> tuple[list[TomlBlock], str]:
-    """The blocks of a TOML file that tomllib can read, in order, and what is after the last; together all of the text."""
+    """The blocks of a TOML file that tomllib can read, in order, and what is after the last; together all the text."""
     starts = [(0, "", True), *_headers(text)]
     blocks: list[TomlBlock] = []
     free = lead = ""

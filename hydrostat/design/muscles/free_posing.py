@@ -67,12 +67,7 @@ class FreePosing:
         self._settle(self._resting, np.zeros(len(self.fibres)))
 
     def update(self, held: Anchors, goals: Points) -> bool:
-        """One step towards where points of the body should be; whether there is more to gain.
-
-        Args:
-            held: the points; without any the body goes back to rest.
-            goals: where they should go [m].
-        """
+        """One step towards where held points should be [m], back to rest without any; whether there is more to gain."""
         wanted, rho = self._wanted(held, goals)
         change = wanted - self.tensions
         farthest = self._farthest(change)

@@ -133,15 +133,9 @@ class _Refinement:
 def linear_model(
     bench: Bench, region: Region, trial: Trial, *, effort: float, reach: float, bend: float = 0.0
 ) -> Model:
-    """A trial to first order, with all limits that lie within `reach` [m].
+    """A trial at its equilibria to first order, with all limits that lie within `reach` [m], the most that things move.
 
-    Args:
-        bench: of the poses.
-        region: where cables may be.
-        trial: at its equilibria.
-        effort: what a tension counts [m/N].
-        reach: how far anything will move [m].
-        bend: what a turn of 1 rad counts [m].
+    Effort is what a tension counts [m/N], bend what a turn of 1 rad counts [m].
     """
     layout, limit = trial.layout, bench.constraints.tension_limit
     winches, free = len(layout.sites), layout.ties.shape[1]

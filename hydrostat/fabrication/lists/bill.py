@@ -38,8 +38,7 @@ def cost_of(items: Iterable[Item], group: str | None = None) -> float:
 def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table:
     """The bill, with a total after each group and at the end.
 
-    Raises:
-        InputError: a price that is not in USD: currencies cannot be added.
+    Raises InputError: a price that is not in USD: currencies cannot be added.
     """
     for item in items:
         if item.price.currency != "USD":

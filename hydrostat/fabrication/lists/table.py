@@ -99,11 +99,7 @@ class Table:
         )
 
     def column(self, title: str) -> tuple[Cell, ...]:
-        """All cells under a title.
-
-        Raises:
-            InputError: there is no such column.
-        """
+        """All cells under a title. Raises InputError: there is no such column."""
         titles = [column.title for column in self.columns]
         if title not in titles:
             raise InputError(f'{self.name} has no column "{title}"; its columns are: {", ".join(titles)}')

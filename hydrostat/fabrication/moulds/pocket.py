@@ -70,10 +70,8 @@ def make_pockets(
 
     The shaft is at the winch's place, whichever way the winch is laid. Pockets that meet become one room. `rooms` are
     what winches take up, or three sides [mm] if the shaft is in the middle; those that are missing get no pocket. The
-    clearance [mm] is between a winch and the foam, on each side.
-
-    Raises:
-        InputError: a size for a winch that is not there, or that is not above 0.
+    clearance [mm] is between a winch and the foam, on each side. Raises InputError: a size for a winch that is not
+    there, or that is not above 0.
     """
     boxes = {
         name: room if isinstance(room, WinchRoom) else WinchRoom.about_the_middle(room) for name, room in rooms.items()

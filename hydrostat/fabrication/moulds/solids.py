@@ -18,10 +18,7 @@ def body_solid(body: Body) -> Manifold:
     """Make the solid that is to be cast [mm], in the coordinates of the robot.
 
     In space it is the healed surface, or the boundary of a ready mesh; a flat body is its outline, raised by its
-    thickness half to either side of z = 0, with sharp edges.
-
-    Raises:
-        InputError: the surface encloses no body.
+    thickness half to either side of z = 0, with sharp edges. Raises InputError: the surface encloses no body.
     """
     if body.mesh.dim == 2:
         return _raised(body)

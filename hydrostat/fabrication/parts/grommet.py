@@ -24,10 +24,8 @@ def grommet(options: PartOptions, hole: float) -> Printed:
     """An eyelet for a pinhole of a diameter [mm], sewn on the side where the cable bends away along the cloth.
 
     The sleeve goes into the hole, the flange lies on the felt and is sewn on through four holes, as a button is: felt
-    is too soft for anything that is only pressed on. The cable runs over the rounded mouth of the flange.
-
-    Raises:
-        InputError: the hole is too small for a sleeve of one line of plastic round the cable.
+    is too soft for anything that is only pressed on. The cable runs over the rounded mouth of the flange. Raises
+    InputError: the hole is too small for a sleeve of one line of plastic round the cable.
     """
     least = options.cable + _PLAY + 2 * _LINE + 2 * options.fit
     if not (math.isfinite(hole) and hole >= least - 1e-9):

@@ -91,10 +91,8 @@ def rigid_parts(
     """The rigid parts of a robot.
 
     The motor is a key of the table, or "auto"; the bed is the largest piece that the printer takes, along x, y and z
-    [mm]; so many pinholes of the diameter `hole` [mm] get a grommet.
-
-    Raises:
-        InputError: there is no such motor, or a pinhole is too small for a grommet.
+    [mm]; so many pinholes of the diameter `hole` [mm] get a grommet. Raises InputError: there is no such motor, or a
+    pinhole is too small for a grommet.
     """
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
     chosen = choose_motor(motor, demand.torques, inside=inside)

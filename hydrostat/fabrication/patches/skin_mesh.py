@@ -93,8 +93,7 @@ def _divided(corners: list[int], middles: list[int], vertices: Float[np.ndarray,
 def skin_mesh(body: Body) -> SkinMesh:
     """The skin of a body in space as one patch, its triangles no longer than seams need to be smooth.
 
-    Raises:
-        InputError: the body is flat, in several pieces or hollow, or a hole goes through it.
+    Raises InputError: the body is flat, in several pieces or hollow, or a hole goes through it.
     """
     if body.mesh.dim != 3:
         raise InputError("a flat body has a flat pattern of its own")

@@ -46,9 +46,8 @@ class SpacePattern(Pattern):
 def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
     """The skin of a body in space in patches, to be sewn, turned and stuffed; all show the right side of the cloth.
 
-    Raises:
-        InputError: the body is flat, hollow, in several pieces or has a hole through it, or it cannot be sewn as it is
-            (unless `force`).
+    Raises InputError: the body is flat, hollow, in several pieces or has a hole through it, or it cannot be sewn as it
+    is (unless `force`).
     """
     mesh = skin_mesh(robot.body)
     view = front_view(thin_direction(mesh))

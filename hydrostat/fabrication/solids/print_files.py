@@ -99,7 +99,7 @@ _RELATIONS = (
 
 
 def three_mf_plates(parts: tuple[Printed, ...], title: str, *, bed: tuple[float, float]) -> tuple[bytes, ...]:
-    """Parts as 3MF in millimetres, a file for each bed, each part as often as it is needed; ValueError without parts."""
+    """Parts as 3MF in millimetres, a file for each bed, each part as often as it is needed; ValueError for no parts."""
     if not parts:
         raise ValueError("a 3MF needs a part")
     plates = lay_plates(parts, bed)

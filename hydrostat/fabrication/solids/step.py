@@ -28,8 +28,7 @@ _NO_DATE = "1970-01-01T00:00:00"
 def step_bytes(printed: Printed) -> bytes:
     """A part as STEP (ISO 10303-21) in millimetres, made from its `model`. One copy; its header has no date.
 
-    Raises:
-        InputError: build123d is not installed, or the part has no model.
+    Raises InputError: build123d is not installed, or the part has no model.
     """
     if printed.model is None:
         raise InputError(f"{printed.name}: has no STEP: it is no sum of simple shapes; use its STL or 3MF")
@@ -45,11 +44,7 @@ def step_bytes(printed: Printed) -> bytes:
 
 @singledispatch
 def model_of(construction: Construction) -> Any:
-    """The build123d shape of a construction [mm].
-
-    Raises:
-        InputError: build123d is not installed.
-    """
+    """The build123d shape of a construction [mm]. Raises InputError: build123d is not installed."""
     raise TypeError(f"no model is known for {type(construction).__name__}")
 
 
@@ -113,11 +108,7 @@ def _(shape: Turned) -> Any:
 
 
 def require_cad() -> None:
-    """Make sure, before long work begins, that STEP can be written.
-
-    Raises:
-        InputError: build123d is not installed.
-    """
+    """Make sure, before long work begins, that STEP can be written. Raises InputError: build123d is not installed."""
     if find_spec("build123d") is None:
         raise InputError('STEP needs build123d, which is not installed: pip install "hydrostat[cad]"')
 

@@ -50,10 +50,8 @@ def read_dxf(content: bytes, name: str, size: float | None, page: Page | None) -
     The largest closed line is the body, those inside it are holes. Polylines, circles, ellipses, splines, lines and
     arcs are read, also in blocks; lines and arcs whose ends meet are joined. All else (text, dimensions, hatches), what
     is hidden, and open lines smaller than the body are ignored. Heights (z) play no part. Curves become chords. Without
-    `size` or `page` the file must name its unit ($INSUNITS); see `read_outline`.
-
-    Raises:
-        OutlineError: the file is no DXF, or no body can be made of it; the message says where, in the drawing's units.
+    `size` or `page` the file must name its unit ($INSUNITS); see `read_outline`. Raises OutlineError: the file is no
+    DXF, or no body can be made of it; the message says where, in the drawing's units.
     """
     document, mended = _open(content, name)
     unit = _unit(document)

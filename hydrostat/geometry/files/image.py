@@ -32,10 +32,8 @@ def read_image(content: bytes, name: str, size: float | None, page: Page | None)
     is filled to the outer side of its outer line, and what is drawn inside plays no part. Elsewhere ground within the
     body is a hole if it is larger than 1 % of the body and nothing lies in it. A soft shadow is left out where the body
     is much stronger. The outline strays from the picture by about half a pixel, of at most 1600 along the longer side.
-    A picture has no size of its own: `size` or `page` is needed; see `read_outline`.
-
-    Raises:
-        OutlineError: no picture, too large, without size, or no single body on plain ground; the message says where.
+    A picture has no size of its own: `size` or `page` is needed; see `read_outline`. Raises OutlineError: no picture,
+    too large, without size, or no single body on plain ground; the message says where.
     """
     if size is None and page is None:
         raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')

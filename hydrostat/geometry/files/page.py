@@ -25,10 +25,8 @@ class Page:
 
         An SVG drawing says its unit and its page, a DXF drawing its unit only, a picture its pixels only. So a DXF
         drawing that was moved as a whole, by a program that counts from a corner of the page, is not noticed; nor is a
-        picture that was cut to the same number of pixels elsewhere.
-
-        Raises:
-            OutlineError: it is of another kind, so the same numbers mean other places.
+        picture that was cut to the same number of pixels elsewhere. Raises OutlineError: it is of another kind, so the
+        same numbers mean other places.
         """
         if kind != self.kind:
             raise OutlineError(

@@ -26,9 +26,7 @@ def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ri
     """The rings among a drawing's lines, in its units, and a note on the open lines that were left out.
 
     Each line is said to close itself or not; ends that all but meet are closed. Errors call the file by its name.
-
-    Raises:
-        OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
+    Raises OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
     """
     rings, open_lines = [], []
     for line, closed in checked_lines(lines, name):

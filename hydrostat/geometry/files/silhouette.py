@@ -148,10 +148,8 @@ def silhouette(field: Field, level: float, faint: float, name: str) -> Silhouett
     Of all that stands out, the part that covers most with its holes filled is the body. Where hardly anything in it is
     thicker than a line, it is a line drawing: all within the outer line is body. Else parts of the ground inside it,
     where the field is surely `faint`, are holes, if they are larger than 1 % of it and hold nothing: the white of an
-    eye holds a pupil. Parts outside are specks if they are smaller than 2 % of it.
-
-    Raises:
-        OutlineError: nothing there, too small, a second body, or lines that do not close; it names the picture.
+    eye holds a pupil. Parts outside are specks if they are smaller than 2 % of it. Raises OutlineError: nothing there,
+    too small, a second body, or lines that do not close; it names the picture.
     """
     mask = field > level
     filled = _filled(mask)

@@ -43,11 +43,7 @@ def check_count(name: str, what: str, count: int, *, room: float, most: int = MO
 
 
 def check_text(content: bytes, name: str) -> None:
-    """Refuse text that would take long.
-
-    Raises:
-        SurfaceError: it has too many bytes.
-    """
+    """Refuse text that would take long. Raises SurfaceError: it has too many bytes."""
     if len(content) > MOST_TEXT_BYTES:
         raise SurfaceError(
             f"{name}: has {len(content) / 1e6:.0f} MB of text, at most {MOST_TEXT_BYTES / 1e6:.0f} MB are read: "
@@ -58,8 +54,7 @@ def check_text(content: bytes, name: str) -> None:
 def text_lines(content: bytes, name: str) -> Iterator[tuple[int, bytes]]:
     """Lines of a text file with their numbers, one after the other, so that no list of all is ever made.
 
-    Raises:
-        SurfaceError: a line is too long for text, as in a file that is none.
+    Raises SurfaceError: a line is too long for text, as in a file that is none.
     """
     check_text(content, name)
     if b"\r" in content:

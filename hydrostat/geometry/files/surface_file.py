@@ -36,11 +36,9 @@ def read_surface(content: bytes, *, name: str, unit: float = 1e-3, size: float |
     """The surface in a file, as it is: with all its faults, which `heal` mends.
 
     The ending of its name tells the format. A coordinate counts `unit` metres where the file has no unit (all but 3MF);
-    `size`, the longest side of the bounding box [m], overrules any unit.
-
-    Raises:
-        SurfaceError: another ending, another content than the ending says, empty, too large, damaged, cut short,
-            without triangles, with coordinates that are no numbers, or without a size.
+    `size`, the longest side of the bounding box [m], overrules any unit. Raises SurfaceError: another ending, another
+    content than the ending says, empty, too large, damaged, cut short, without triangles, with coordinates that are no
+    numbers, or without a size.
     """
     suffix = PurePath(name).suffix.lower()
     if suffix not in _READERS:

@@ -51,8 +51,7 @@ class _SvgDocument:
 def _open(content: bytes, name: str) -> _SvgDocument:
     """Check the bytes of a drawing, which nobody vouches for, and find the length of its unit.
 
-    Raises:
-        OutlineError: no XML, no SVG, with entities, or with `use` elements without end.
+    Raises OutlineError: no XML, no SVG, with entities, or with `use` elements without end.
     """
     _guard(content, name)
     root = ElementTree.fromstring(content)
@@ -181,10 +180,8 @@ def read_svg(content: bytes, name: str, size: float | None, page: Page | None) -
 
     The largest closed shape is the body, the shapes inside it are holes; whether they are filled plays no part. Text,
     pictures, what is hidden and open lines smaller than the body are ignored. Curves become chords. Without `size` or
-    `page` the file must have a size in mm, cm, in, ...; see `read_outline`.
-
-    Raises:
-        OutlineError: the file is no SVG, or no body can be made of it; the message says where, in the drawing's units.
+    `page` the file must have a size in mm, cm, in, ...; see `read_outline`. Raises OutlineError: the file is no SVG, or
+    no body can be made of it; the message says where, in the drawing's units.
     """
     document = _open(content, name)
     across, down = document.unit or (1.0, 1.0)

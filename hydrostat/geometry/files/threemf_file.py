@@ -46,9 +46,8 @@ class _Model:
 def read_3mf(content: bytes, name: str) -> Soup:
     """All objects that a 3MF file builds, each where it is built, as one.
 
-    Raises:
-        SurfaceError: no archive, or not a 3MF one; too large when unpacked; broken XML, or XML with entities;
-            objects that hold themselves, are not there, or repeat too often.
+    Raises SurfaceError: no archive, or not a 3MF one; too large when unpacked; broken XML, or XML with entities;
+    objects that hold themselves, are not there, or repeat too often.
     """
     if content.count(b"PK\x01\x02") > _MOST_MEMBERS:  # before anything lists them
         raise SurfaceError(f"{name}: holds more than {_MOST_MEMBERS} files: save the model alone")

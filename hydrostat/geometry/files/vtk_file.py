@@ -20,8 +20,7 @@ _KINDS = {
 def read_vtk(content: bytes, name: str) -> Cells:
     """Read points, tetrahedra and triangles of a legacy VTK file; all data on them is passed over.
 
-    Raises:
-        InputError: it is no unstructured grid, or damaged.
+    Raises InputError: it is no unstructured grid, or damaged.
     """
     cursor = Cursor(content, name)
     _head(cursor)

@@ -65,11 +65,8 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     2013, by the fast sum of Barill et al. 2018), on a grid of the resolution; edges and corners are rounded then by up
     to about half of it. A quarter of the element size is a good choice. What overlaps is united. Cavities stay if they
     are closed and clean: all their triangles look one way, inward; a closed part that looks outward inside another is
-    overlap.
-
-    Raises:
-        SurfaceError: it encloses nothing, its holes are too large, it is too thin for the resolution, or it is
-            several bodies apart from each other.
+    overlap. Raises SurfaceError: it encloses nothing, its holes are too large, it is too thin for the resolution, or it
+    is several bodies apart from each other.
     """
     if not (np.isfinite(resolution) and resolution > 0.0):
         raise SurfaceError(f"the resolution to heal with is {resolution!r} m, but has to be above 0")

@@ -83,8 +83,7 @@ class Welded:
 def weld(surface: Surface) -> Welded:
     """Merge vertices in the same place; leave out triangles without a side, repeated ones, and walls inside.
 
-    Raises:
-        SurfaceError: no triangle is left.
+    Raises SurfaceError: no triangle is left.
     """
     used = np.unique(surface.triangles)
     place = _first_in_place(surface, used)

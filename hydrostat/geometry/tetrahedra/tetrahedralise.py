@@ -64,15 +64,11 @@ _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 
 
 def tetrahedralise(surface: Surface, element_size: float) -> Mesh:
-    """Fill a closed surface with tetrahedra.
+    """Fill a closed surface, oriented outward, with tetrahedra whose edges have about the element size [m] in the mean.
 
     A lattice is cut along the surface (`stuffing.py`), then its nodes move until the elements are well shaped and their
     outer faces lie on the surface (`improve.py`). Where that fails, as the body or a gap is thinner than the elements,
     they are made smaller. The same surface and size give the same mesh.
-
-    Args:
-        surface: closed, oriented outward.
-        element_size: wanted mean length of the edges [m].
 
     Raises:
         InputError: so large that the body has too few elements, or so small that it has too many.
