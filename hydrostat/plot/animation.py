@@ -168,7 +168,7 @@ def _even(picture: Picture) -> Picture:
 
 
 def _piped(command: list[str], first: Picture, rest: Iterator[Picture]) -> str | None:
-    """DrawnCable ffmpeg on pictures; its last words where it failed."""
+    """Run ffmpeg on pictures; its last words where it failed."""
     from tempfile import TemporaryFile
 
     with TemporaryFile() as log:

@@ -91,25 +91,14 @@ async def may_leave(page: WindowPage) -> bool:
 async def ask(
     page: WindowPage, title: str, words: str, no: str, yes: str, *, name: str, negative: bool = False
 ) -> bool:
-    """Ask a person of this window for a yes or no; a click beside it means no.
-
-    Args:
-        page: of the window.
-        title: what it is about.
-        words: what would come of it.
-        no: on the button that leaves all as it is.
-        yes: on the button that goes on.
-        name: of the question, for tests.
-        negative: whether something is lost by it.
-    """
+    """Ask a person of this window for a yes or no; a click beside it means no. Negative: something is lost by a yes."""
+    look = "unelevated color=negative" if negative else "unelevated"
     with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
         ui.label(title).classes("studio-title")
         ui.label(words).classes("studio-hint")
         with ui.row().classes("w-full justify-end"):
-            back = ui.button(no, on_click=lambda: dialog.submit(False))
-            back.props(f'flat no-caps data-testid="{name}-no"')
-            go = ui.button(yes, on_click=lambda: dialog.submit(True))
-            go.props(f'unelevated no-caps data-testid="{name}-yes"' + (" color=negative" if negative else ""))
+            ui.button(no, on_click=lambda: dialog.submit(False)).props(f'flat no-caps data-testid="{name}-no"')
+            ui.button(yes, on_click=lambda: dialog.submit(True)).props(f'{look} no-caps data-testid="{name}-yes"')
     answer = bool(await dialog)
     dialog.delete()
     return answer

@@ -113,7 +113,7 @@ class OutlineEditor(ui.element, component="static/outline_editor.js"):
         self._props["handle"] = HANDLE
         self._props["start"] = send_loops(loops)
         self._props["fault"] = False
-        self.on("change", lambda event: on_change(_argument(event)))
+        self.on("change", lambda event: on_change(event.args))  # pyright: ignore[reportAttributeAccessIssue]
 
     def show(self, loops: Sequence[Loop]) -> None:
         """Put other loops in place of these; it can be undone."""
@@ -152,7 +152,3 @@ class OutlineEditor(ui.element, component="static/outline_editor.js"):
     def set_snap(self, on: bool) -> None:
         """Keep corners on the grid, or set them free."""
         self.run_method("setSnap", on)
-
-
-def _argument(event: events.GenericEventArguments) -> Any:
-    return event.args

@@ -46,15 +46,10 @@ class Guard:
         token: str | None = None,
         largest: int = LARGEST,
     ) -> None:
-        """Guard an app.
+        """Guard an app at a port, by names of this machine in its address; no request has more bytes than `largest`.
 
-        Args:
-            app: that is guarded.
-            port: that it is reached at.
-            names: of this machine, as in the address of the page.
-            token: that requests must bring; None: none. With one, any numeric address will do as a name: only what
-                has letters can be made to mean another machine.
-            largest: no request has more bytes.
+        With a token, which requests must bring then, any numeric address will do as a name: only what has letters can
+        be made to mean another machine.
         """
         self._app, self._token, self._port, self._largest = app, token, port, largest
         self._cookie = f"{COOKIE}_{port}"
@@ -179,8 +174,7 @@ def _dressed(send: Send) -> Send:
     async def dressed(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(raw=list(message.get("headers", [])))
-            for name, value in SAFE_HEADERS.items():
-                headers[name] = value
+            headers.update(SAFE_HEADERS)
             message = {**message, "headers": headers.raw}
         await send(message)
 

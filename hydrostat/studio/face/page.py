@@ -114,6 +114,14 @@ class WindowPage:
         self._leave()
 
 
+def pressable(kind: str, action: Callable[[], Any], *, role: str = "button") -> ui.element:
+    """A field of a kind (CSS classes) that a click or Enter presses."""
+    field = ui.element("div").classes(kind).props(f'role="{role}" tabindex="0"')
+    for event in ("click", "keydown.enter"):
+        field.on(event, action)
+    return field
+
+
 def icon_button(
     icon: str, words: str, action: Callable[[], Any] | None, *, small: bool = True, colour: str | None = None
 ) -> ui.button:

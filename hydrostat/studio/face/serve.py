@@ -59,14 +59,9 @@ def serve(
     show: bool = True,
     announce: Callable[[str], None] = print,
 ) -> None:
-    """Serve a session until Ctrl-C.
+    """Serve a session until Ctrl-C; port 0 is a free one, `announce` is told the address, `show` opens the browser.
 
-    Args:
-        session: to serve.
-        host: address to listen at; at any other than this machine's own a token is asked for.
-        port: to listen at; 0: a free one.
-        show: open the browser.
-        announce: told the address.
+    At another address than this machine's own a token is asked for.
 
     Raises:
         InputError: the address cannot be listened at.
@@ -95,9 +90,8 @@ def _listener(host: str, port: int) -> socket.socket:
         listener.bind((host, port))
         listener.listen()  # who follows the printed address at once must wait, not be refused
     except OSError as error:
-        raise InputError(
-            f"--host {host} --port {port}: cannot be listened at ({error.strerror}); try another"
-        ) from None
+        words = f"--host {host} --port {port}: cannot be listened at ({error.strerror}); try another"
+        raise InputError(words) from None
     return listener
 
 

@@ -9,7 +9,7 @@ from nicegui import ui
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.painter import COLOURS, WORDS
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 SHORT = {Paint.KEEP_OUT: "No cable here", Paint.WINCH_ZONES: "Winches only here", Paint.STILL: "Keep this still"}
@@ -26,11 +26,8 @@ def design_paint(page: WindowPage) -> None:
     buttons: dict[Paint, ui.element] = {}
     with ui.element("div").classes("studio-row").style("gap: 6px; align-items: stretch"):
         for paint, words in SHORT.items():
-            button = ui.element("div").classes("design-paint").style(f"--tint: {COLOURS[paint]}")
-            button.props(f'role="button" tabindex="0" data-testid="paint-{paint}"')
-            for event in ("click", "keydown.enter"):
-                button.on(event, partial(_take, page, paint))
-            with button:
+            button = pressable("design-paint", partial(_take, page, paint)).style(f"--tint: {COLOURS[paint]}")
+            with button.props(f'data-testid="paint-{paint}"'):
                 ui.element("span").classes("design-spot")
                 ui.label(words)
             buttons[paint] = button
@@ -172,10 +169,7 @@ def _own(page: WindowPage, shows: list[Show]) -> None:
         more.set_visibility(bool(robot.winches or robot.cables))
         options = {f"winch {winch.name}": f"winch {winch.name}" for winch in robot.winches}
         options |= {f"cable {cable.name}": f"cable {cable.name}" for cable in robot.cables}
-        kept = [
-            *(f"winch {name}" for name in wishes.kept_winches),
-            *(f"cable {name}" for name in wishes.kept_cables),
-        ]
+        kept = [f"winch {name}" for name in wishes.kept_winches] + [f"cable {name}" for name in wishes.kept_cables]
         shown[:] = [name for name in kept if name in options]
         if keep.options != options:
             keep.set_options(options, value=list(shown))

@@ -8,7 +8,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
 from hydrostat.studio.designing.design_work import Candidate, told_error
 from hydrostat.studio.designing.run import wished_poses
-from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
@@ -47,11 +47,9 @@ def _poses(page: WindowPage) -> None:
         ui.label("Poses to reach").classes("studio-section").style("margin-top: 0")
         with ui.element("div").classes("row").style("gap: 6px"):
             for name in names:
-                chip = ui.element("div").classes("design-pose" + (" design-pose-on" if name in on else ""))
-                chip.props(f'role="checkbox" tabindex="0" aria-checked="{str(name in on).lower()}"')
-                for event in ("click", "keydown.enter"):
-                    chip.on(event, page.doing(designer.wish_pose, name, name not in on))
-                with chip:
+                kind = "design-pose" + (" design-pose-on" if name in on else "")
+                chip = pressable(kind, page.doing(designer.wish_pose, name, name not in on), role="checkbox")
+                with chip.props(f'aria-checked="{str(name in on).lower()}"'):
                     ui.label(name)
 
     page.on_new(Topic.ROBOT, state, room, build)
@@ -207,16 +205,9 @@ def _head(page: WindowPage, own: tuple[int, ...]) -> None:
 
 def _pose_chip(page: WindowPage, chosen: Candidate, pose: str | None, words: str) -> None:
     designer = page.session.designer
-    now = designer.pose == pose
-    chip = (
-        ui.element("div")
-        .classes("design-pose" + (" design-pose-on" if now else ""))
-        .props('role="button" tabindex="0"')
-    )
-    chip.props(f'data-testid="design-show-{"rest" if pose is None else "pose"}"')
-    for event in ("click", "keydown.enter"):
-        chip.on(event, page.doing(designer.show, chosen.number, pose))
-    with chip:
+    kind = "design-pose" + (" design-pose-on" if designer.pose == pose else "")
+    chip = pressable(kind, page.doing(designer.show, chosen.number, pose))
+    with chip.props(f'data-testid="design-show-{"rest" if pose is None else "pose"}"'):
         ui.label(words)
 
 
@@ -225,12 +216,10 @@ def _cards(page: WindowPage, candidates: tuple[Candidate, ...], own: tuple[int, 
     with ui.element("div").classes("design-cards"):
         for one in candidates:
             now = one.number == designer.chosen
-            card = ui.element("div").classes("design-card" + (" design-card-on" if now else ""))
-            card.props('role="button" tabindex="0" data-testid="design-card"')
             pose = designer.pose if now or designer.pose in {reach.pose.name for reach in one.reaches} else None
-            for event in ("click", "keydown.enter"):
-                card.on(event, page.doing(designer.show, one.number, pose))
-            with card:
+            show = page.doing(designer.show, one.number, pose)
+            card = pressable("design-card" + (" design-card-on" if now else ""), show)
+            with card.props('data-testid="design-card"'):
                 ui.html(designer.sketch(one), sanitize=False).classes("w-full")
                 ui.html(_words(one, own), sanitize=False)
 

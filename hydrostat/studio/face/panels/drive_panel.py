@@ -3,7 +3,7 @@
 from nicegui import events, ui
 
 from hydrostat.drawing.palette import ERROR, winch_colours
-from hydrostat.robot import Robot, Winch
+from hydrostat.robot import Winch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import Knob
 from hydrostat.studio.face.messages import sent_number
@@ -34,32 +34,23 @@ def drive_panel(page: WindowPage) -> None:
     notes = ui.label().classes("studio-hint").style(f"color: {ERROR}; white-space: pre-line").mark("drive-notes")
     box = ui.column().classes("w-full").style("gap: 8px")
     cards: list[_Card] = []
-    shown: list[Robot] = []
 
-    def show_robot() -> None:
-        robot = session.document.robot
-        if shown and shown[0].winches == robot.winches:
-            return
-        shown[:] = [robot]
-        box.clear()
-        colours = winch_colours(robot.winches)
-        with box:
-            size = 68 if len(robot.winches) <= MANY else 50
-            cards[:] = [_Card(page, winch, colours[winch.name], size) for winch in robot.winches]
-        show_drive()
+    def build() -> None:
+        winches = session.document.robot.winches
+        colours, size = winch_colours(winches), 68 if len(winches) <= MANY else 50
+        cards[:] = [_Card(page, winch, colours[winch.name], size) for winch in winches]
 
-    def show_drive() -> None:
+    def show() -> None:
         commands, places, tensions = driver.commands(), driver.places(), driver.tensions()
         for card in cards:
             if card.name in commands:
                 card.show(commands[card.name], places[card.name], tensions[card.name], driver.strongest)
         words = "\n".join(driver.shape().notes)
-        if words != notes.text:
-            notes.set_text(words)
+        notes.set_text(words)
         notes.set_visibility(bool(words))
 
-    page.on(Topic.ROBOT, show_robot)
-    page.on(Topic.DRIVE, show_drive)
+    page.on_new(Topic.ROBOT, lambda: session.document.robot.winches, box, build)
+    page.on((Topic.ROBOT, Topic.DRIVE), show)
     _motors(page)
     with page.bottom:
         drive_strip(page)
@@ -72,15 +63,11 @@ class _Card:
         self.name = winch.name
         self._page, self._typing = page, False
         driver, least, most = page.session.driver, -1e3 * winch.release, 1e3 * winch.travel
-        with (
-            ui.element("div")
-            .classes("studio-card")
-            .style(f"display: flex; align-items: center; gap: 12px; padding: {size // 8}px 12px")
-        ):
+        card = ui.element("div").classes("studio-card")
+        with card.style(f"display: flex; align-items: center; gap: 12px; padding: {size // 8}px 12px"):
             self._knob = Knob(least=least, most=most, step=STEP, colour=colour, label=winch.name)
-            self._knob.style(f"width: {size}px; height: {size}px; flex: none; margin: -3px 0 -5px -4px").mark(
-                f"knob-{winch.name}"
-            )
+            self._knob.style(f"width: {size}px; height: {size}px; flex: none; margin: -3px 0 -5px -4px")
+            self._knob.mark(f"knob-{winch.name}")
             with ui.element("div").style("flex: 1; min-width: 0; display: flex; flex-direction: column; gap: 5px"):
                 name = ui.label(winch.name).style(
                     "font-weight: 600; white-space: nowrap; overflow: hidden; text-overflow: ellipsis"
@@ -104,9 +91,8 @@ class _Card:
     def show(self, command: float, place: float, tension: float, most: float) -> None:
         """Show what the winch shall take in and has taken in [m], and what its cables bear [N], of so much."""
         self._knob.show(1e3 * command, 1e3 * place)
-        shown = round(1e3 * command, 1) + 0.0
-        if not self._typing and self._box.value != shown:
-            self._box.set_value(shown)
+        if not self._typing:
+            self._box.set_value(round(1e3 * command, 1) + 0.0)
         words = f"{tension:.1f} N"
         if words != self._pull.text:
             self._pull.set_text(words)
@@ -148,7 +134,6 @@ def _no_cables(page: WindowPage) -> None:
         ui.label("This robot has no cables yet, so nothing can pull it.")
         ui.label("Let hydrostat find winches and cables for its poses, or place them by hand.").classes("studio-hint")
         with ui.element("div").classes("studio-row"):
-            ui.button("Design", icon="auto_awesome", on_click=lambda: page.go(StageName.DESIGN)).props(
-                "unelevated no-caps"
-            ).mark("drive-design")
+            design = ui.button("Design", icon="auto_awesome", on_click=lambda: page.go(StageName.DESIGN))
+            design.props("unelevated no-caps").mark("drive-design")
             ui.button("Edit", icon="edit", on_click=lambda: page.go(StageName.EDIT)).props("flat no-caps")

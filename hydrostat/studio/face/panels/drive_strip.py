@@ -42,9 +42,8 @@ def drive_strip(page: WindowPage) -> None:
 def _player(page: WindowPage) -> None:
     """Play, loop, time, length, speed."""
     driver = page.session.driver
-    play = ui.button(icon="play_arrow", on_click=page.doing(driver.toggle)).props(
-        'unelevated round dense aria-label="Play"'
-    )
+    play = ui.button(icon="play_arrow", on_click=page.doing(driver.toggle))
+    play.props('unelevated round dense aria-label="Play"')
     unfocused(play).tooltip("Play, or stop playing (space)").mark("drive-play")
     loop = _button("repeat", "Begin anew at the end", lambda: page.act(driver.set_loop, not driver.player.loop))
     time = ui.label().classes("studio-figure").style("width: 58px; text-align: right; white-space: nowrap")
@@ -67,22 +66,19 @@ def _player(page: WindowPage) -> None:
             page.act(driver.keyframes.set_length, seconds)
 
     length.on("update:model-value", set_length)  # only what a person types comes this way
-    length.on("blur", lambda: length.set_value(driver.keyframes.timeline.seconds))
 
     def show() -> None:
         player = driver.player
-        _set(play, "icon", "pause" if player.playing else "play_arrow")
+        play.set_icon("pause" if player.playing else "play_arrow")
         loop.style(f"color: var(--{'accent' if player.loop else 'muted'})")
-        words = f"{player.time:.2f} s"
-        if words != time.text:
-            time.set_text(words)
-        if speed.value != player.speed and player.speed in SPEEDS:
+        time.set_text(f"{player.time:.2f} s")
+        if player.speed in SPEEDS:
             speed.set_value(player.speed)
 
     def show_length() -> None:
-        if length.value != driver.keyframes.timeline.seconds:
-            length.set_value(driver.keyframes.timeline.seconds)
+        length.set_value(driver.keyframes.timeline.seconds)
 
+    length.on("blur", show_length)
     page.on(Topic.DRIVE, show)
     page.on(Topic.ROBOT, show_length)
 
@@ -105,8 +101,7 @@ def _keys(page: WindowPage) -> None:
         chosen = driver.keyframes.chosen is not None
         copy.set_enabled(chosen)
         delete.set_enabled(chosen)
-        if smooth.value != driver.keyframes.timeline.smooth:
-            smooth.set_value(driver.keyframes.timeline.smooth)
+        smooth.set_value(driver.keyframes.timeline.smooth)
 
     page.on((Topic.DRIVE, Topic.ROBOT), show)
 
@@ -125,19 +120,13 @@ def _poses(page: WindowPage) -> None:
         if words:
             page.tell(words, Tone.GOOD)
 
-    def show() -> None:
-        names = list(document.robot.poses)
-        if getattr(menu, "names", None) == names:
-            return
-        menu.names = names  # type: ignore[attr-defined]
-        menu.clear()
-        with menu:
-            for name in names:
-                ui.menu_item(name, on_click=partial(add, name))
-            if not names:
-                ui.menu_item("no poses yet: store one in Pose", auto_close=True).props("disable")
+    def build() -> None:
+        for name in document.robot.poses:
+            ui.menu_item(name, on_click=partial(add, name))
+        if not document.robot.poses:
+            ui.menu_item("no poses yet: store one in Pose", auto_close=True).props("disable")
 
-    page.on(Topic.ROBOT, show)
+    page.on_new(Topic.ROBOT, lambda: tuple(document.robot.poses), menu, build)
 
 
 def _films(page: WindowPage) -> None:
@@ -251,8 +240,3 @@ def unfocused(part: Part) -> Part:
     """A click with the mouse leaves the space key to play."""
     part.on("mousedown", js_handler="(event) => event.preventDefault()")
     return part
-
-
-def _set(button: ui.button, prop: str, value: str) -> None:
-    if button.props.get(prop) != value:
-        button.props(f"{prop}={value}")

@@ -1,5 +1,7 @@
 """`body_card`, `check_card`: what the body is made of, and what the check says of the robot."""
 
+from functools import partial
+
 from nicegui import ui
 
 from hydrostat.drawing.palette import SEAM
@@ -43,9 +45,8 @@ def _material(page: WindowPage) -> None:
         shown[0] = material.name if material.name in MATERIALS else OWN
         names = {name: name for name in MATERIALS}
         choice.set_options(names if shown[0] in names else {OWN: OWN, **names}, value=shown[0])
-        note.set_text(
-            f"{material.young / 1e3:.4g} kPa, Poisson's ratio {material.poisson:g}, {material.density:.4g} kg/m³"
-        )
+        numbers = f"Poisson's ratio {material.poisson:g}, {material.density:.4g} kg/m³"
+        note.set_text(f"{material.young / 1e3:.4g} kPa, {numbers}")
 
     choice.on_value_change(send)
     page.on(Topic.ROBOT, show)
@@ -67,15 +68,11 @@ def _lengths(page: WindowPage) -> None:
                 box.show(1e3 * value)
 
     body = document.robot.body
+    fields = ["element_size"] * (body.source is not Source.MESH) + ["thickness"] * (body.thickness is not None)
     with ui.element("div").classes("studio-row"):
-        if body.source is not Source.MESH:
-            boxes["element_size"] = EditNumber(
-                "Element size", "mm", lambda value: send("element_size", value), mark="edit-element-size"
-            )
-        if body.thickness is not None:
-            boxes["thickness"] = EditNumber(
-                "Thickness", "mm", lambda value: send("thickness", value), mark="edit-thickness"
-            )
+        for field in fields:
+            words = field.replace("_", " ").capitalize()
+            boxes[field] = EditNumber(words, "mm", partial(send, field), mark=f"edit-{field.replace('_', '-')}")
     page.on(Topic.ROBOT, show)
 
 
@@ -148,14 +145,12 @@ def check_card(page: WindowPage) -> None:
 
 
 def _tell_findings(findings: Findings, risks: list[str]) -> None:
-    ui.label(f"{findings.nodes} nodes, {findings.elements} {findings.kind}, {1e3 * findings.mass:.3g} g").classes(
-        "studio-hint studio-figure"
-    )
-    ui.label(
-        f"{counted(findings.cables, 'cable')}, {1e3 * findings.cable_length:.0f} mm in all"
-        if findings.cables
-        else "no cables yet"
-    ).classes("studio-hint studio-figure")
+    length = f"{counted(findings.cables, 'cable')}, {1e3 * findings.cable_length:.0f} mm in all"
+    for line in (
+        f"{findings.nodes} nodes, {findings.elements} {findings.kind}, {1e3 * findings.mass:.3g} g",
+        length if findings.cables else "no cables yet",
+    ):
+        ui.label(line).classes("studio-hint studio-figure")
     if not risks:
         with ui.element("div").classes("studio-row"):
             ui.icon("check_circle", size="18px").style(f"color: {GOOD}")

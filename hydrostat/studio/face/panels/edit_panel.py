@@ -72,9 +72,8 @@ def _mirror(page: WindowPage) -> None:
         ui.space()
         chips = {axis: chip(axis or "off", page.doing(editor.mirror_about, axis)) for axis in ("", *axes)}
         for axis, button in chips.items():
-            button.tooltip(f"Both sides of {axis} = 0 alike" if axis else "No mirror").mark(
-                f"edit-mirror-{axis or 'off'}"
-            )
+            button.tooltip(f"Both sides of {axis} = 0 alike" if axis else "No mirror")
+            button.mark(f"edit-mirror-{axis or 'off'}")
 
     def show() -> None:
         now = "" if editor.mirror is None else "xyz"[editor.mirror.axis]
@@ -109,27 +108,21 @@ def parts_list(page: WindowPage) -> None:
         ui.label("Parts").classes("studio-section")
         ui.space()
         count = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
-    box = (
-        ui.column()
-        .classes("w-full")
-        .style(
-            f"max-height: {HEIGHT}; overflow-y: auto; gap: 0; flex-wrap: nowrap; border: 1px solid var(--line);"
-            "border-radius: 12px; padding: 4px; flex-shrink: 0"
-        )
-    )
+    box = ui.column().classes("w-full").style(
+        f"max-height: {HEIGHT}; overflow-y: auto; gap: 0; flex-wrap: nowrap; border: 1px solid var(--line);"
+        "border-radius: 12px; padding: 4px; flex-shrink: 0"
+    )  # fmt: skip
     rows: dict[str, ui.element] = {}
-    shown: list[list[tuple[str, str, str]]] = []
+
+    def entries() -> list[tuple[str, str, str]]:
+        return [(key, *_part_words(document.robot, key)) for key in keys_of(document.robot)]
+
+    def build() -> None:
+        rows.clear()
+        rows.update({key: _part_row(page, document.robot, key, *words) for key, *words in entries()})
+        count.set_text(f"{len(rows)}")
 
     def show() -> None:
-        entries = [(key, *_part_words(document.robot, key)) for key in keys_of(document.robot)]
-        if shown != [entries]:
-            shown[:] = [entries]
-            box.clear()
-            rows.clear()
-            with box:
-                for key, words, number in entries:
-                    rows[key] = _part_row(page, document.robot, key, words, number)
-            count.set_text(f"{len(entries)}")
         chosen = editor.chosen
         if chosen.startswith("via:"):
             chosen = f"cable:{chosen.split(':')[1]}"
@@ -137,6 +130,7 @@ def parts_list(page: WindowPage) -> None:
             row.style("background: color-mix(in srgb, var(--accent) 16%, transparent)" if key == chosen else
                       "background: transparent")  # fmt: skip
 
+    page.on_new(Topic.THINGS, entries, box, build)
     page.on(Topic.THINGS, show)
 
 

@@ -26,11 +26,7 @@ def light(button: ui.button, on: bool) -> None:
 
 
 class EditNumber:
-    """Shows a number; calls back once a person has typed another and pressed Enter or gone elsewhere.
-
-    Attributes:
-        box: the element.
-    """
+    """Shows a number; calls back once a person has typed another and pressed Enter or gone elsewhere."""
 
     def __init__(
         self, label: str, unit: str, take: Callable[[float], Any], *, step: float = 1.0, mark: str = ""
@@ -38,22 +34,22 @@ class EditNumber:
         """An empty box; `take` is called with the new number, what it returns is awaited, the mark is for tests."""
         self._shown: float | None = None
         self._take = take
-        self.box = ui.number(label, suffix=unit, step=step, format="%.6g").props("dense outlined hide-bottom-space")
-        self.box.classes("flex-1 studio-figure").style("min-width: 0").mark(mark)
-        self.box.on("keydown.enter", self._send)
-        self.box.on("blur", self._send)
+        self._box = ui.number(label, suffix=unit, step=step, format="%.6g").props("dense outlined hide-bottom-space")
+        self._box.classes("flex-1 studio-figure").style("min-width: 0").mark(mark)
+        self._box.on("keydown.enter", self._send)
+        self._box.on("blur", self._send)
 
     def show(self, value: float) -> None:
         """Show a number; one that is being typed is left alone unless another came from elsewhere."""
         rounded = float(f"{value:.6g}")
         if rounded != self._shown:
             self._shown = rounded
-            self.box.set_value(rounded)
+            self._box.set_value(rounded)
 
     async def _send(self) -> None:
-        number = sent_number(self.box.value)
+        number = sent_number(self._box.value)
         if number is None or self._shown is None:
-            self.box.set_value(self._shown)
+            self._box.set_value(self._shown)
         elif number != self._shown:
             before, self._shown = self._shown, None
             result = self._take(number)
@@ -131,12 +127,8 @@ def _title(key: str) -> str:
 
 def _name(page: WindowPage, key: str) -> Show:
     document = page.session.document
-    box = (
-        ui.input("Name", value=name_of(document.robot, key))
-        .props("dense outlined maxlength=60")
-        .classes("w-full")
-        .mark("edit-name")
-    )
+    box = ui.input("Name", value=name_of(document.robot, key)).classes("w-full").mark("edit-name")
+    box.props("dense outlined maxlength=60")
 
     def send() -> None:
         typed = (box.value or "").strip()
@@ -175,11 +167,8 @@ def _place(page: WindowPage, key: str) -> Show:
 
 def _numbers(page: WindowPage, key: str, fields: tuple[tuple[str, str, str, float], ...]) -> Shows:
     """A box for each number of a part, two in a row."""
-    shows: Shows = []
     with ui.element("div").classes("w-full").style("display: grid; grid-template-columns: 1fr 1fr; gap: 8px"):
-        for field, label, unit, scale in fields:
-            shows.append(_number(page, key, field, label, unit, scale))
-    return shows
+        return [_number(page, key, *field) for field in fields]
 
 
 def _number(page: WindowPage, key: str, field: str, label: str, unit: str, scale: float) -> Show:

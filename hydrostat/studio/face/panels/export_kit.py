@@ -114,11 +114,8 @@ def _pages(kit: KitMade) -> None:
 def _lines(words: str, lines: tuple[str, ...], icon: str, kind: str) -> None:
     if not lines:
         return
-    with (
-        ui.expansion(f"{counted(len(lines), 'thing')} {words}", value=len(lines) < 3)
-        .props("dense")
-        .classes("export-more w-full")
-    ):
+    door = ui.expansion(f"{counted(len(lines), 'thing')} {words}", value=len(lines) < 3).props("dense")
+    with door.classes("export-more w-full"):
         for line in lines:
             _line(line, icon, kind)
 
@@ -204,7 +201,7 @@ def show_large(pictures: Sequence[bytes], title: str, download: Download | None 
             ui.label(title).classes("studio-title flex-1")
             if download is not None:
                 save = ui.button("Download", icon="download").props("flat no-caps")
-                save.on_click(lambda: ui.download.content(download.content, download.name, download.media_type))
+                save.on_click(lambda: send(download))
             ui.button(icon="close", on_click=dialog.close).props('flat round dense aria-label="Close"')
         with ui.scroll_area().classes("export-pages"):
             for content in pictures:

@@ -64,10 +64,8 @@ def _pictures_card(page: WindowPage) -> None:
         with ui.element("div").classes("studio-row"):
             choice = ui.select({"": "At rest"}, label="In the view", value="").props("dense outlined options-dense")
             choice.classes("flex-1").props('data-testid="export-pose"')
-            view = ui.button(icon="photo_camera", on_click=lambda: _save_view(page)).props(
-                'flat dense aria-label="This view as PNG"'
-            )
-            view.tooltip("This view as PNG").props('data-testid="export-view"')
+            view = ui.button(icon="photo_camera", on_click=lambda: _save_view(page)).tooltip("This view as PNG")
+            view.props('flat dense aria-label="This view as PNG" data-testid="export-view"')
         _maker(page, Export.PICTURES, "Draw all pictures", "image", exporter.make_pictures, lambda: exporter.pictures)
         _result(page, Export.PICTURES, lambda: exporter.pictures or None, lambda: _pictures(page))
 

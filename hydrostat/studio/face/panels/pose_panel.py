@@ -3,7 +3,6 @@
 from nicegui import ui
 
 from hydrostat.drawing.palette import ERROR
-from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.pose_poses import poses_card, reach_card
@@ -39,9 +38,7 @@ def pose_panel(page: WindowPage) -> None:
 
     def show() -> None:
         choice.set_value(poser.mode)
-        words = "Click where it should go." if poser.armed else HINTS[poser.mode]
-        if hint.text != words:
-            hint.set_text(words)
+        hint.set_text("Click where it should go." if poser.armed else HINTS[poser.mode])
 
     choice.on_value_change(choose)
     page.on(Topic.THINGS, show)
@@ -79,8 +76,7 @@ def held_card(page: WindowPage) -> None:
                 near = error is not None and error < NEAR
                 label.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
         words = "\n".join(f"{note[:1].upper()}{note[1:]}" for note in shape.notes)
-        if notes.text != words:
-            notes.set_text(words)
+        notes.set_text(words)
         notes.set_visibility(bool(words))
 
     page.on_new((Topic.THINGS, Topic.SHAPE), lambda: (tuple(poser.held), poser.chosen), rows, build)
@@ -91,9 +87,7 @@ def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
     """One point: a click chooses it, the cross lets it go."""
     poser = page.session.poser
     with ui.element("div").classes("studio-row").style("min-height: 30px"):
-        ui.icon("radio_button_unchecked", size="16px").style(
-            "color: var(--accent)" if chosen else "color: var(--muted)"
-        )
+        ui.icon("radio_button_unchecked", size="16px").style(f"color: var(--{'accent' if chosen else 'muted'})")
         label = ui.label(name).style(
             f"font-weight: {600 if chosen else 400}; cursor: pointer; overflow: hidden; text-overflow: ellipsis;"
             "white-space: nowrap; min-width: 0"
@@ -118,16 +112,9 @@ def bars_card(page: WindowPage) -> None:
             limit = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
         box = ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px")
     rows: list[_BarRow] = []
-    drawn: list[Robot] = []
 
-    def draw() -> None:
-        robot = document.robot
-        if not drawn or drawn[0].winches != robot.winches:
-            drawn[:] = [robot]
-            box.clear()
-            with box:
-                rows[:] = [_BarRow(bar) for bar in poser.bars()]
-        show()
+    def build() -> None:
+        rows[:] = [_BarRow(bar) for bar in poser.bars()]
 
     def show() -> None:
         room.set_visibility(poser.mode is Mode.CABLES)
@@ -139,8 +126,8 @@ def bars_card(page: WindowPage) -> None:
         if found:
             limit.set_text(f"limit {found[0].limit:g} N")
 
-    page.on(Topic.ROBOT, draw)
-    page.on((Topic.THINGS, Topic.SHAPE), show)
+    page.on_new(Topic.ROBOT, lambda: document.robot.winches, box, build)
+    page.on((Topic.ROBOT, Topic.THINGS, Topic.SHAPE), show)
 
 
 class _BarRow:
@@ -171,8 +158,7 @@ class _BarRow:
         self._shown = state
         self._length.set_text(f"{1e3 * bar.contraction + 0.0:.1f} mm")
         self._pull.set_text(f"{bar.tension:.1f} N")
-        taken = max(bar.contraction, 0.0) / bar.travel
-        _fill(self._taken, taken, bar.colour)
+        _fill(self._taken, max(bar.contraction, 0.0) / bar.travel, bar.colour)
         _fill(self._tension, bar.tension / bar.limit, bar.colour)
 
 

@@ -14,7 +14,7 @@ from hydrostat.studio.starting.draft import BodyDraft, material_words, young_wor
 from hydrostat.studio.starting.sketch import Sketch
 
 LEVELS = ("Coarse", "Medium", "Fine")
-
+ICONS = {"found": "search", "done": "build", "removed": "content_cut", "volume": "straighten", "largest": "straighten"}
 FINENESS = {True: (120, 250, 600), False: (400, 900, 2500)}  # nodes of a coarse, a medium and a fine body, flat or not
 
 
@@ -22,9 +22,8 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
     """Build it; returns what shows it anew."""
     starter = page.session.starter
     with ui.row().classes("items-center no-wrap w-full gap-3"):
-        ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).props('flat round aria-label="Back"').mark(
-            "back"
-        )
+        back = ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).mark("back")
+        back.props('flat round aria-label="Back"')
         title = ui.label().classes("start-title")
     with ui.element("div").classes("start-split"):
         with ui.column().classes("w-full gap-4"):
@@ -101,15 +100,8 @@ def _pictures() -> Callable[[Sketch | None], None]:
 
 
 def _line(words: str) -> None:
-    icons = {
-        "found": "search",
-        "done": "build",
-        "removed": "content_cut",
-        "volume": "straighten",
-        "largest": "straighten",
-    }
     with ui.element("div").classes("start-line"):
-        ui.icon(icons.get(words.split(":")[0].split(" ")[0], "info"))
+        ui.icon(ICONS.get(words.split(":")[0].split(" ")[0], "info"))
         ui.label(words)
 
 
@@ -143,11 +135,11 @@ class _Fields:
     def show(self, draft: BodyDraft, sketch: Sketch | None) -> None:
         """Show what is asked for, and where nothing is, what came of it."""
         flat = _is_flat(draft)
-        _quietly(self._name, draft.name)
+        self._name.set_value(draft.name)
         self._kind.set_visibility(draft.is_drawing)
-        _quietly(self._kind, "flat" if flat else "round")
+        self._kind.set_value("flat" if flat else "round")
         self._thick.set_visibility(draft.is_drawing)
-        _quietly(self._material, draft.material)
+        self._material.set_value(draft.material)
         self._words.set_text(material_words(MATERIALS[draft.material]))
         self._enable()
         self._fine.set_value(_level(draft, flat))
@@ -203,29 +195,19 @@ def _level(draft: BodyDraft, flat: bool) -> str | None:
     return LEVELS[1 if draft.nodes is None else FINENESS[flat].index(draft.nodes)]
 
 
-def _quietly(control: Any, value: Any) -> None:
-    """Show a value where it is another; what is asked for then is what is there already."""
-    if control.value != value:
-        control.set_value(value)
-
-
 class _Length:
     """A length that a person reads and types in millimetres."""
 
     def __init__(self, label: str, ask: Callable[[float], None], mark: str) -> None:
         self._ask, self._shown = ask, None
-        self._field = (
-            ui.number(label, suffix="mm", format="%.4g")
-            .props("outlined dense debounce=700")
-            .props(f'data-testid="{mark}"')
-        )
+        self._field = ui.number(label, suffix="mm", format="%.4g")
+        self._field.props(f'outlined dense debounce=700 data-testid="{mark}"')
         self._field.on_value_change(lambda event: self._typed(event.value))
 
     def show(self, value: float | None) -> None:
         """Show a length [m]."""
         self._shown = None if value is None else float(f"{1e3 * value:.4g}")
-        if self._field.value != self._shown:
-            self._field.set_value(self._shown)
+        self._field.set_value(self._shown)
 
     def set_visibility(self, visible: bool) -> None:
         self._field.set_visibility(visible)

@@ -21,26 +21,21 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
         return lambda: None
     robot = outlining.robot
     with ui.row().classes("items-center no-wrap w-full gap-2"):
-        ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).props('flat round aria-label="Back"').mark(
-            "back"
-        )
+        back = ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).mark("back")
+        back.props('flat round aria-label="Back"')
         ui.label("New outline" if robot is None else f"Outline of {robot.name}").classes("start-title")
         ui.space()
         tools = ui.row().classes("items-center no-wrap gap-1")
-        done = (
-            ui.button("Next" if robot is None else "Apply", icon="check")
-            .props("unelevated no-caps")
-            .props('data-testid="outline-done"')
-        )
+        done = ui.button("Next" if robot is None else "Apply", icon="check")
+        done.props('unelevated no-caps data-testid="outline-done"')
     with ui.element("div").classes("start-outline"):
         editor = OutlineEditor(outlining.loops, lambda raw: take(raw)).style("width: 100%; height: 100%")
     with ui.row().classes("items-center no-wrap w-full gap-2"):
         sign = ui.icon("check_circle").classes("text-lg")
         words = ui.label().classes("start-small studio-figure").props('data-testid="outline-words"')
         ui.space()
-        ui.label("Click: corner. Drag: move. Double click: round or sharp. Delete: remove. Wheel: zoom.").classes(
-            "start-small"
-        )
+        hint = ui.label("Click: corner. Drag: move. Double click: round or sharp. Delete: remove. Wheel: zoom.")
+        hint.classes("start-small")
     with tools:
         _tools(editor, new=robot is None)
 
@@ -86,9 +81,8 @@ def _tools(editor: OutlineEditor, *, new: bool) -> None:
         ("fit_screen", "Fit", editor.fit),
     ):
         icon_button(icon, words, action, small=False, colour="primary")
-    ui.switch("Mirror", on_change=lambda event: editor.set_mirror(bool(event.value))).props(
-        'data-testid="outline-mirror"'
-    )
+    mirror = ui.switch("Mirror", on_change=lambda event: editor.set_mirror(bool(event.value)))
+    mirror.props('data-testid="outline-mirror"')
     ui.switch("Snap", value=True, on_change=lambda event: editor.set_snap(bool(event.value)))
 
 

@@ -74,9 +74,7 @@ def _left(page: WindowPage, left: Left) -> None:
         ui.icon("history").classes("text-xl")
         ui.label(f"Work of {left.words} was not saved.")
         ui.space()
-        restore = (
-            ui.button("Restore").props("unelevated no-caps dense padding='4px 14px'").props('data-testid="restore"')
-        )
+        restore = ui.button("Restore").props("unelevated no-caps dense padding='4px 14px' data-testid=restore")
         restore.on_click(lambda: open_with(page, row, partial(autosave.restore, left)))
 
         async def forget() -> None:
@@ -89,15 +87,11 @@ def _left(page: WindowPage, left: Left) -> None:
 
 
 def _drop(page: WindowPage) -> None:
-    with (
-        ui.element("div")
-        .classes("start-card start-drop")
-        .props('tabindex=0 role=button aria-label="Bring a file"') as card
-    ):
+    card = ui.element("div").classes("start-card start-drop")
+    with card.props('tabindex=0 role=button aria-label="Bring a file"'):
         _head("upload_file", "Bring a drawing or a scan")
-        ui.label(
-            "Drop a file here, or click to choose one. It is meshed and mended, and you see what was done."
-        ).classes("start-small")
+        words = "Drop a file here, or click to choose one. It is meshed and mended, and you see what was done."
+        ui.label(words).classes("start-small")
         wrong = ui.label().classes("start-problem").props('data-testid="upload-wrong"')
         wrong.bind_visibility_from(wrong, "text", bool)
         ui.space()
@@ -147,12 +141,8 @@ def _folder(page: WindowPage) -> None:
         _head("folder_open", "Open a folder")
         ui.label("With robot.toml in it, such as one made by hydrostat new.").classes("start-small")
         ui.space()
-        path = (
-            ui.input("Folder", autocomplete=suggestions(""))
-            .props("outlined dense")
-            .classes("w-full")
-            .props('data-testid="folder"')
-        )
+        path = ui.input("Folder", autocomplete=suggestions("")).classes("w-full")
+        path.props('outlined dense data-testid="folder"')
         path.on_value_change(lambda event: path.set_autocomplete(suggestions(str(event.value or ""))))
 
         async def go() -> None:
@@ -172,12 +162,8 @@ def _chip(page: WindowPage, card: Card) -> None:
 
 def _robot(page: WindowPage, card: Card) -> None:
     shown = card.name.replace("_", " ")
-    with (
-        ui.element("button")
-        .classes("start-robot")
-        .props(f'aria-label="{shown}"')
-        .props(f'data-testid="gallery-{card.name}"') as tile
-    ):
+    tile = ui.element("button").classes("start-robot")
+    with tile.props(f'aria-label="{shown}" data-testid="gallery-{card.name}"'):
         if card.picture is not None:
             ui.element("img").props(f'src="{_inline(card.picture)}" alt=""')
         ui.label(shown).classes("start-robot-name")
