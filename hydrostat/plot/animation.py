@@ -69,17 +69,10 @@ def save_mp4(
 ) -> Path:
     """Write frames as an MP4 (H.264), whole or not at all; returns its path. It needs the program ffmpeg.
 
-    Args:
-        robot: to draw.
-        frames: at equal times.
-        path: of the file.
-        step: time of a frame [s].
-        width: of the picture [pixels].
-        tell: is told how far the work is.
+    Arguments are those of `save_gif`, and so are errors, but for these.
 
     Raises:
-        InputError: there is no ffmpeg, frames that do not fit the robot, a time or width out of range, a file that
-            cannot be written.
+        InputError: there is no ffmpeg.
         HydrostatError: ffmpeg failed; its last line says why.
     """
     from tempfile import TemporaryDirectory

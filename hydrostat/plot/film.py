@@ -136,7 +136,7 @@ class _Shot:
 
     def _take(self, goal: Vector, end: Stop, words: str) -> None:
         pose = self._simulation.solve(goal, start=self._last, strict=False)
-        if pose.result.converged and _upright(self._simulation.robot, pose):
+        if pose.result.converged and upright(self._simulation.robot, pose):
             self._last = pose
         else:
             self.missing.append(len(self.frames))
@@ -148,8 +148,8 @@ class _Shot:
             self._tell("solving", len(self.frames), self._count)
 
 
-def _upright(robot: Robot, pose: SolvedPose) -> bool:
-    """Whether no element is inverted."""
+def upright(robot: Robot, pose: SolvedPose) -> bool:
+    """Tell whether no element is inverted."""
     corners = pose.nodes[robot.body.mesh.elements]
     return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())
 

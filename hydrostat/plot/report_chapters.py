@@ -1,5 +1,7 @@
 """The stages of a design as chapters of the report, each with its pictures."""
 
+from collections.abc import Iterable
+
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.drawing.svg import Html, tag
 from hydrostat.ik import ReachedPose
@@ -18,7 +20,7 @@ from hydrostat.plot.report_tables import (
 )
 from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
 from hydrostat.plot.sheet import MILLIMETRES
-from hydrostat.robot import Robot, Source
+from hydrostat.robot import Pose, Robot, Source
 from hydrostat.units import counted
 
 _HEADS = {
@@ -32,7 +34,9 @@ def chapters(network: Network) -> list[Html]:
     """All chapters, numbered in their order: what was asked, how the network came about, what it reaches."""
     trace = network.trace
     way = muscle_chapters(network, trace) if isinstance(trace, TreeTrace) else growth_chapters(network, trace)
-    told = [_body(network.robot), _targets(network), *way, _network(network), _reached(network)]
+    targets = target_chapter(network.robot, [reached.wanted for reached in network.reached])
+    poses = [reached_part(network.robot, reached, index) for index, reached in enumerate(network.reached)]
+    told = [_body(network.robot), targets, *way, _network(network), Chapter(*REACHED, poses)]
     told += alternative_chapters(network)
     return [section(number, chapter) for number, chapter in enumerate(told, start=1)]
 
@@ -43,18 +47,23 @@ def _body(robot: Robot) -> Chapter:
         f"{robot.body.file} is filled with {len(robot.body.mesh.elements)} {elements} of soft material. The hatched "
         "fields are held; the white dots are the markers, points to be watched."
     )
+    return Chapter(_HEADS[robot.body.source], words, [body_part(robot)])
+
+
+def body_part(robot: Robot) -> Html:
+    """The body at rest beside its size, its material and the places of its markers."""
     figure = draw_rest(robot.with_network((), ()), title="", width=NARROW)
     shown = picture(figure, "body", "Body, mesh and markers", ", coordinates in mm")
-    facts = tag("div", tag("h3", "Body"), body_table(robot), tag("h3", "Markers"), place_table(robot))
-    return Chapter(_HEADS[robot.body.source], words, [tag("div", shown, facts, class_="pose")])
+    markers = [tag("h3", "Markers"), place_table(robot)] if robot.markers else []
+    return tag("div", shown, tag("div", tag("h3", "Body"), body_table(robot), *markers), class_="pose")
 
 
-def _targets(network: Network) -> Chapter:
+def target_chapter(robot: Robot, poses: Iterable[Pose]) -> Chapter:
+    """What each pose asks of the markers."""
     words = "Each pose names targets for markers: a cross is a target, and a marker without an arrow should stay."
     pictures = []
-    for index, reached in enumerate(network.reached):
-        pose = reached.wanted
-        figure = draw_target(network.robot.with_network((), ()), pose, title="", width=NARROW)
+    for index, pose in enumerate(poses):
+        figure = draw_target(robot.with_network((), ()), pose, title="", width=NARROW)
         note = f": where {counted(len(pose.targets), 'marker')} should go"
         pictures.append(picture(figure, f"target-{index}", pose.name, note))
     return Chapter("What it should do", words, [grid(*pictures)])
@@ -68,22 +77,25 @@ def _network(network: Network) -> Chapter:
         "share its contraction, each by the radius of its spool. A bar marks the stopper at the end of a "
         "cable, a pale pipe a sheath."
     )
-    figure = draw_network(robot, title="", width=NARROW)
-    shown = picture(figure, "network", "The network", ": cables are numbered as in the tables")
+    return Chapter("Winches and cables", words, [network_part(robot, ": cables are numbered as in the tables")])
+
+
+def network_part(robot: Robot, note: str) -> Html:
+    """The network, with a note behind its name, beside tables of winches and cables."""
+    shown = picture(draw_network(robot, title="", width=NARROW), "network", "The network", note)
     facts = tag("div", tag("h3", "Winches"), winch_table(robot), tag("h3", "Cables"), cable_table(robot))
-    return Chapter("Winches and cables", words, [tag("div", shown, facts, class_="pose")])
+    return tag("div", shown, facts, class_="pose")
 
 
-def _reached(network: Network) -> Chapter:
-    words = (
-        "Inverse kinematics finds how much cable each winch takes in, and the body comes to rest under these "
-        "cables and nothing else. Every number below is measured there. The grey shadow is the rest shape."
-    )
-    poses = [_reached_pose(network.robot, reached, index) for index, reached in enumerate(network.reached)]
-    return Chapter("What it reaches", words, poses)
+REACHED = (  # head and words of the chapter on the poses
+    "What it reaches",
+    "Inverse kinematics finds how much cable each winch takes in, and the body comes to rest under these cables "
+    "and nothing else. Every number below is measured there. The grey shadow is the rest shape.",
+)
 
 
-def _reached_pose(robot: Robot, reached: ReachedPose, index: int) -> Html:
+def reached_part(robot: Robot, reached: ReachedPose, index: int, *notes: Html) -> Html:
+    """A pose as the winches reach it, beside tables of markers, winches and cables, and notes below them."""
     figure = draw_reached(robot, reached, title="", width=NARROW)
     note = f": {MILLIMETRES * reached.rms_error:.2f} mm rms; {reached.reason}"
     tables = {
@@ -92,9 +104,8 @@ def _reached_pose(robot: Robot, reached: ReachedPose, index: int) -> Html:
         "Cables": tension_table(robot, reached),
     }
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
-    return tag(
-        "div", picture(figure, f"reached-{index}", reached.wanted.name, note), tag("div", *numbers), class_="pose"
-    )
+    shown = picture(figure, f"reached-{index}", reached.wanted.name, note)
+    return tag("div", shown, tag("div", *numbers, *notes), class_="pose")
 
 
 def muscle_chapters(network: Network, trace: TreeTrace) -> list[Chapter]:

@@ -1,7 +1,7 @@
 """`front_chart`, `growth_chart`: what more cables gain, and how the error falls while a design runs, as SVG."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from hydrostat.drawing.palette import WINCHES
@@ -31,6 +31,14 @@ class Chart:
     def y(self, value: float) -> float:
         """Where a value upwards is."""
         return self.height - BOTTOM - (self.height - TOP - BOTTOM) * value / self.up
+
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """Where a pair of values is."""
+        return self.x(x), self.y(y)
+
+    def line(self, points: Iterable[tuple[float, float]]) -> str:
+        """A line through pairs of values, for the attribute `points`."""
+        return " ".join("{:.1f},{:.1f}".format(*self.place(x, y)) for x, y in points)
 
     def drawn(self, inside: str, *, label: str) -> str:
         """The chart with some SVG drawn inside, and a label for who cannot see it."""
@@ -64,11 +72,6 @@ def ticks(largest: float, *, most: int, least: float = 0.0) -> list[float]:
     return [float(f"{index * step:.6g}") for index in range(int(largest / step * (1 + 1e-9)) + 1)]
 
 
-def polyline(points: list[tuple[float, float]], place: Callable[[float, float], tuple[float, float]]) -> str:
-    """A line through points, for the attribute `points`."""
-    return " ".join("{:.1f},{:.1f}".format(*place(x, y)) for x, y in points)
-
-
 FRONT_WIDTH, FRONT_HEIGHT = 300.0, 176.0
 
 
@@ -89,17 +92,13 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: 
         below="cables",
         whole=True,
     )
-
-    def place(x: float, y: float) -> tuple[float, float]:
-        return chart.x(x), chart.y(y)
-
-    line = polyline([(float(x), y) for x, y in front([*errors, *way])], place)
+    line = chart.line(front([*errors, *way]))
     parts = [f'<polyline points="{line}" class="chart-front"/>']
     for cables, error in way:
-        x, y = place(cables, error)
+        x, y = chart.place(cables, error)
         parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" class="chart-way"/>')
     for one, (cables, error) in zip(candidates, errors, strict=True):
-        x, y = place(cables, error)
+        x, y = chart.place(cables, error)
         ring = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="9" class="chart-ring"/>' if one.number == chosen else ""
         colour = winch_count_colour(len(one.robot.winches))
         parts.append(f'{ring}<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{colour}" class="chart-dot"/>')
@@ -153,14 +152,10 @@ def growth_chart(run: DesignRun, seconds: float) -> str:
     for time, before, after in zip(times[1:], errors, errors[1:], strict=False):
         steps += [(time, before), (time, after)]
     steps.append((end, errors[-1]))
-
-    def place(x: float, y: float) -> tuple[float, float]:
-        return chart.x(x), chart.y(y)
-
-    line = polyline(steps, place)
+    line = chart.line(steps)
     floor = chart.y(0.0)
     area = f"{chart.x(0.0):.1f},{floor:.1f} {line} {chart.x(end):.1f},{floor:.1f}"
-    x, y = place(end, errors[-1])
+    x, y = chart.place(end, errors[-1])
     inside = (
         f'<polygon points="{area}" class="chart-area"/><polyline points="{line}" class="chart-line"/>'
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" class="chart-now"/>'

@@ -8,7 +8,7 @@ from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Point
 from hydrostat.studio.document import Document
-from hydrostat.studio.records.wishes import Paint
+from hydrostat.studio.records.wishes import Paint, moved_zone
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
 
@@ -43,11 +43,7 @@ def moved(zone: Zone, start: Point, end: Point) -> Zone:
     def there(point: Point) -> Point:
         return tuple(value + last - first for value, first, last in zip(point, start, end, strict=True))
 
-    if zone.at is not None:
-        return Zone(at=there(zone.at), radius=zone.radius)
-    if zone.box is not None:
-        return Zone(box=(there(zone.box[0]), there(zone.box[1])))
-    return Zone(outline=tuple(map(there, zone.outline)))
+    return moved_zone(zone, there)
 
 
 def with_corner(zone: Zone, index: int, place: Point) -> Zone:

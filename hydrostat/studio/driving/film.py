@@ -10,12 +10,12 @@ from tempfile import TemporaryDirectory
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
 from hydrostat.plot import find_ffmpeg, save_gif, save_glb, save_mp4
+from hydrostat.plot.film import upright
 from hydrostat.plot.frame import Frame
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.driving.machine import upright
 from hydrostat.studio.jobs import Jobs, JobState, Report
 
 LONGEST_FILM = 60.0  # no film is longer [s]

@@ -10,6 +10,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
+from hydrostat.plot.film import upright
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document
@@ -226,9 +227,3 @@ def _strained(robot: Robot, tensions: Vector, most: float) -> tuple[str, ...]:
         f"a cable of {robot.cables[index].winch} pulls {tensions[index]:.1f} N, more than {most:g} N"
         for index in np.flatnonzero(tensions > most)[:3]
     )
-
-
-def upright(robot: Robot, pose: SolvedPose) -> bool:
-    """Tell whether no element is inverted."""
-    corners = pose.nodes[robot.body.mesh.elements]
-    return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())

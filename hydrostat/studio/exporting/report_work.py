@@ -3,18 +3,8 @@
 import numpy as np
 
 from hydrostat.drawing.svg import Html, tag
-from hydrostat.ik import ReachedPose
-from hydrostat.plot import draw_network, draw_reached, draw_rest, draw_target
-from hydrostat.plot.report_parts import NARROW, Chapter, fact, grid, page, picture, section, table
-from hydrostat.plot.report_tables import (
-    body_table,
-    cable_table,
-    contraction_table,
-    marker_table,
-    place_table,
-    tension_table,
-    winch_table,
-)
+from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
+from hydrostat.plot.report_parts import Chapter, fact, page, section, table
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Robot, find_risks, robot_hash
 from hydrostat.studio.exporting.download import Download, file_name
@@ -35,7 +25,8 @@ def make_report(report: Report, robot: Robot) -> Download:
 def robot_report(solved: SolvedPoses) -> str:
     """The page as text; it needs no other file and no network."""
     robot = solved.robot
-    chapters = [_body(robot), *_targets(robot), *_network(robot), *_reached(solved)]
+    targets = [target_chapter(robot, robot.poses.values())] if robot.poses else []
+    chapters = [_body(robot), *targets, *_network(robot), *_reached(solved)]
     sections = [section(number, chapter) for number, chapter in enumerate(chapters, start=1)]
     return page(robot.name, _hero(solved), *sections, _footer(robot))
 
@@ -68,25 +59,8 @@ def _body(robot: Robot) -> Chapter:
         f"{robot.body.file} as soft material. The hatched fields are held; the white dots are the markers, points to "
         "be watched."
     )
-    figure = draw_rest(robot.with_network((), ()), title="", width=NARROW)
-    shown = picture(figure, "body", "Body, mesh and markers", ", coordinates in mm")
     risks = [tag("div", tag("b", "Mind: "), risk, class_="note") for risk in find_risks(robot)]
-    markers = [tag("h3", "Markers"), place_table(robot)] if robot.markers else []
-    facts = tag("div", tag("h3", "Body"), body_table(robot), *markers)
-    return Chapter("The body", words, [tag("div", shown, facts, class_="pose"), *risks])
-
-
-def _targets(robot: Robot) -> list[Chapter]:
-    if not robot.poses:
-        return []
-    bare = robot.with_network((), ())
-    pictures = [
-        picture(draw_target(bare, pose, title="", width=NARROW), f"target-{index}", pose.name,
-                f": where {counted(len(pose.targets), 'marker')} should go")
-        for index, pose in enumerate(robot.poses.values())
-    ]  # fmt: skip
-    words = "Each pose names targets for markers: a cross is a target, and a marker without an arrow should stay."
-    return [Chapter("What it should do", words, [grid(*pictures)])]
+    return Chapter("The body", words, [body_part(robot), *risks])
 
 
 def _network(robot: Robot) -> list[Chapter]:
@@ -96,35 +70,18 @@ def _network(robot: Robot) -> list[Chapter]:
         "All cables of one winch share its contraction, each by the radius of its spool. A bar marks the stopper at "
         "the end of a cable, a pale pipe a sheath."
     )
-    shown = picture(draw_network(robot, title="", width=NARROW), "network", "The network", ": cables by number")
-    facts = tag("div", tag("h3", "Winches"), winch_table(robot), tag("h3", "Cables"), cable_table(robot))
-    return [Chapter("Winches and cables", words, [tag("div", shown, facts, class_="pose")])]
+    return [Chapter("Winches and cables", words, [network_part(robot, ": cables by number")])]
 
 
 def _reached(solved: SolvedPoses) -> list[Chapter]:
     if not solved.reached and not solved.missed:
         return []
-    words = (
-        "Inverse kinematics finds how much cable each winch takes in, and the body comes to rest under these cables "
-        "and nothing else. Every number below is measured there. The grey shadow is the rest shape."
-    )
-    poses = [_reached_pose(solved.robot, reached, index) for index, reached in enumerate(solved.reached)]
+    poses = []
+    for index, reached in enumerate(solved.reached):
+        held = [tag("div", tag("b", "Limit: "), words, class_="note") for words in reached.held]
+        poses.append(reached_part(solved.robot, reached, index, *held))
     missed = [tag("div", tag("b", "Not solved: "), line, class_="note") for line in solved.missed]
-    return [Chapter("What it reaches", words, [*poses, *missed])]
-
-
-def _reached_pose(robot: Robot, reached: ReachedPose, index: int) -> Html:
-    note = f": {MILLIMETRES * reached.rms_error:.2f} mm rms; {reached.reason}"
-    tables = {
-        "Markers": marker_table(robot, reached),
-        "Winches": contraction_table(robot, reached),
-        "Cables": tension_table(robot, reached),
-    }
-    numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
-    held = [tag("div", tag("b", "Limit: "), words, class_="note") for words in reached.held]
-    figure = draw_reached(robot, reached, title="", width=NARROW)
-    shown = picture(figure, f"reached-{index}", reached.wanted.name, note)
-    return tag("div", shown, tag("div", *numbers, *held), class_="pose")
+    return [Chapter(*REACHED, [*poses, *missed])]
 
 
 def _footer(robot: Robot) -> Html:

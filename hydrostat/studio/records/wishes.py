@@ -1,12 +1,14 @@
 """`Wishes`: what a person asks of a design, and has painted on the body."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from hydrostat.design import Constraints, DesignRequest, Zone
 from hydrostat.design.constraints import RANGES
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
 from hydrostat.errors import InputError
+from hydrostat.robot import Point
 from hydrostat.units import quote
 
 
@@ -55,6 +57,13 @@ class Wishes:
             if not allowed.holds(value):
                 words = allowed.words(scale, unit)
                 raise InputError(f"{_said(name)} must be {words}, not {scale * value:g} {unit}")
+
+
+def moved_zone(zone: Zone, move: Callable[[Point], Point]) -> Zone:
+    """A zone whose places are moved."""
+    at = None if zone.at is None else move(zone.at)
+    box = None if zone.box is None else (move(zone.box[0]), move(zone.box[1]))
+    return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
 
 
 _COUNTED = {"cables": COUNTS["cables"], "cables_per_winch": RANGES["cables_per_winch"]}

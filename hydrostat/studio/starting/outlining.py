@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import Zone
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.robot import Body, Cable, Mount, Pin, Point, Pose, Robot, outline_body
+from hydrostat.studio.records.wishes import moved_zone
 from hydrostat.studio.records.work import Work, followed
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fitted, loops_svg, outline_of, read_loops
 from hydrostat.units import counted
@@ -77,19 +77,17 @@ class Outlining:
 
 def beginnings() -> dict[str, tuple[Loop, ...]]:
     """Simple shapes to begin with, by name."""
-    disc = tuple(LoopCorner(100 * _cos(k, 8), 70 * _sin(k, 8), True) for k in range(8))
+    disc = tuple(LoopCorner(100 * x, 70 * y, True) for x, y in (_spoke(k, 8) for k in range(8)))
     bar = (LoopCorner(-120, -25), LoopCorner(120, -25), LoopCorner(120, 25), LoopCorner(-120, 25))
     radii = [120 if k % 2 else 45 for k in range(10)]
-    star = tuple(LoopCorner(r * _cos(k + 1.5, 10), r * _sin(k + 1.5, 10), True) for k, r in enumerate(radii))
+    spokes = (_spoke(k + 1.5, 10) for k in range(10))
+    star = tuple(LoopCorner(radius * x, radius * y, True) for radius, (x, y) in zip(radii, spokes, strict=True))
     return {"Disc": (disc,), "Bar": (bar,), "Star": (star,)}
 
 
-def _cos(step: float, steps: int) -> float:
-    return round(float(np.cos(2 * np.pi * step / steps)), 3)
-
-
-def _sin(step: float, steps: int) -> float:
-    return round(float(np.sin(2 * np.pi * step / steps)), 3)
+def _spoke(step: float, steps: int) -> tuple[float, float]:
+    angle = 2 * np.pi * step / steps
+    return round(float(np.cos(angle)), 3), round(float(np.sin(angle)), 3)
 
 
 def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
@@ -200,12 +198,6 @@ def _poses_of(poses: tuple[Pose, ...], markers: set[str], dropped: list[str]) ->
 
 def _matching(work: Work, robot: Robot, move: Move) -> Work:
     """Wishes and keyframes that fit the robot."""
-
-    def zone_moved(zone: Zone) -> Zone:
-        at = None if zone.at is None else move(zone.at)
-        box = None if zone.box is None else (move(zone.box[0]), move(zone.box[1]))
-        return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
-
-    zones = tuple((paint, zone_moved(zone)) for paint, zone in work.wishes.zones)
+    zones = tuple((paint, moved_zone(zone, move)) for paint, zone in work.wishes.zones)
     timeline, wishes = followed(work, robot)
     return replace(work, robot=robot, timeline=timeline, wishes=replace(wishes, zones=zones))
