@@ -15,8 +15,7 @@ from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.pose_figures import draw_portrait
 from hydrostat.plot.report_chapters import chapters
-from hydrostat.plot.report_parts import captioned, fact, page
-from hydrostat.plot.report_tables import footer, millimetres
+from hydrostat.plot.report_tables import captioned, fact, footer, millimetres, page
 from hydrostat.plot.sheet import MILLIMETRES, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.robot import Robot

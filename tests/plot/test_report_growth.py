@@ -12,7 +12,7 @@ from hydrostat.design.network import best_errors, on_front
 from hydrostat.drawing.palette import WINCHES
 from hydrostat.plot import draw_front, draw_growth, inline_svg, report_text
 from hydrostat.plot.design_charts import stage_runs
-from hydrostat.plot.report_growth import alternative_chapters, certificate_words, evenly
+from hydrostat.plot.report_chapters import alternative_chapters, certificate_words, evenly
 from hydrostat.plot.robot_figures import draw_stage, stage_frame
 from hydrostat.robot import Robot
 

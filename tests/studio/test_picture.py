@@ -6,8 +6,7 @@ from builders import gallery_robot
 
 from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Robot
-from hydrostat.studio.view.packet import opened, packet
-from hydrostat.studio.view.picture import Picture
+from hydrostat.studio.view.picture import Picture, opened, packet
 from hydrostat.studio.view.robot_things import robot_things, target_things
 from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look
 

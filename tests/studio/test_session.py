@@ -14,7 +14,7 @@ from hydrostat.studio.records.work import Work
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.colouring import Colouring
-from hydrostat.studio.view.packet import opened
+from hydrostat.studio.view.picture import opened
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
 

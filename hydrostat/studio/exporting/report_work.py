@@ -4,7 +4,7 @@ import numpy as np
 
 from hydrostat.drawing.svg import Html, tag
 from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
-from hydrostat.plot.report_parts import Chapter, fact, page, section, table
+from hydrostat.plot.report_tables import Chapter, fact, page, section, table
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Robot, find_risks, robot_hash
 from hydrostat.studio.exporting.download import Download, file_name

@@ -14,7 +14,7 @@ from hydrostat.robot import gallery_folder
 from hydrostat.studio.face.stream import MOST_MISTAKES
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, StageName
-from hydrostat.studio.view.packet import opened
+from hydrostat.studio.view.picture import opened
 
 pytestmark = pytest.mark.slow
 

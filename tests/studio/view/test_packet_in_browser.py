@@ -7,8 +7,7 @@ import pytest
 from builders import gallery_robot
 from view_modules import needs_node, run
 
-from hydrostat.studio.view.packet import opened, packet
-from hydrostat.studio.view.picture import Picture
+from hydrostat.studio.view.picture import Picture, opened, packet
 from hydrostat.studio.view.robot_things import robot_things
 
 SCRIPT = """
