@@ -17,22 +17,14 @@ LATE = 2.0  # motors may take so much longer [s] to where they shall be than at 
 
 
 class Player:
-    """Playhead that follows a clock; whoever looks seldom misses what was between, so nothing is ever late.
-
-    Attributes:
-        time: of the playhead [s].
-        playing: whether it runs.
-        rounds: how often it runs from start to end before it stops; infinite: until it is stopped.
-        done: how often it has come to the end since it was last let run.
-        speed: seconds of the timeline in a second.
-    """
+    """Playhead that follows a clock; whoever looks seldom misses what was between, so nothing is ever late."""
 
     def __init__(self) -> None:
-        self.time = 0.0
-        self.playing = False
-        self.rounds = inf
-        self.done = 0
-        self.speed = 1.0
+        self.time = 0.0  # of the playhead [s]
+        self.playing = False  # whether it runs
+        self.rounds = inf  # how often it runs from start to end before it stops; infinite: until it is stopped
+        self.done = 0  # how often it has come to the end since it was last let run
+        self.speed = 1.0  # seconds of the timeline in a second
         self._seen: float | None = None
 
     @property

@@ -16,15 +16,10 @@ from hydrostat.simulation import Profile, ProfileTable, profile_text
 
 @dataclass(frozen=True, kw_only=True)
 class Key:
-    """Contractions of winches at one time.
+    """Contractions of winches at one time."""
 
-    Attributes:
-        time: since the start [s].
-        contractions: by the name of the winch [m]; others take in nothing.
-    """
-
-    time: float
-    contractions: Mapping[str, float]
+    time: float  # since the start [s]
+    contractions: Mapping[str, float]  # by the name of the winch [m]; others take in nothing
 
     def __post_init__(self) -> None:
         if not (isfinite(self.time) and 0 <= self.time <= LONGEST):
@@ -36,17 +31,11 @@ class Key:
 
 @dataclass(frozen=True, kw_only=True)
 class Timeline:
-    """Keyframes in the order of their times, no two at the same time.
+    """Keyframes in the order of their times, no two at the same time."""
 
-    Attributes:
-        keys: of all winches.
-        smooth: gently from key to key, rather than along a line.
-        length: it goes on so long [s], or to its last key if that is later.
-    """
-
-    keys: tuple[Key, ...] = field(default=())
-    smooth: bool = False
-    length: float = 4.0
+    keys: tuple[Key, ...] = field(default=())  # of all winches
+    smooth: bool = False  # gently from key to key, rather than along a line
+    length: float = 4.0  # it goes on so long [s], or to its last key if that is later
 
     def __post_init__(self) -> None:
         times = [key.time for key in self.keys]

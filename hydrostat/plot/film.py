@@ -23,34 +23,21 @@ LEAST_LEFT = 0.7  # no winch is taken in so far that less than this share of its
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Stop:
-    """A place where a film goes.
+    """A place where a film goes."""
 
-    Attributes:
-        name: of the pose, or what is done.
-        contractions: cable taken in by each winch [m].
-        target: whose targets are shown on the way.
-        words: shown while the robot stays there.
-    """
-
-    name: str
-    contractions: Vector
-    target: Pose | None = None
-    words: str = ""
+    name: str  # of the pose, or what is done
+    contractions: Vector  # cable taken in by each winch [m]
+    target: Pose | None = None  # whose targets are shown on the way
+    words: str = ""  # shown while the robot stays there
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Film:
-    """Frames at equal times.
+    """Frames at equal times."""
 
-    Attributes:
-        frames: the first and the last at rest.
-        step: time of a frame [s].
-        missing: numbers of the frames where no equilibrium was found; the one before stands in their place.
-    """
-
-    frames: tuple[Frame, ...]
-    step: float
-    missing: tuple[int, ...]
+    frames: tuple[Frame, ...]  # the first and the last at rest
+    step: float  # time of a frame [s]
+    missing: tuple[int, ...]  # numbers of the frames without an equilibrium; they show the one before
 
 
 def pose_stops(reached: Iterable[ReachedPose]) -> list[Stop]:

@@ -14,21 +14,13 @@ from hydrostat.simulation import Motion, SolvedPose
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Frame:
-    """What is to be seen at one instant.
+    """What is to be seen at one instant."""
 
-    Attributes:
-        nodes: positions of the nodes [m].
-        tensions: of each cable [N].
-        contractions: cable taken in by each winch [m]; without, no winch is seen to turn.
-        target: the pose that is approached, whose targets are shown.
-        words: what happens, in a line.
-    """
-
-    nodes: Nodes
-    tensions: Vector
-    contractions: Vector | None = None
-    target: Pose | None = None
-    words: str = ""
+    nodes: Nodes  # positions of the nodes [m]
+    tensions: Vector  # of each cable [N]
+    contractions: Vector | None = None  # cable taken in by each winch [m]; without, no winch is seen to turn
+    target: Pose | None = None  # the pose that is approached, whose targets are shown
+    words: str = ""  # what happens, in a line
 
     @classmethod
     def of(cls, found: SolvedPose | Motion, *, target: Pose | None = None, words: str = "") -> Self:

@@ -31,20 +31,14 @@ class Document:
     """The open robot; every change of it can be undone and done again.
 
     It can be changed from any thread: each change replaces one frozen `Work` by another.
-
-    Attributes:
-        bell: rung after each change.
-        folder: where the robot is saved; None: nowhere yet.
-        text: of the robot.toml that it was opened from; "": none.
-        stamp: of that folder when it was opened or saved last (`folder_stamp`).
-        serial: counts the changes, undoing included; the same number means the same work.
     """
 
     def __init__(self, bell: Bell) -> None:
-        self.bell = bell
-        self.folder: Path | None = None
-        self.stamp = self.text = ""
-        self.serial = 0
+        self.bell = bell  # rung after each change
+        self.folder: Path | None = None  # where the robot is saved; None: nowhere yet
+        self.text = ""  # of the robot.toml that it was opened from; "": none
+        self.stamp = ""  # of that folder when it was opened or saved last (`folder_stamp`)
+        self.serial = 0  # counts the changes, undoing included; the same number means the same work
         self._lock = RLock()
         self._past: list[Change] = []
         self._future: list[Change] = []

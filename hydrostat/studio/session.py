@@ -50,23 +50,13 @@ class Session:
 
     Methods return at once, but for `step`, which a thread of its own calls again and again. Several screens may use one
     session: they all see the same, and one of them at a time holds something with its pointer.
-
-    Attributes:
-        bell: rings when something has changed.
-        document: the robot, with undo.
-        jobs: long work.
-        starter: the stages, as are those below.
-        stage: that is shown.
-        colouring: of the body.
-        notes: the last ones, for the person.
-        answered: stamp of the drag that the present shape answers.
     """
 
     def __init__(self, state: Path | None = None) -> None:
         """An empty studio that remembers in the folder `state`, over runs and crashes; None: nothing."""
-        self.bell = Bell()
-        self.document = Document(self.bell)
-        self.jobs = Jobs(self.bell)
+        self.bell = Bell()  # rings when something has changed
+        self.document = Document(self.bell)  # the robot, with undo
+        self.jobs = Jobs(self.bell)  # long work
         self.starter = Starter(self.document, self.jobs, state)
         self.editor = Editor(self.document, self.jobs)
         self.poser = Poser(self.document, self.jobs)
@@ -81,12 +71,12 @@ class Session:
             StageName.DRIVE: self.driver,
             StageName.EXPORT: self.exporter,
         }
-        self.stage = StageName.START
-        self.colouring = Colouring.FELT
+        self.stage = StageName.START  # that is shown
+        self.colouring = Colouring.FELT  # of the body
         self.notes: deque[Note] = deque(maxlen=MOST_NOTES)
         self._told = 0
         self._holder: str | None = None
-        self._stamp = self.answered = 0.0
+        self._stamp = self.answered = 0.0  # stamps of the last drag, and of that which the present shape answers
         self._complaint = self._unkept = ""
         self._show = Show()
         self._lock = RLock()

@@ -17,12 +17,7 @@ from hydrostat.simulation import SolvedPose
 
 
 class InverseSearch:
-    """Equilibria on the way to the solution of a problem.
-
-    Attributes:
-        problem: what is sought.
-        solves: equilibria approached so far.
-    """
+    """Equilibria on the way to the solution of a problem; `solves` counts those that were approached."""
 
     def __init__(self, problem: InverseProblem) -> None:
         """Nothing has been solved yet."""

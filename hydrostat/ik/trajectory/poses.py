@@ -14,15 +14,10 @@ Tell = Callable[[str, int, int], None]  # is told the stage, how much of it is d
 
 @dataclass(frozen=True, kw_only=True)
 class Snap:
-    """Where a robot jumps from one branch of equilibria to another.
+    """Where a robot jumps from one branch of equilibria to another."""
 
-    Attributes:
-        time: [s].
-        distance: how far a node is from where the branch would have led it [m].
-    """
-
-    time: float
-    distance: float
+    time: float  # [s]
+    distance: float  # how far a node is from where the branch would have led it [m]
 
 
 def follow(

@@ -26,31 +26,18 @@ class PathKind(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class KeyPose:
-    """What became of a keyframe.
+    """What became of a keyframe."""
 
-    Attributes:
-        name: of its pose.
-        time: when it is reached [s].
-        index: of its sample.
-        target: where markers should be; None where a pose was given as such.
-        found: what inverse kinematics found from the keyframe before; None where a pose was given.
-        pose: what the robot is in when the trajectory is there.
-        errors: distance of each marker from its target in that pose [m].
-        stray: largest distance of a marker from the straight line from the keyframe before to this one [m].
-        free_error: rms error that a search from rest finds on another branch, where that is better [m].
-        same: whether the way leads to the pose that inverse kinematics found.
-    """
-
-    name: str
-    time: float
-    index: int
-    target: Pose | None
-    found: ReachedPose | None
-    pose: SolvedPose = field(repr=False)
-    errors: Mapping[str, float]
-    stray: float
-    free_error: float | None
-    same: bool
+    name: str  # of its pose
+    time: float  # when it is reached [s]
+    index: int  # of its sample
+    target: Pose | None  # where markers should be; None where a pose was given as such
+    found: ReachedPose | None  # what inverse kinematics found from the keyframe before; None where a pose was given
+    pose: SolvedPose = field(repr=False)  # what the robot is in when the trajectory is there
+    errors: Mapping[str, float]  # distance of each marker from its target in that pose [m]
+    stray: float  # largest distance of a marker from the straight line from the keyframe before to this one [m]
+    free_error: float | None  # rms error that a search from rest finds on another branch, where that is better [m]
+    same: bool  # whether the way leads to the pose that inverse kinematics found
 
     @property
     def rms_error(self) -> float:

@@ -8,12 +8,7 @@ DURATION = 0.45  # time from one shape to the next [s]
 
 
 class Ease:
-    """A shape on its way to another; what lies between is shown, not solved.
-
-    Attributes:
-        nodes: now [m].
-        tensions: of the cables now [N].
-    """
+    """A shape, nodes [m] and tensions [N], on its way to another; what lies between is shown, not solved."""
 
     def __init__(self, nodes: Nodes, tensions: Vector) -> None:
         self.nodes, self.tensions = nodes, tensions

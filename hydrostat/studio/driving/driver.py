@@ -21,13 +21,7 @@ from hydrostat.studio.view.things import RobotShape, Thing
 
 
 class Driver(Stage):
-    """Contractions by hand and in time (R58): knobs or keyframes command a link, and the body follows its motors.
-
-    Attributes:
-        keyframes: the timeline, edited.
-        recorder: films of it.
-        player: the playhead.
-    """
+    """Contractions by hand and in time (R58): knobs or keyframes command a link, and the body follows its motors."""
 
     def __init__(self, document: Document, jobs: Jobs, *, connect: Callable[[Vector], Link] = SimulatedLink) -> None:
         """A stage for a document; `connect` makes the link to motors whose winches have taken in so much [m]."""

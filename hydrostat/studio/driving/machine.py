@@ -59,20 +59,13 @@ class Follower:
 
 
 class Machine:
-    """The open robot at work. All but `shape`, `due`, `run` and `fail` are called with its lock held.
-
-    Attributes:
-        player: the playhead.
-        motors: of the winches.
-        notice: why it does not do what was asked; "" if it does.
-        lock: for what must not change meanwhile; never held for long.
-    """
+    """The open robot at work. All but `shape`, `due`, `run` and `fail` are called with its lock held."""
 
     def __init__(self, document: Document, keyframes: Keyframes, connect: Callable[[Vector], Link]) -> None:
         self._connect = connect
         self.player, self.motors = Player(), Motors((), connect(np.zeros(0)), patience=inf)
-        self.notice = ""
-        self.lock = RLock()
+        self.notice = ""  # why it does not do what was asked; "" if it does
+        self.lock = RLock()  # for what must not change meanwhile; never held for long
         self._document, self._keyframes = document, keyframes
         self._follower = Follower()
         self._robot: Robot | None = None

@@ -25,11 +25,7 @@ LOCK = "lock"
 
 
 class HeldFolder:
-    """A new folder with a locked file in it. The system ends the lock with the process, even if that is killed.
-
-    Attributes:
-        path: of the folder.
-    """
+    """A new folder with a locked file in it. The system ends the lock with the process, even if that is killed."""
 
     def __init__(self, parent: Path) -> None:
         """Make it (OSError: it cannot be made)."""

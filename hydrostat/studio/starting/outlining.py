@@ -26,20 +26,14 @@ class Reshaped:
 
 
 class Outlining:
-    """Loops that are drawn, checked as they change.
-
-    Attributes:
-        loops: the rim and holes, in any order.
-        robot: whose outline is edited; None: a new one is drawn.
-        fault: why they are no body yet; "" if they are.
-        words: what they are, such as "280 x 240 mm, 21 corners"; "" if they are no body.
-    """
+    """Loops that are drawn, checked as they change."""
 
     def __init__(self, loops: tuple[Loop, ...] = (), robot: Robot | None = None) -> None:
         """Begin with loops."""
-        self.robot = robot
-        self.loops: tuple[Loop, ...] = ()
-        self.fault = self.words = ""
+        self.robot = robot  # whose outline is edited; None: a new one is drawn
+        self.loops: tuple[Loop, ...] = ()  # the rim and holes, in any order
+        self.fault = ""  # why they are no body yet; "" if they are
+        self.words = ""  # what they are, such as "280 x 240 mm, 21 corners"; "" if they are no body
         self._set(loops)
 
     @classmethod
