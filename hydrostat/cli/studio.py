@@ -34,8 +34,5 @@ def studio(
     session = Session(state_folder())
     if robot is not None:
         session.open_folder(robot)
-    serve(session, host=host, port=port, show=browser, announce=_announce)
-
-
-def _announce(address: str) -> None:
-    print(f"The studio is at {address}   (Ctrl-C ends it)", flush=True)
+    words = "The studio is at {}   (Ctrl-C ends it)"
+    serve(session, host=host, port=port, show=browser, announce=lambda at: print(words.format(at), flush=True))

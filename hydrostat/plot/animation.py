@@ -50,7 +50,8 @@ def save_gif(
     """
     _check(robot, frames, step, width)
     pictures = list(_drawn(robot, frames, width, tell))
-    palette = _palette(robot, [_unpacked(pictures[index]) for index in _spread(len(frames))])
+    some = sorted({int(index) for index in np.linspace(0, len(frames) - 1, SAMPLES).round()})
+    palette = _palette(robot, [_unpacked(pictures[index]) for index in some])
     runs = _runs(pictures)
     ends = np.round(100 * step * np.cumsum([count for _, count in runs])).astype(int)
     times = [int(end - start) for start, end in pairwise([0, *ends])]
@@ -134,10 +135,6 @@ def _runs(pictures: Sequence[tuple[bytes, tuple]]) -> list[tuple[tuple[bytes, tu
     """Every picture that differs from the one before, and for how many frames it is shown."""
     starts = [index for index in range(len(pictures)) if index == 0 or pictures[index] != pictures[index - 1]]
     return [(pictures[start], end - start) for start, end in pairwise([*starts, len(pictures)])]
-
-
-def _spread(count: int) -> list[int]:
-    return sorted({int(index) for index in np.linspace(0, count - 1, SAMPLES).round()})
 
 
 def _palette(robot: Robot, pictures: Sequence[Picture]) -> Palette:

@@ -82,14 +82,11 @@ def _tracked(robot: Robot, found: PathDependence, branches: Sequence[Branch]) ->
     names = [marker.name for marker in robot.markers]
     if not names:
         return [""]
-    ways = {name: max((_reach(robot, branch, name) for branch in branches), default=0.0) for name in names}
+    points = [point for branch in branches for point in branch.points]
+    ways = {name: max((_moved(robot, point.pose, name) for point in points), default=0.0) for name in names}
     counts = found.spread if len(found.poses) > 1 else ways
     told = [name for name in names if counts[name] >= TOLD * max(counts.values())]
     return sorted(told, key=lambda name: -counts[name])[:MOST_MARKERS]
-
-
-def _reach(robot: Robot, branch: Branch, name: str) -> float:
-    return max(_moved(robot, point.pose, name) for point in branch.points)
 
 
 def _moved(robot: Robot, pose: SolvedPose, name: str) -> float:

@@ -1,7 +1,6 @@
 """The look of charts: `new_chart` is an empty one, `plain_axes` one of several in a figure."""
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
@@ -15,7 +14,6 @@ DASHES = ("-", "--", ":", "-.")  # lines of one colour, one after the other
 def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0) -> tuple[Figure, Axes]:
     """A figure [inch] with one chart and words at its axes; the one across counts in whole numbers."""
     figure = Figure(figsize=(width, height), facecolor="none")
-    FigureCanvasAgg(figure)
     left, right, lower, upper = EDGES
     box = (left / width, lower / height, (width - left - right) / width, (height - lower - upper) / height)
     axes = figure.add_axes(box)

@@ -65,7 +65,7 @@ def _changed(indices: Indices, last: Indices, clear: int) -> tuple[tuple[int, in
 
 def _head(width: int, height: int, palette: Palette) -> bytes:
     """Size, palette, and that it plays for ever."""
-    bits = _bits(palette)
+    bits = max(int(np.ceil(np.log2(len(palette) + 1))), 2)  # one number more than colours, for pixels that stay
     table = palette.tobytes().ljust(3 << bits, b"\0")
     size = width.to_bytes(2, "little") + height.to_bytes(2, "little")
     return b"GIF89a" + size + bytes([0x80 | (bits - 1), 0, 0]) + table + b"!\xff\x0bNETSCAPE2.0\x03\x01\0\0\0"
@@ -76,11 +76,6 @@ def _frame(shown: Indices, box: tuple[int, int, int, int], time: int, palette: P
     control = b"!\xf9\x04" + bytes([0x05]) + time.to_bytes(2, "little") + bytes([len(palette), 0])
     sides = [left, upper, right - left, lower - upper]
     return control + b"," + b"".join(side.to_bytes(2, "little") for side in sides) + b"\0" + _packed(shown)
-
-
-def _bits(palette: Palette) -> int:
-    """Bits of a pixel; there is one number more than colours, for pixels that stay."""
-    return max(int(np.ceil(np.log2(len(palette) + 1))), 2)
 
 
 def _packed(shown: Indices) -> bytes:

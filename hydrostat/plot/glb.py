@@ -85,11 +85,11 @@ class Glb:
             "NORMAL": self._array(shape.normals[0]),
             "COLOR_0": self._array(shape.colours[0]),
         }
+        corners = shape.triangles.astype("<u4").reshape(-1, 1)
+        indices = self._accessor(corners, UNSIGNED, bounds=False, use=INDICES)
         mesh: dict[str, Any] = {
             "name": shape.name,
-            "primitives": [
-                {"attributes": attributes, "indices": self._indices(shape.triangles), "material": self._material(shape)}
-            ],
+            "primitives": [{"attributes": attributes, "indices": indices, "material": self._material(shape)}],
         }
         if len(shape.places) > 1:
             mesh["primitives"][0]["targets"] = [self._target(shape, key) for key in range(1, len(shape.places))]
@@ -148,9 +148,6 @@ class Glb:
     def _array(self, values: np.ndarray, *, bounds: bool = False, use: int | None = VERTICES) -> int:
         numbers = np.ascontiguousarray(values, dtype="<f4") + np.float32(0)
         return self._accessor(numbers, FLOAT, bounds=bounds, use=use)
-
-    def _indices(self, triangles: Int[np.ndarray, "triangles 3"]) -> int:
-        return self._accessor(triangles.astype("<u4").reshape(-1, 1), UNSIGNED, bounds=False, use=INDICES)
 
     def _accessor(self, numbers: np.ndarray, kind: int, *, bounds: bool, use: int | None) -> int:
         """Append numbers, all of 4 bytes and so in step, and describe them."""

@@ -1,5 +1,6 @@
 """From a figure to bytes: PNG files, and SVG that lies within a page. The same figure gives the same bytes."""
 
+import html
 import io
 import re
 import warnings
@@ -20,20 +21,15 @@ from matplotlib.text import Text
 from hydrostat.drawing.palette import PAGE_COLOURS, PAPER
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.sheet import BODY
+from hydrostat.robot import replace_file
 
 
 def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
     """Write a figure on white paper as PNG, whole or not at all; returns its path."""
-    import os
-
-    path = Path(path)
     buffer = io.BytesIO()
     with drawing(), _haloed(figure):
         figure.savefig(buffer, format="png", dpi=dpi, facecolor=PAPER, metadata={"Software": None})
-    part = path.with_name(f".{path.name}.part")
-    part.write_bytes(buffer.getvalue())
-    os.replace(part, path)
-    return path
+    return replace_file(Path(path), buffer.getvalue())
 
 
 def inline_svg(figure: Figure, *, name: str, label: str) -> str:
@@ -41,8 +37,6 @@ def inline_svg(figure: Figure, *, name: str, label: str) -> str:
 
     The name is unique in the page, so that inner references do not meet; the label is for who cannot see it.
     """
-    import html
-
     buffer = io.StringIO()
     with drawing(salt=name), _sharp(figure):
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
@@ -69,8 +63,7 @@ def figure_pixels(figure: Figure, *, dpi: float | None = None) -> UInt8[np.ndarr
     """Red, green, blue and cover of each pixel of a figure, the top row first."""
     if dpi is not None:
         figure.set_dpi(dpi)
-    canvas = figure.canvas
-    assert isinstance(canvas, FigureCanvasAgg)
+    canvas = figure.canvas if isinstance(figure.canvas, FigureCanvasAgg) else FigureCanvasAgg(figure)
     with drawing():
         canvas.draw()
     return np.asarray(canvas.buffer_rgba()).copy()
@@ -98,12 +91,8 @@ def _shorter(match: re.Match[str]) -> str:
 @contextmanager
 def drawing(salt: str = "hydrostat") -> Iterator[None]:
     """Settings for drawing; a letter that the font lacks is drawn as a box, without a warning."""
-    settings: Any = {
-        "svg.fonttype": "none",
-        "svg.hashsalt": salt,
-        "font.family": ["DejaVu Sans"],
-        "path.simplify": False,
-    }
+    settings: Any = {"svg.fonttype": "none", "svg.hashsalt": salt, "font.family": ["DejaVu Sans"]}
+    settings["path.simplify"] = False
     with rc_context(settings), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         yield

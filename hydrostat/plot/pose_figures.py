@@ -52,7 +52,8 @@ def draw_reached(
     The title is the pose's name if left out, nothing if empty; the outline is the shape that a flat body should take,
     dashed; width in inches.
     """
-    head = _reached_head(reached) if title is None else title
+    named = "Reached" if reached.target is None else f"Reached: {shorten(reached.target.name)}"
+    head = named if title is None else title
     goals = {} if reached.target is None else target_places(reached.target)
     rings = [] if outline is None else list(outline.rings)
     note = _reached_note(reached, list(goals))
@@ -64,10 +65,6 @@ def draw_reached(
     for name, place in panes[0].named(tracked).items():
         labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
     return sheet.figure
-
-
-def _reached_head(reached: ReachedPose) -> str:
-    return "Reached" if reached.target is None else f"Reached: {shorten(reached.target.name)}"
 
 
 def _reached_note(reached: ReachedPose, names: list[str]) -> str:

@@ -167,15 +167,11 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
     shown = evenly(len(trace.stages), MOST_STAGES)
     stages = [trace.stages[index] for index in shown]
     frame = stage_frame([*(stage.robot for stage in stages), network.robot])
-    pictures = [
-        picture(
-            draw_stage(stage.robot, like=network.robot, frame=frame),
-            f"stage-{index}",
-            f"{index + 1}. {_sentence(stage.words)}",
-            f": {_rms_text(stage.error)}",
-        )
-        for index, stage in zip(shown, stages, strict=True)
-    ]
+    pictures = []
+    for index, stage in zip(shown, stages, strict=True):
+        figure = draw_stage(stage.robot, like=network.robot, frame=frame)
+        head = f"{index + 1}. {stage.words[:1].upper()}{stage.words[1:]}"
+        pictures.append(picture(figure, f"stage-{index}", head, f": {_rms_text(stage.error)}"))
     curve = draw_growth(trace.stages, rest=rest_error(network), final=network.rms_error, marked=shown, width=CHART)
     note = f" over {counted(len(trace.stages), 'stage')}; those with a picture above are filled dots"
     parts = [grid(*pictures, kind="tiny"), grid(picture(curve, "growth", "The error", note))]
@@ -195,16 +191,9 @@ def alternative_chapters(network: Network) -> list[Chapter]:
             " More winches and more cables cost more and reach more: the curve tells how much. A filled dot lies on "
             "the Pareto front: no network with as few winches and cables is better."
         )
-        parts.append(
-            grid(
-                picture(
-                    draw_front(others, network, tolerance=_tolerance(network), width=CHART),
-                    "front",
-                    "Error against cables",
-                    ", a line for each number of winches",
-                )
-            )
-        )
+        figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
+        note = ", a line for each number of winches"
+        parts.append(grid(picture(figure, "front", "Error against cables", note)))
     shown = [others[index] for index in evenly(len(others), MOST_ALTERNATIVES)]
     parts.append(_pictures(network, shown))
     if len(shown) < len(others):
@@ -238,11 +227,6 @@ def _certificate(network: Network, certificate: Certificate | None) -> Html:
     return tag("p", tag("b", "What is left to gain. "), words, class_="note")
 
 
-def _tolerance(network: Network) -> float | None:
-    """The error of each pose that was asked for [m], where the number of winches was left open."""
-    return network.request.route_options.tolerance
-
-
 def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
     frame = stage_frame([*(other.robot for other in others), network.robot])
     pictures = []
@@ -256,7 +240,3 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
 
 def _rms_text(error: float) -> str:
     return f"{millimetres(error)} mm rms"
-
-
-def _sentence(words: str) -> str:
-    return words[:1].upper() + words[1:]

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
@@ -80,7 +79,6 @@ def new_sheet(
     wide, tall = high - low
     height = inches * tall / wide
     figure = Figure(figsize=(width, height + top + bottom), facecolor="none")
-    FigureCanvasAgg(figure)
     size = figure.get_size_inches()
     axes = figure.add_axes((left / size[0], bottom / size[1], inches / size[0], height / size[1]))
     sheet = PictureSheet(figure, axes, low, high, wide / (inches * 72))
@@ -104,7 +102,7 @@ def _rule(sheet: PictureSheet) -> None:
     """Thin grid lines at round millimetres, numbered along the left and lower sides."""
     step = round_step(float((sheet.high - sheet.low).max()))
     axes = sheet.axes
-    for axis, low, high in ((axes.xaxis, *_span(sheet, 0)), (axes.yaxis, *_span(sheet, 1))):
+    for axis, low, high in zip((axes.xaxis, axes.yaxis), sheet.low, sheet.high, strict=True):
         ticks = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step + 0.0  # no -0
         axis.set_ticks(ticks, [f"{tick:.10g}".replace("-", "\N{MINUS SIGN}") for tick in ticks])
     axes.tick_params(length=0, pad=4, labelsize=7, labelcolor=MUTED)
@@ -116,10 +114,6 @@ def _rule(sheet: PictureSheet) -> None:
         "mm", (0, 0), xycoords="axes fraction", xytext=(-4, -4), textcoords="offset points", fontsize=7, color=MUTED,
         ha="right", va="top",
     )  # fmt: skip
-
-
-def _span(sheet: PictureSheet, side: int) -> tuple[float, float]:
-    return float(sheet.low[side]), float(sheet.high[side])
 
 
 def round_step(span: float) -> float:

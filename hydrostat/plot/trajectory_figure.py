@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
@@ -32,14 +31,14 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
     inches.
     """
     shown = [("start", 0.0, trajectory.poses[0]), *((key.name, key.time, key.pose) for key in trajectory.keys)]
-    shown = _told_apart(shown)[: MOST_POSES + 1]
+    told = [shown[0], *(one for last, one in pairwise(shown) if last[2].nodes is not one[2].nodes)]
+    shown = told[: MOST_POSES + 1]  # without poses that are still those before
     images = _portraits(robot, [pose for _, _, pose in shown])
     side = (width - 0.2) / max(len(shown), 3)
     tall = min(max(image.shape[0] / image.shape[1] for image in images) * 0.94 * side, TALLEST)
     top = 0.55 if title != "" else 0.3
     height = top + tall + 0.2 + 3 * CHART + 0.5
     figure = Figure(figsize=(width, height), facecolor="none")
-    FigureCanvasAgg(figure)
     _head(figure, shorten(robot.name) if title is None else title, trajectory)
     for index, ((name, time, _), image) in enumerate(zip(shown, images, strict=True)):
         left = 0.1 + (index + (max(3 - len(shown), 0)) / 2) * side
@@ -49,13 +48,6 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
         axes.set_title(f"{shorten(name)}\n{time:.2f} s", fontsize=7.5, color=INK, pad=2, parse_math=False)
     _charts(figure, robot, trajectory, height - top - tall - 0.2)
     return figure
-
-
-def _told_apart(shown: list[tuple[str, float, SolvedPose]]) -> list[tuple[str, float, SolvedPose]]:
-    """Without poses that are still those before."""
-    return [
-        one for last, one in pairwise([None, *shown]) if one and (last is None or last[2].nodes is not one[2].nodes)
-    ]
 
 
 def _portraits(robot: Robot, poses: list[SolvedPose]) -> list[np.ndarray]:

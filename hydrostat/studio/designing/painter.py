@@ -101,7 +101,7 @@ class Painter:
         """Take a paint in hand, or none."""
         self.paint = paint
         self.chosen = None
-        self._forget()
+        self._corners, self._line, self._draft, self._shaping = (), (), None, None
 
     def grab(self, hit: Hit) -> bool:
         """Begin to draw, or take hold of a zone or of its handle."""
@@ -257,9 +257,6 @@ class Painter:
             return
         zones = tuple((paint, zone) if number == index else other for number, other in enumerate(wishes.zones))
         self._document.change(label, wishes=replace(wishes, zones=zones))
-
-    def _forget(self) -> None:
-        self._corners, self._line, self._draft, self._shaping = (), (), None, None
 
 
 def _area(index: int, paint: Paint, zone: Zone, *, chosen: bool) -> Area:

@@ -40,7 +40,8 @@ def _hero(solved: SolvedPoses) -> Html:
     steps: list[Html] = []
     if solved.reached:
         errors = np.concatenate([list(reached.errors.values()) for reached in solved.reached])
-        error, tension = _rms(errors), max(float(np.max(reached.pose.tensions)) for reached in solved.reached)
+        error = float(np.sqrt(np.mean(errors**2)))
+        tension = max(float(np.max(reached.pose.tensions)) for reached in solved.reached)
         share = f"{100 * error / robot.body.mesh.size:.1f} % of the body's size"
         steps.append(fact(f"{MILLIMETRES * error:.1f}", "mm rms", f"of all markers in all poses: {share}", best=True))
         steps.append(fact(f"{tension:.1f}", "N", "the largest tension of a cable in these poses"))
@@ -94,7 +95,3 @@ def _footer(robot: Robot) -> Html:
         "rms is the root of the mean of the squared errors."
     )
     return tag("footer", tag("h2", "How this was made"), tag("p", words), table(("", ""), rows))
-
-
-def _rms(errors: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(errors**2)))

@@ -72,7 +72,7 @@ def serve(
     token = None if own else token_urlsafe(16)
     number = listener.getsockname()[1]
     name = host if ":" not in host else f"[{host}]"
-    shown = name if host not in ("0.0.0.0", "::") else _outer_name()
+    shown = name if host not in ("0.0.0.0", "::") else socket.gethostname()
     guarded: ASGIApp = Guard(make_app(session), port=number, names=LOOPBACK if own else (*LOOPBACK, shown), token=token)
     address = f"http://{shown}:{number}/" + (f"?token={token}" if token else "")
     announce(address)
@@ -93,7 +93,3 @@ def _listener(host: str, port: int) -> socket.socket:
         words = f"--host {host} --port {port}: cannot be listened at ({error.strerror}); try another"
         raise InputError(words) from None
     return listener
-
-
-def _outer_name() -> str:
-    return socket.gethostname()

@@ -188,7 +188,8 @@ def send(download: Download) -> None:
 
 def picture(content: bytes, title: str, enlarge: Callable[[], None], *, kind: str = "png") -> None:
     """A small picture that shows itself large when it is pressed."""
-    button = ui.button(on_click=enlarge).props(f'flat no-caps padding=none aria-label="{_plain(title)}, larger"')
+    label = title.replace('"', "'")
+    button = ui.button(on_click=enlarge).props(f'flat no-caps padding=none aria-label="{label}, larger"')
     with button.classes("export-picture"), ui.column().classes("w-full gap-0"):
         ui.image(_address(content, kind)).props("fit=contain no-spinner no-transition").classes("export-thumb")
         ui.label(title).classes("export-caption")
@@ -214,7 +215,3 @@ def _address(content: bytes, kind: str) -> str:
     """A picture as an address of its own, so that nothing in it can reach the page."""
     media = {"png": "image/png", "svg": "image/svg+xml"}[kind]
     return f"data:{media};base64,{base64.b64encode(content).decode()}"
-
-
-def _plain(words: str) -> str:
-    return words.replace('"', "'")

@@ -165,7 +165,8 @@ def _robot(page: WindowPage, card: Card) -> None:
     tile = ui.element("button").classes("start-robot")
     with tile.props(f'aria-label="{shown}" data-testid="gallery-{card.name}"'):
         if card.picture is not None:
-            ui.element("img").props(f'src="{_inline(card.picture)}" alt=""')
+            content = b64encode(card.picture.read_bytes()).decode()
+            ui.element("img").props(f'src="data:image/webp;base64,{content}" alt=""')
         ui.label(shown).classes("start-robot-name")
         ui.label(card.words).classes("start-small")
     tile.on("click", lambda: open_with(page, tile, lambda: page.session.starter.open_gallery(card.folder)))
@@ -175,10 +176,6 @@ def _head(icon: str, words: str) -> None:
     with ui.element("div").classes("start-head"):
         ui.icon(icon)
         ui.label(words)
-
-
-def _inline(picture: Path) -> str:
-    return "data:image/webp;base64," + b64encode(picture.read_bytes()).decode()
 
 
 VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}
