@@ -34,7 +34,7 @@ PARTS = {
     "mesh_file": "files",
     "picture_file": "pictures",
     "motion_figures": "pictures",
-    "pose_figures": "pictures",
+    "robot_figures": "pictures",
     "anchors": "anchors",
     "mesh": "mesh",
     "read": "robot.toml",

@@ -10,9 +10,8 @@ from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion
 from hydrostat.plot.picture_file import inline_svg, save_png
-from hydrostat.plot.pose_figures import draw_portrait, draw_pose, draw_reached
 from hydrostat.plot.report import report_text, write_report
-from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_target
+from hydrostat.plot.robot_figures import draw_network, draw_portrait, draw_pose, draw_reached, draw_rest, draw_target
 from hydrostat.plot.scene import save_glb
 from hydrostat.plot.trajectory_figure import draw_trajectory
 

@@ -13,9 +13,9 @@ from hydrostat.errors import InputError
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.picture_file import inline_svg
-from hydrostat.plot.pose_figures import draw_portrait
 from hydrostat.plot.report_chapters import chapters
 from hydrostat.plot.report_tables import captioned, fact, footer, millimetres, page
+from hydrostat.plot.robot_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.robot import Robot

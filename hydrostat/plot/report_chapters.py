@@ -10,7 +10,6 @@ from hydrostat.drawing.svg import Html, tag
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
-from hydrostat.plot.pose_figures import draw_reached
 from hydrostat.plot.report_tables import (
     NARROW,
     Chapter,
@@ -26,7 +25,7 @@ from hydrostat.plot.report_tables import (
     tension_table,
     winch_table,
 )
-from hydrostat.plot.robot_figures import draw_network, draw_rest, draw_stage, draw_target, stage_frame
+from hydrostat.plot.robot_figures import draw_network, draw_reached, draw_rest, draw_stage, draw_target, stage_frame
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Pose, Robot, Source
 from hydrostat.units import counted

@@ -1,21 +1,34 @@
-"""Pictures of a robot at rest: its parts, its targets, its network, several networks of one body."""
+"""Pictures of a robot: at rest, with its network, in poses, and what its winches reach."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.drawing.palette import winch_colours
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.drawing.palette import ERROR, LIGHT, winch_colours
+from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.ik import ReachedPose
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Spread
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, PictureSheet, Places, Spread
 from hydrostat.plot.skin import outer_points
-from hydrostat.plot.targets import draw_arrows, draw_crosses, draw_markers, rest_markers, target_places, target_points
+from hydrostat.plot.targets import (
+    draw_arrows,
+    draw_crosses,
+    draw_markers,
+    draw_misses,
+    rest_markers,
+    target_places,
+    target_points,
+)
+from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import SolvedPose
 from hydrostat.units import counted
 
 
@@ -127,3 +140,129 @@ def stage_frame(robots: Iterable[Robot]) -> Spread:
     return np.concatenate(
         [*outer_points(body, [body.mesh.nodes]), np.array(points, dtype=float).reshape(-1, body.mesh.dim)]
     )
+
+
+def draw_pose(
+    robot: Robot, pose: SolvedPose, *, title: str | None = None, note: str | None = None, width: float = WIDTH
+) -> Figure:
+    """A simulated pose over the ghost of the rest shape; cables coloured by tension, winches with their contraction.
+
+    The title is the robot's name if left out, nothing if empty; the note below tells, if left out, whether it rests
+    under its contractions; width in inches.
+    """
+    head = shorten(robot.name) if title is None else title
+    line = _rests(pose) if note is None else note
+    sheet, panes, labels = _in_pose(robot, pose, head, line, width, targets={})
+    for pane in panes:
+        draw_markers(sheet, pane.named(pose.markers))
+    for name, place in panes[0].named(pose.markers).items():
+        labels.place(place, shorten(name))
+    return sheet.figure
+
+
+def draw_reached(
+    robot: Robot,
+    reached: ReachedPose,
+    *,
+    title: str | None = None,
+    outline: Outline | None = None,
+    width: float = WIDTH,
+) -> Figure:
+    """What the winches reach of a pose: targets as crosses, each marker's error as a red line with its millimetres.
+
+    The title is the pose's name if left out, nothing if empty; the outline is the shape that a flat body should take,
+    dashed; width in inches.
+    """
+    named = "Reached" if reached.target is None else f"Reached: {shorten(reached.target.name)}"
+    head = named if title is None else title
+    goals = {} if reached.target is None else target_places(reached.target)
+    rings = [] if outline is None else list(outline.rings)
+    note = _reached_note(reached, list(goals))
+    sheet, panes, labels = _in_pose(robot, reached.pose, head, note, width, targets=goals, rings=rings)
+    tracked = {name: reached.pose.markers[name] for name in goals}
+    for ring in rings:
+        _draw_wanted(sheet, MILLIMETRES * ring)
+    draw_misses(sheet, panes, tracked, goals)
+    for name, place in panes[0].named(tracked).items():
+        labels.place(place, f"{shorten(name)}\N{EN SPACE}{MILLIMETRES * reached.errors[name]:.1f} mm")
+    return sheet.figure
+
+
+def _reached_note(reached: ReachedPose, names: list[str]) -> str:
+    """Errors in words: of the markers together, of each other goal by its name."""
+    markers = [reached.errors[name] for name in names]
+    parts = [f"marker error {MILLIMETRES * float(np.sqrt(np.mean(np.square(markers)))):.2f} mm rms"] if markers else []
+    others = {name: error for name, error in reached.errors.items() if name not in names}
+    parts += [f"{shorten(name)} error {MILLIMETRES * error:.2f} mm" for name, error in others.items()]
+    return ", ".join(parts) or str(reached.reason)
+
+
+def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:
+    """A ring of the shape that is wanted [mm], dashed."""
+    closed = np.concatenate([ring, ring[:1]])
+    sheet.curve(closed, color=LIGHT, linewidth=2.6, zorder=14)
+    sheet.curve(closed, color=ERROR, linewidth=1.2, linestyle=(0, (3.5, 2.0)), zorder=14.1)
+
+
+def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, width: float = WIDTH) -> Figure:
+    """The robot alone, without grid or words, its nodes at `nodes` [m]; the picture holds all points of `frame` [m]."""
+    carried = Attachments(robot)
+    beside = [*carried.cables(nodes), carried.winches(nodes)] if nodes.shape[1] == 3 else []
+    shapes, points = ([nodes], beside) if frame is None else ([], [frame])
+    sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
+    draw_hardware(sheet, panes[0], panes[0].draw_body(sheet, nodes), carried, nodes)
+    return sheet.figure
+
+
+def _in_pose(
+    robot: Robot,
+    pose: SolvedPose,
+    title: str,
+    subtitle: str,
+    width: float,
+    *,
+    targets: Mapping[str, Vector],
+    rings: Sequence[Ring] = (),
+) -> tuple[PictureSheet, list[Pane], Labels]:
+    """A sheet with ghost, posed body, cables by tension and winches, room for rings and for labels off targets [m]."""
+    rest, carried = robot.body.mesh.nodes, Attachments(robot)
+    goals = np.array(list(targets.values())).reshape(-1, robot.body.mesh.dim)
+    sheet, panes = open_sheet(
+        robot,
+        [pose.nodes, rest],
+        [*carried.cables(pose.nodes), goals, *rings],
+        title=title,
+        subtitle=subtitle,
+        width=width,
+        bar=bool(robot.cables),
+    )
+    scale = TensionScale.of(pose.tensions)
+    colours = [scale.colour(float(tension)) for tension in pose.tensions]
+    drawn = []
+    for pane in panes:
+        pane.draw_ghost(sheet)
+        body = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
+        drawn.append(draw_hardware(sheet, pane, body, carried, pose.nodes, colours=colours, width=2.6))
+    points = [*pose.markers.values(), *goals]
+    labels = drawn[0].labels(sheet, panes[0].places(np.array(points)) if points else np.empty((0, 2)))
+    if robot.cables:
+        scale.draw_bar(sheet, of="cable tension")
+        beads = draw_numbers(sheet, drawn[0].runs, colours, labels)
+        name_winches(labels, robot, drawn[0].winches, [_note(contraction) for contraction in pose.contractions])
+        for bead, tension in zip(beads, pose.tensions, strict=True):
+            words = f"{tension:.1f} N" if tension > 0 else "slack"
+            labels.place(bead, words, size=6.5, weight="bold", outside=0.1)
+    return sheet, panes, labels
+
+
+def _rests(pose: SolvedPose) -> str:
+    """Whether a pose is an equilibrium, in words."""
+    if not pose.result.converged:
+        return f"not at rest under the given contractions: {pose.result.reason}"
+    return "at rest under the given contractions" + ("" if pose.result.stable else ", on a saddle")
+
+
+def _note(contraction: float) -> str:
+    """A contraction [m] in millimetres, with its sign."""
+    number = f"{MILLIMETRES * contraction:+.1f}".replace("-", "\N{MINUS SIGN}")
+    return "0 mm" if number[1:] == "0.0" else f"{number} mm"

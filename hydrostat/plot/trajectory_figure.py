@@ -13,7 +13,7 @@ from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.chart import DASHES, plain_axes
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
-from hydrostat.plot.pose_figures import draw_portrait
+from hydrostat.plot.robot_figures import draw_portrait
 from hydrostat.plot.sheet import MILLIMETRES, WIDTH
 from hydrostat.robot import Robot
 from hydrostat.simulation import SolvedPose

@@ -14,8 +14,8 @@ from plot.films import flat_film, frames_of, space_film
 from hydrostat.drawing.palette import ERROR
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot import Frame, film, save_gif, save_mp4, winch_stops
+from hydrostat.plot.animation import gif_bytes
 from hydrostat.plot.frame_pictures import FramePictures
-from hydrostat.plot.gif import gif_bytes
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 

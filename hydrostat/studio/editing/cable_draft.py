@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.drawing.palette import INK, MUTED, WINCHES, winch_colours
 from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
-from hydrostat.studio.editing.mirror import Mirror
+from hydrostat.studio.editing.part import Mirror
 from hydrostat.studio.editing.place import add_cable, add_winch
 from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
 

@@ -16,8 +16,7 @@ from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_ca
 from hydrostat.studio.editing.change import change, remesh, rename, set_gravity
 from hydrostat.studio.editing.findings import Findings, look_over
 from hydrostat.studio.editing.hold import Hold, below_skin, inside, take_hold
-from hydrostat.studio.editing.mirror import Mirror
-from hydrostat.studio.editing.part import find_part, name_of, title_of
+from hydrostat.studio.editing.part import Mirror, find_part, name_of, title_of
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import followed

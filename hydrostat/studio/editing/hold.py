@@ -8,8 +8,7 @@ import numpy as np
 from hydrostat.geometry.anchors import locate, nearest_shares
 from hydrostat.robot import Mount, Point, Robot
 from hydrostat.robot.body import Body
-from hydrostat.studio.editing.mirror import Mirror
-from hydrostat.studio.editing.part import Kind, find_part, place_of
+from hydrostat.studio.editing.part import Kind, Mirror, find_part, place_of
 from hydrostat.studio.editing.place import insert_via
 
 DIGITS = 4  # places are whole tenths of a millimetre: decimals of a metre

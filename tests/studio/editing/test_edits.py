@@ -14,8 +14,7 @@ from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.findings import in_words, look_over
 from hydrostat.studio.editing.hold import below_skin, inside
-from hydrostat.studio.editing.mirror import Mirror
-from hydrostat.studio.editing.part import find_part, keys_of, place_of
+from hydrostat.studio.editing.part import Mirror, find_part, keys_of, place_of
 from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work, after_design, followed
