@@ -38,10 +38,8 @@ def draw_branches(
 
     Stable parts are solid lines, unstable ones dashed; dots mark folds, diamonds bifurcations, and numbered dots at the
     end the poses above. Branches are on straight ways between rest and these contractions, in either direction; the
-    share of the contractions is that of `found`. The title is the robot's name if left out; width in inches.
-
-    Raises:
-        InputError: contractions that are all 0: there is no way to them.
+    share of the contractions is that of `found`, which must not all be 0 (InputError). The title is the robot's name if
+    left out; width in inches.
     """
     if not found.contractions.any():
         raise InputError("branches lead from rest to other contractions, but these are all 0; contract a winch")

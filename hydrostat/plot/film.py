@@ -71,14 +71,8 @@ def film(
 ) -> Film:
     """The equilibria from rest through all stops and back to rest; it starts and stops gently.
 
-    A frame that has no equilibrium, or in which an element would be inverted, shows the one before.
-
-    Args:
-        simulation: the robot's physics.
-        stops: where it goes, one after the other.
-        seconds: length of the film [s].
-        step: about the time of a frame [s].
-        tell: is told how far the work is.
+    A frame that has no equilibrium, or in which an element would be inverted, shows the one before. The film takes so
+    many seconds, each frame about a step [s].
 
     Raises:
         InputError: no stop, or so little time that a way would have fewer than four frames.

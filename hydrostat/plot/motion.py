@@ -37,10 +37,7 @@ def motion_frames(robot: Robot, poses: Iterable[Vector], *, steps: int = STEPS) 
 def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str, step: float = STEP) -> Html:
     """The robot moving through frames [m] a step [s] apart for ever, as an `<svg>` with a label for who cannot see it.
 
-    Where nothing moves the first frame is shown.
-
-    Raises:
-        InputError: a body in space.
+    Where nothing moves the first frame is shown. A body in space is an InputError.
     """
     skin = FlatSkin.of(robot.body)
     seconds = step * (len(frames) - 1)

@@ -4,6 +4,7 @@ from itertools import cycle
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.drawing.palette import INK, WINCHES, winch_colours
@@ -22,6 +23,7 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     A marker with the name of a winch has its colour. The title is the robot's name if left out; width in inches.
     """
     figure = Figure(figsize=(width, 0.95 * width), layout="constrained")
+    FigureCanvasAgg(figure)
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
     head = shorten(robot.name) if title is None else title
     if head:

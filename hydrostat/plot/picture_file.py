@@ -63,7 +63,8 @@ def figure_pixels(figure: Figure, *, dpi: float | None = None) -> UInt8[np.ndarr
     """Red, green, blue and cover of each pixel of a figure, the top row first."""
     if dpi is not None:
         figure.set_dpi(dpi)
-    canvas = figure.canvas if isinstance(figure.canvas, FigureCanvasAgg) else FigureCanvasAgg(figure)
+    canvas = figure.canvas
+    assert isinstance(canvas, FigureCanvasAgg)
     with drawing():
         canvas.draw()
     return np.asarray(canvas.buffer_rgba()).copy()

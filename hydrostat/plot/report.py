@@ -25,12 +25,9 @@ from hydrostat.units import counted
 def write_report(
     network: Network, path: str | Path, *, title: str | None = None, facts: Mapping[str, object] | None = None
 ) -> Path:
-    """Write the report of a design as one HTML file, whole or not at all; returns its path.
+    """Write the report of a design as one HTML file; returns its path (InputError: no pose of the network was tried).
 
     The title is the robot's name if left out; facts are more lines for the end, such as options and seed.
-
-    Raises:
-        InputError: a network of which no pose was tried.
     """
     from hydrostat.robot.write import replace_file
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
@@ -57,6 +58,13 @@ class PictureSheet:
         self.axes.text(*place, words, **{"parse_math": False, "clip_on": False, **style})  # pyright: ignore[reportArgumentType]
 
 
+def new_figure(width: float, height: float) -> Figure:
+    """An empty clear figure [inch] whose pixels can be read."""
+    figure = Figure(figsize=(width, height), facecolor="none")
+    FigureCanvasAgg(figure)
+    return figure
+
+
 def new_sheet(
     points: Places,
     *,
@@ -78,7 +86,7 @@ def new_sheet(
     inches = width - left - right
     wide, tall = high - low
     height = inches * tall / wide
-    figure = Figure(figsize=(width, height + top + bottom), facecolor="none")
+    figure = new_figure(width, height + top + bottom)
     size = figure.get_size_inches()
     axes = figure.add_axes((left / size[0], bottom / size[1], inches / size[0], height / size[1]))
     sheet = PictureSheet(figure, axes, low, high, wide / (inches * 72))

@@ -14,7 +14,7 @@ from hydrostat.plot.chart import DASHES, plain_axes
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait
-from hydrostat.plot.sheet import MILLIMETRES, WIDTH
+from hydrostat.plot.sheet import MILLIMETRES, WIDTH, new_figure
 from hydrostat.robot import Robot
 from hydrostat.simulation import SolvedPose
 
@@ -27,8 +27,7 @@ CHART = 1.45  # height of a chart [inch]
 def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None = None, width: float = WIDTH) -> Figure:
     """The poses at the keyframes, then contraction, speed and acceleration of each winch over time.
 
-    Keyframes are upright lines, limits dashed ones, snaps red ones. The title is the robot's name if left out; width in
-    inches.
+    Keyframes are upright lines, limits dashed, snaps red. The title is the robot's name if left out; width in inches.
     """
     shown = [("start", 0.0, trajectory.poses[0]), *((key.name, key.time, key.pose) for key in trajectory.keys)]
     told = [shown[0], *(one for last, one in pairwise(shown) if last[2].nodes is not one[2].nodes)]
@@ -38,7 +37,7 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
     tall = min(max(image.shape[0] / image.shape[1] for image in images) * 0.94 * side, TALLEST)
     top = 0.55 if title != "" else 0.3
     height = top + tall + 0.2 + 3 * CHART + 0.5
-    figure = Figure(figsize=(width, height), facecolor="none")
+    figure = new_figure(width, height)
     _head(figure, shorten(robot.name) if title is None else title, trajectory)
     for index, ((name, time, _), image) in enumerate(zip(shown, images, strict=True)):
         left = 0.1 + (index + (max(3 - len(shown), 0)) / 2) * side

@@ -100,12 +100,8 @@ class Document:
     ) -> None:
         """Begin with a robot; what was open before is left as it was.
 
-        Args:
-            work: to begin with.
-            folder: where it is saved; None: nowhere yet.
-            saved: whether the folder has all of it.
-            stamp: of the folder when the work was read from it; None: it was read just now.
-            text: of the robot.toml that it was read from; "": none.
+        It is saved in the folder, all of it or not; None: nowhere yet. The stamp is that of the folder when the work
+        was read from it, if that was not just now; the text that of its robot.toml.
         """
         with self._lock:
             self._past, self._future = [Change("open", work)], []
@@ -124,17 +120,10 @@ class Document:
         wishes: Wishes | None = None,
         merge: str = "",
     ) -> None:
-        """Replace parts of the work.
+        """Replace parts of the work (InputError: no robot is open).
 
-        Args:
-            label: what was done, as a person would say it.
-            robot: in place of the one that was; as are `timeline` and `wishes`.
-            timeline: keyframes.
-            wishes: for a design.
-            merge: a change in a row with the same word replaces the one before; see `Change`.
-
-        Raises:
-            InputError: no robot is open.
+        The label says what was done, as a person would. A change in a row with the same word `merge` replaces the one
+        before.
         """
         with self._lock:
             given = {"robot": robot, "timeline": timeline, "wishes": wishes}

@@ -41,11 +41,7 @@ def write_studio_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None:
 
 
 def read_studio_file(folder: Path, cables: Sequence[str] = ()) -> StudioFile:
-    """What the file of a folder says; nothing special if there is none. The cables are for a file that numbers them.
-
-    Raises:
-        InputError: it cannot be read or says something else, in one line.
-    """
+    """What a folder's file says, if there is one (InputError: it is wrong); one may number the robot's cables."""
     file = folder / STUDIO_FILE
     if not file.exists():
         return StudioFile(timeline=Timeline(), wishes=Wishes())

@@ -271,10 +271,7 @@ class Driver(Stage):
     def step(self, now: float) -> bool:
         """Command the motors, see where they are, and let the body follow; whether there is more to do.
 
-        Whatever goes wrong, the motors hold and nothing plays any more.
-
-        Raises:
-            HydrostatError: of the link, or of the physics.
+        Whatever goes wrong, a HydrostatError of the link or of the physics, the motors hold and nothing plays any more.
         """
         if not self._document.robot.cables:
             return False

@@ -64,12 +64,9 @@ class Keyframes:
             )
 
     def move(self, index: int, time: float) -> float:
-        """Drag a key to a time [s], within the timeline; returns where it went. It ends with `drop`.
+        """Drag a key to a time [s]; where it went (InputError: no such key or time). It ends with `drop`.
 
         A key that it comes upon is replaced, but stays if the drag goes on.
-
-        Raises:
-            InputError: there is no such key, or no such time.
         """
         if not isfinite(time):
             raise InputError("the time of a keyframe must be a number of seconds")

@@ -117,10 +117,7 @@ class Machine:
     def run(self, now: float) -> bool:
         """Command the motors, see where they are, and let the body follow; whether anything has changed.
 
-        Whoever calls it tells `fail` of all that it raises.
-
-        Raises:
-            HydrostatError: of the link.
+        Whoever calls it tells `fail` of all that it raises, such as a HydrostatError of the link.
         """
         self._ran = now
         simulation = self._document.simulation

@@ -26,11 +26,7 @@ RANGES = {"radius": (1e-4, 20.0), "spool_radius": (1e-4, 20.0), "travel": (0.0, 
 
 
 def rename(robot: Robot, key: str, name: str) -> Robot:
-    """The same robot with another name of a winch, cable or marker; its cables, if named after it, and poses follow.
-
-    Raises:
-        InputError: no such part, a name that is taken or that robot.toml does not allow.
-    """
+    """The same robot with another name of a winch, cable or marker, also where it is used (InputError: not allowed)."""
     part = find_part(robot, key)
     check_name(name)
     if part is not None and part.kind is Kind.WINCH:
@@ -125,11 +121,8 @@ def remesh(
 ) -> Body:
     """The body of a robot, made anew; takes a while if the elements are others. What is left out stays.
 
-    Args:
-        robot: whose body it is.
-        element_size: length of a mesh edge [m].
-        thickness: of a flat body [m].
-        material: a name of the table.
+    The element size is the length of a mesh edge [m], the thickness that of a flat body [m], the material one of the
+    table.
 
     Raises:
         InputError: a number out of its range, an unknown material, or a body whose elements are given.

@@ -145,10 +145,9 @@ class Editor(Stage):
         self._change(f"gravity {direction or 'off'}", set_gravity(self._document.robot, direction))
 
     def set_body(self, **values: Any) -> None:
-        """Change material, thickness or element size, as for `remesh`; takes a while, so call it in a thread.
+        """Change material, thickness or element size as `remesh` does; takes a while, so call it in a thread.
 
-        Raises:
-            InputError: a number out of its range, or parts that no longer fit; then nothing has changed.
+        After an InputError, for a number out of its range or parts that no longer fit, nothing has changed.
         """
         before = self._document.robot.body
         body = remesh(self._document.robot, **values)

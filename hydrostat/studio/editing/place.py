@@ -38,11 +38,7 @@ def add_winch(robot: Robot, at: Point) -> Robot:
 
 
 def add_cable(robot: Robot, winch: str, points: tuple[Point, ...]) -> Robot:
-    """One more cable of a winch, as stiff as the last one, through points [m] after the winch to the last, its stopper.
-
-    Raises:
-        InputError: no such winch, no points, or one outside the body.
-    """
+    """One more cable of a winch, as stiff as the last, through points [m] to its stopper (InputError: not inside)."""
     run = (robot.winch(winch).at, *points)
     cable = Cable(winch=winch, points=run)
     if robot.cables:
@@ -70,11 +66,7 @@ def nearest_segment(points: tuple[Point, ...], at: Point) -> int:
 
 
 def move(robot: Robot, places: Mapping[str, Point]) -> Robot:
-    """The same robot with pins, winches, via points and markers, by key, elsewhere [m]; cables stay at their winches.
-
-    Raises:
-        InputError: no such part, or a place where it cannot be.
-    """
+    """The same robot with parts, by key, elsewhere [m]; cables stay at their winches (InputError: not there)."""
     pins, winches, markers = list(robot.pins), list(robot.winches), list(robot.markers)
     points = [list(cable.points) for cable in robot.cables]
     for key, at in places.items():

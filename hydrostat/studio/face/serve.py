@@ -59,12 +59,10 @@ def serve(
     show: bool = True,
     announce: Callable[[str], None] = print,
 ) -> None:
-    """Serve a session until Ctrl-C; port 0 is a free one, `announce` is told the address, `show` opens the browser.
+    """Serve a session until Ctrl-C (InputError: the address cannot be listened at).
 
-    At another address than this machine's own a token is asked for.
-
-    Raises:
-        InputError: the address cannot be listened at.
+    At another address than this machine's own a token is asked for. Port 0 is a free one; `announce` is told the
+    address, `show` opens the browser.
     """
     sys.setswitchinterval(SWITCH)
     listener = _listener(host, port)

@@ -23,19 +23,10 @@ SEED = 8
 
 
 def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int = COUNT) -> int:
-    """Poses for contractions spread evenly over what all winches can do; tells where the marker is, a few at a time.
+    """How many of so many poses can be held, for contractions spread evenly over what all winches can do.
 
-    Poses that do not converge, are not stable or ask a cable for more than its limit are left out.
-
-    Args:
-        report: is told the places, (points, dim) [m].
-        robot: whose marker it is.
-        marker: its name.
-        tension: the most that a cable bears [N].
-        count: how many poses are tried.
-
-    Returns:
-        How many of them can be held.
+    The report is told where the marker is, a few places (points, dim) [m] at a time. Poses that do not converge, are
+    not stable or ask a cable for more than its limit [N] are left out.
     """
     simulation = Simulation(robot)
     last, held, places = simulation.rest, 0, []

@@ -20,14 +20,10 @@ class Work:
 def followed(
     work: Work, robot: Robot, renamed: Mapping[str, str] | None = None, cables: Mapping[str, str] | None = None
 ) -> tuple[Timeline, Wishes]:
-    """Timeline and wishes that name only what the robot has.
+    """Timeline and wishes that name only what the robot has now, by new names of winches and cables for old ones.
 
-    Args:
-        work: as it was before.
-        robot: as it is now.
-        renamed: new names of winches, by their old ones.
-        cables: new names of cables, by their old ones; if left out, each is in its old place where there are as many
-            as before, else those that are there still have their old names.
+    Without names of cables, each is in its old place where there are as many as before, else those that are there still
+    have their old names.
     """
     names = {winch.name for winch in robot.winches}
     new = dict(renamed or {})

@@ -163,8 +163,7 @@ class Starter(Stage):
     def outline_apply(self) -> None:
         """Give the open robot the outline that was drawn; one change, which can be undone.
 
-        Raises:
-            InputError: it is no body, holds no pin any more, or was drawn for another body; then nothing has changed.
+        After an InputError, for what is no body, holds no pin or was drawn for another body, nothing has changed.
         """
         outlining = self.outlining
         if outlining is None:
