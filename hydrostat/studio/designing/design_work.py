@@ -47,7 +47,6 @@ class Candidate:
     reaches: tuple[Reach, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
     complete: bool  # whether the search came to its end
-    best: bool  # whether it is what the search returned, rather than an alternative
 
     @property
     def counts(self) -> str:
@@ -109,7 +108,6 @@ class Glimpse:
     winches: tuple[Winch, ...]  # of it
     cables: tuple[Cable, ...]  # of it
     error: float  # root of the mean squared marker error over all poses [m]
-    words: str  # what was done last
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -126,7 +124,7 @@ def design_work(report: Report, robot: Robot, request: DesignRequest) -> Designs
 
     def watch(stage: DesignStage) -> None:
         found = stage.robot
-        report.part(Glimpse(winches=found.winches, cables=found.cables, error=stage.error, words=stage.words))
+        report.part(Glimpse(winches=found.winches, cables=found.cables, error=stage.error))
 
     network = find_network(robot, request, progress=report.progress, watch=watch)
     report.finish()

@@ -277,7 +277,7 @@ class Designer(Stage):
             winches=len(glimpse.winches),
             cables=len(glimpse.cables),
         )
-        self.run = replace(run, best=best, words=glimpse.words, trail=(*run.trail, mark))
+        self.run = replace(run, best=best, trail=(*run.trail, mark))
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
 
     def _found(self, found: DesignsFound) -> None:
@@ -286,7 +286,7 @@ class Designer(Stage):
         if run is None:
             return
         source, made = run.robot, []
-        for place, solution in enumerate(found.solutions):
+        for solution in found.solutions:
             self._numbered += 1
             made.append(
                 Candidate(
@@ -296,7 +296,6 @@ class Designer(Stage):
                     reaches=solution.reaches,
                     error=solution.error,
                     complete=found.complete,
-                    best=place == 0,
                 )
             )
         self._all = (*made, *self._all)[:MOST]

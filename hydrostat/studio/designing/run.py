@@ -74,7 +74,6 @@ class DesignRun:
     began: float  # when, on a clock that only runs forward [s]
     rest: float  # error if nothing moved [m]
     best: Robot  # the robot with the best network so far; with what stays of its own before the first
-    words: str = ""  # what was done last
     trail: tuple[Mark, ...] = field(default=())  # of the best network, in time
 
 

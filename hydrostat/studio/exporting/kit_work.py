@@ -17,7 +17,6 @@ class KitMade:
     options: KitOptions  # that it was made with
     refused: tuple[str, ...] = ()  # why the robot cannot be built well; then there is nothing but these
     zip: Download | None = None  # all files; None if it was refused
-    count: int = 0  # of the files
     summary: tuple[str, ...] = ()  # what is in it, a line each
     warnings: tuple[str, ...] = ()  # what to mind
     problems: tuple[str, ...] = ()  # why it cannot be built well, where it was made all the same
@@ -48,7 +47,6 @@ def make_kit(report: Report, robot: Robot, options: KitOptions) -> KitMade:
     return KitMade(
         options=options,
         zip=Download(name=f"{name}.zip", content=archive(kit.files, folder=name), title="Kit"),
-        count=len(kit.files),
         summary=kit.summary,
         warnings=kit.warnings,
         problems=kit.problems,

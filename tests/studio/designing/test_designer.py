@@ -87,7 +87,6 @@ def fresh(strip: Robot) -> Iterator[Studio]:
 def test_what_is_found_is_what_design_cables_returns(done: Studio, strip: Robot, unchecked: None) -> None:
     expected = design_cables(strip, [strip.pose("up")], winches=1, cables=2, options=FAST)
     best = done.designer.candidates[0]
-    assert best.best
     assert best.complete
     assert (best.robot.winches, best.robot.cables) == (expected.robot.winches, expected.robot.cables)
     assert best.error == pytest.approx(expected.rms_error, rel=1e-6)
