@@ -16,7 +16,6 @@ LARGE_FILES = {
     "hydrostat/mechanics/supernodal.py": "the kernels of one factorisation",
 }
 LARGE_FUNCTIONS = {
-    "hydrostat/cli/fabricate.py:fabricate": "an option of the command line takes three lines",
     "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "its signature is long",
 }
 MANY_PARAMETERS = {

@@ -2,6 +2,7 @@
 
 import re
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,9 +12,11 @@ from hydrostat.cli.options import positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
-    from hydrostat.fabrication import Kit
+    from hydrostat.fabrication import Kit, KitOptions
+    from hydrostat.robot import Robot
 
 
 def fabricate(
@@ -53,49 +56,45 @@ def fabricate(
 
     Example: hydrostat fabricate examples/starfish --out build/kit
     """
-    from hydrostat.fabrication import (
-        KitOptions,
-        Method,
-        MouldKind,
-        MouldOptions,
-        Paper,
-        PartOptions,
-        PatternOptions,
-        UnbuildableError,
-        build_kit,
-    )
-    from hydrostat.units import counted
+    from hydrostat import fabrication as kits
 
     require_folder(out)
-    options = KitOptions(
-        method=None if method is None else member(Method, method, what="--method"),
+    kind = member(kits.MouldKind, mould or "printed", what="--mould")
+    options = kits.KitOptions(
+        method=None if method is None else member(kits.Method, method, what="--method"),
         motor=motor,
-        mould=MouldOptions(kind=member(MouldKind, mould or "printed", what="--mould"), bed=_lengths("--bed", bed)),
-        paper=member(Paper, paper, what="--paper"),
-        pattern=PatternOptions(seam_allowance=_millimetres("--seam", seam)),
-        parts=PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
+        mould=kits.MouldOptions(kind=kind, bed=_lengths("--bed", bed)),
+        paper=member(kits.Paper, paper, what="--paper"),
+        pattern=kits.PatternOptions(seam_allowance=_millimetres("--seam", seam)),
+        parts=kits.PartOptions(cable=_millimetres("--line", line), clearance=_millimetres("--clearance", clearance)),
         step=step,
         force=force,
     )
     began = time.perf_counter()
     loaded = read_robot(robot)
-    if mould is not None and options.method_for(loaded.body) is not Method.FOAM:
+    if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: is for bodies of foam; leave it out, or add --method foam")
-    try:
-        with progress_bar() as progress:
-            kit = build_kit(loaded, options=options, progress=progress)
-    except UnbuildableError as error:
-        for reason in error.reasons:
-            print(f"cannot be built: {reason}")
-        count = counted(len(error.reasons), "reason")
-        raise InputError(
-            f"{robot}: cannot be built well, for {count}; mend it, or write it anyway with --force"
-        ) from None
+    kit = _built(robot, loaded, options)
     kit.write(out)
     print_kit(kit)
     print(
         f"Wrote {len(kit.files)} files in {time.perf_counter() - began:.1f} s; begin with {out / 'assembly_sheet.pdf'}"
     )
+
+
+def _built(folder: Path, robot: "Robot", options: "KitOptions") -> "Kit":
+    """The kit; the reasons are printed why there is none (InputError: it cannot be built well)."""
+    from hydrostat.fabrication import UnbuildableError, build_kit
+
+    try:
+        with progress_bar() as progress:
+            return build_kit(robot, options=options, progress=progress)
+    except UnbuildableError as error:
+        for reason in error.reasons:
+            print(f"cannot be built: {reason}")
+        count = counted(len(error.reasons), "reason")
+        words = f"{folder}: cannot be built well, for {count}; mend it, or write it anyway with --force"
+        raise InputError(words) from None
 
 
 def print_kit(kit: "Kit") -> None:
