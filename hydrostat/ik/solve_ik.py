@@ -177,7 +177,6 @@ class Curvature:
     """
 
     def __init__(self) -> None:
-        """Nothing is known yet."""
         self._matrix: Square | None = None
         self._trusted = False
 

@@ -20,7 +20,6 @@ class InverseSearch:
     """Equilibria on the way to the solution of a problem; `solves` counts those that were approached."""
 
     def __init__(self, problem: InverseProblem) -> None:
-        """Nothing has been solved yet."""
         self.problem, self.solves = problem, 0
 
     def begin(self, start: SolvedPose | None) -> InverseState:

@@ -93,7 +93,6 @@ class Tour:
     """A small card that goes from stage to stage and says what each is for."""
 
     def __init__(self) -> None:
-        """Build the card, hidden."""
         self._stops = [(stage, words) for stage, words in STAGES.items() if words.tour]
         self._step = 0
         self._ring = ui.element("div").classes("tour-ring")

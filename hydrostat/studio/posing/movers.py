@@ -18,7 +18,6 @@ class Movers:
     """Keeps movers for as long as the physics of the robot stay the same. It works in one thread."""
 
     def __init__(self, document: Document) -> None:
-        """Movers for the robot of this document."""
         self._document = document
         self._muscles: MuscleMover | None = None
         self._cables: CableMover | None = None

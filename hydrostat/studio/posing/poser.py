@@ -52,7 +52,6 @@ class Poser(Stage):
     """
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
-        """Poses of the robot of a document."""
         self._document = document
         self.reach = MarkerReach(document, jobs)  # all that a marker can reach
         self._lock = RLock()

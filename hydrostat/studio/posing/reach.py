@@ -86,7 +86,6 @@ class MarkerReach:
     """The cloud of one marker at a time; it is forgotten when the robot moves in another way."""
 
     def __init__(self, document: Document, jobs: Jobs) -> None:
-        """Clouds of the robot of a document."""
         self._document, self._jobs = document, jobs
         self._search: _ReachSearch | None = None
         document.bell.listen(self._heard)

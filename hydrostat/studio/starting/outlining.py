@@ -29,7 +29,6 @@ class Outlining:
     """Loops that are drawn, checked as they change."""
 
     def __init__(self, loops: tuple[Loop, ...] = (), robot: Robot | None = None) -> None:
-        """Begin with loops."""
         self.robot = robot  # whose outline is edited; None: a new one is drawn
         self.loops: tuple[Loop, ...] = ()  # the rim and holes, in any order
         self.fault = ""  # why they are no body yet; "" if they are
