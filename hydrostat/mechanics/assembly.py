@@ -91,6 +91,10 @@ class Assembly:
         """Largest share of a straight move [m] that all energies admit, above 0, at most 1."""
         return min((energy.largest_step(nodes, move) for energy in self.energies), default=1.0)
 
+    def least_volume(self, nodes: Nodes) -> float:
+        """J of the element that is squeezed most, at most 1."""
+        return min((energy.least_volume(nodes) for energy in self.energies), default=1.0)
+
     @property
     def history(self) -> Vector:
         """What all energies remember of the loading path."""

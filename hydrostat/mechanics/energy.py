@@ -137,6 +137,10 @@ class Energy(ABC):
         """
         return 1.0
 
+    def least_volume(self, nodes: Nodes) -> float:
+        """J of the element that is squeezed most, at most 1; 1 for an energy without elements."""
+        return 1.0
+
     def near(self, nodes: Nodes) -> "Energy":
         """Energy with the terms that count near `nodes`, where these come and go; itself where they never change."""
         return self

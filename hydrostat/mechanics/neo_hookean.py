@@ -90,6 +90,9 @@ class NeoHookean(Energy):
         else:
             native.hessian(nodes - self._rest, *self._groups, self.mu, self.lame, share, *places)
 
+    def least_volume(self, nodes: Nodes) -> float:
+        return 1.0 + _least_change(nodes - self._rest, self.stencils, self._padded, self._axes)
+
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         works = {"mu": self._work(nodes, field, 1.0, 0.0)}
         if self.volumetric:
@@ -153,6 +156,17 @@ def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
                 stretch += 0.5 * G[i, j] * G[i, j]
         total += volumes[element] * (mu * (stretch - log_j) + 0.5 * lame * log_j * log_j)
     return total
+
+
+@njit(**KERNEL)
+@no_type_check
+def _least_change(displacements, stencils, gradients, axes):
+    """J - 1 of the element that is squeezed most; 0 if none is."""
+    G = np.empty((3, 3))
+    least = 0.0
+    for element in range(stencils.shape[0]):
+        least = min(least, _displacement_gradient(displacements, stencils[element], gradients[element], axes, G))
+    return least
 
 
 @njit(inline="always", **INNER)

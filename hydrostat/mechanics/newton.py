@@ -32,11 +32,13 @@ class NewtonOptions:
         tolerance: largest nodal force left over, as a fraction of the largest applied force.
         iterations: most iterations.
         halvings: most halvings of one step.
+        whole: whether to give up at once, at no cost, where the first step cannot be taken whole.
     """
 
     tolerance: float = 1e-10
     iterations: int = 200
     halvings: int = 50
+    whole: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,8 +102,8 @@ def minimise(
 
     The full Hessian is used wherever it is positive definite, mixed with the projected one elsewhere (E6). The
     step follows arcs and knows that a cable can go slack; it goes no further than all energies admit, and is halved
-    until no element is inverted and the energy falls. A saddle is left along a mode in which the energy falls. Forces
-    count as balanced relative to the largest one that an energy applies.
+    until no element is inverted or crushed and the energy falls. A saddle is left along a mode in which the energy
+    falls. Forces count as balanced relative to the largest one that an energy applies.
 
     Args:
         assembly: the energy.
@@ -124,6 +126,7 @@ class _Iterate(NamedTuple):
     nodes: Nodes
     energy: float
     gradient: Vector
+    least_volume: float = 1.0
 
 
 class _Trial(NamedTuple):
@@ -140,6 +143,7 @@ class _EnergyDescent:
 
     Attributes:
         share: of what is negative in the Hessian that the last step took out.
+        whole: whether the step has to be taken whole or not at all.
         saddles: how many have been left.
         last: the Hessian of the last step, if nothing was taken out of it.
         sharp: whether that step began near enough to the end for `last` to stand for the Hessian there.
@@ -158,6 +162,7 @@ class _EnergyDescent:
         self.assembly, self.controls = assembly, controls
         self.noise, self.options, self.warp = round_off, options, warp
         self.share = 0.0
+        self.whole = False
         self.saddles = 0
         self.last: Stiffness | None = None
         self.sharp = False
@@ -171,6 +176,7 @@ class _EnergyDescent:
             return self._result(place, Reason.BAD_START, 0.0, 0)
         place = self._arrive(assembly, start, energy)
         for iteration in count():
+            self.whole = self.options.whole and iteration == 0
             scale = place.assembly.largest_force(place.nodes, self.controls)
             allowed = max(self.options.tolerance * scale, self.noise.force)
             residual = float(np.abs(place.gradient).max())
@@ -187,16 +193,20 @@ class _EnergyDescent:
         raise AssertionError("count() never ends")
 
     def _arrive(self, assembly: Assembly, nodes: Nodes, energy: float) -> _Iterate:
-        return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls))
+        gradient = assembly.gradient(nodes, self.controls)
+        return _Iterate(assembly, nodes, energy, gradient, assembly.least_volume(nodes))
 
     def _try(self, place: _Iterate, step: Vector) -> _Trial:
-        """Where a step leads, as far as all energies admit it."""
+        """Where a step leads, as far as all energies admit it; of infinite energy where it crushes an element."""
         nodes = self.bend(place.nodes, step)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
             nodes = place.nodes + share * (nodes - place.nodes)
         assembly = place.assembly.near(nodes)
-        return _Trial(assembly, nodes, assembly.value(nodes, self.controls), share)
+        energy = assembly.value(nodes, self.controls)
+        if np.isfinite(energy) and assembly.least_volume(nodes) < _CRUSHED * place.least_volume:
+            energy = np.inf
+        return _Trial(assembly, nodes, energy, share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None, near: bool) -> _Iterate | None:
         """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones."""
@@ -263,6 +273,8 @@ class _EnergyDescent:
                 found = self._arrive(*trial[:3])
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
                     return found
+            if self.whole:
+                break
             length *= 0.5 * trial.share
         return None
 
@@ -331,7 +343,8 @@ class _EnergyDescent:
     def _result(self, place: _Iterate, reason: Reason, allowed: float, iterations: int) -> NewtonResult:
         if reason is not Reason.CONVERGED:
             self.last = None
-        stiffness = None if reason is Reason.BAD_START else self._stiffness(place)
+        blank = reason is Reason.BAD_START or (reason is Reason.NO_DESCENT and self.whole)
+        stiffness = None if blank else self._stiffness(place)
         return NewtonResult(
             nodes=place.nodes,
             reason=reason,
@@ -355,6 +368,12 @@ def _falling_mode(stiffness: Stiffness, size: int) -> Vector:
 
 _NEAR = 1e-5
 """With less than this share of the largest applied force left over, the factors of the last step may serve again."""
+
+_CRUSHED = 0.2
+"""No step leaves less than this share of the volume of the element that was squeezed most before it.
+
+An element near J = 0 pushes back so hard, and so far from linearly, that Newton then creeps for dozens of steps.
+"""
 
 _PAYS = 0.1
 """A step with old factors has to bring the residual down this far, or new ones are made."""

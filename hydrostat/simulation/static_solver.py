@@ -33,6 +33,7 @@ class StaticSolver:
         iterations: int | None = None,
         tolerance: float | None = None,
         exact: bool = False,
+        whole: bool = False,
     ) -> NewtonResult:
         """Newton from some nodes on.
 
@@ -44,8 +45,9 @@ class StaticSolver:
             iterations: most steps, if fewer than the options allow.
             tolerance: if looser than theirs.
             exact: whether `stiffness` is that of `nodes` to rounding, and not of a place close by.
+            whole: whether to give up at once, at no cost, where the prediction cannot be taken whole.
         """
-        options = self.options
+        options = replace(self.options, whole=whole)
         if iterations is not None:
             options = replace(options, iterations=min(iterations, options.iterations))
         if tolerance is not None:
@@ -75,13 +77,16 @@ class StaticSolver:
     ) -> NewtonResult:
         """Equilibrium at `goal`: at once; failing that in load steps from `start`, then from rest, last by patience.
 
+        Where the prediction of the first step would crush an element, load steps follow without delay: cut short
+        against the whole command, that step would leave cables that pull far too hard on elements next to flat.
+
         Args:
             goal: contraction of each winch [m].
             rest: nodes at rest [m], and the Hessian there.
             start: nodes, contractions and the Hessian, if it is known, of a pose to begin from.
         """
         begin, _, known = start or (rest[0], None, rest[1])
-        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS)
+        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS, whole=True)
         spent = result.iterations
         if not result.converged and start and (start[1] != goal).any():
             result = self._in_steps(start, goal)
@@ -111,7 +116,9 @@ class StaticSolver:
             iterations, tolerance = (None, None) if last else (_DIRECT_ITERATIONS, _LOOSE)
             controls = goal if last else begin + share * (goal - begin)
             solver = replace(self, assembly=self.assembly.with_load(share)) if with_load else self
-            result = solver.relax(nodes, controls, stiffness, iterations=iterations, tolerance=tolerance)
+            result = solver.relax(
+                nodes, controls, stiffness, iterations=iterations, tolerance=tolerance, whole=step > _SMALLEST_WHOLE
+            )
             spent += result.iterations
             if result.converged and not last:
                 nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
@@ -126,11 +133,14 @@ class StaticSolver:
 _DIRECT_ITERATIONS = 20
 """So many steps of Newton before a command is approached in load steps."""
 
-_FIRST_STEP = 0.25
+_FIRST_STEP = 0.5
 """Share of a command that is tried first."""
 
-_LOOSE = 1e-2
+_LOOSE = 0.1
 """What may be left over on the way, as a share of the largest applied force."""
+
+_SMALLEST_WHOLE = 0.05
+"""Larger load steps are taken whole or not at all; smaller ones may begin with a step of Newton that is cut short."""
 
 _MOST_STEPS = 100
 """Load steps of one solve."""

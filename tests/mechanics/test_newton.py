@@ -213,3 +213,24 @@ def test_from_a_wild_start_it_ends_with_numbers_and_no_inverted_element(seed: in
     assert (np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all()
     assert np.isfinite([result.energy, result.residual, result.allowed]).all()
     assert result.converged
+
+
+@pytest.mark.parametrize("contraction", [0.05, 0.1, 0.2])
+def test_no_step_leaves_less_than_a_fifth_of_the_element_squeezed_most(contraction: float) -> None:
+    """Oracle: det F of all elements, after each iteration."""
+    body, least = strip().energies[0], 1.0
+    assert isinstance(body, NeoHookean)
+    for steps in range(1, 12):
+        nodes = solve(contraction, iterations=steps).nodes
+        before, least = least, float(np.linalg.det(body.deformation_gradients(nodes)).min())
+        assert least > 0.199 * before
+
+
+def test_a_first_step_that_would_crush_an_element_is_refused_at_no_cost() -> None:
+    """A contraction of two thirds of the strip: cut short the step is taken, whole it is not."""
+    refused, cut = (solve(0.2, whole=whole, iterations=1) for whole in (True, False))
+    assert refused.reason is Reason.NO_DESCENT
+    assert refused.iterations == 0
+    assert refused.stiffness is None
+    assert (refused.nodes == MESH.nodes).all()
+    assert cut.iterations == 1
