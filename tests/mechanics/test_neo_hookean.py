@@ -45,6 +45,16 @@ def test_hydrostatic(dim: int, s: float) -> None:
 
 
 @pytest.mark.parametrize("dim", [2, 3])
+def test_the_least_volume_is_that_of_the_element_squeezed_most(dim: int) -> None:
+    """Oracle: det F of all elements of a shape sheared and bent at random; swollen alike, none is squeezed."""
+    mesh = block(dim)
+    nodes = mesh.nodes + 0.002 * np.random.default_rng(0).standard_normal(mesh.nodes.shape)
+    found = body(mesh)
+    assert found.least_volume(nodes) == pytest.approx(np.linalg.det(found.deformation_gradients(nodes)).min(), rel=1e-9)
+    assert found.least_volume(1.1 * mesh.nodes) == 1.0
+
+
+@pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("g", [-1.3, 0.2, 2.0])
 def test_simple_shear(dim: int, g: float) -> None:
     """F = I + g e1 (x) e2 keeps the volume: Psi = mu g^2 / 2, P = mu (F - F^-T) has P12 = P21 = mu g alone."""
