@@ -97,12 +97,7 @@ def _stops(simulation: "Simulation", names: list[str], tell: Callable[[str, int,
 
 
 def _write(
-    simulation: "Simulation",
-    made: "Film",
-    out: Path,
-    kind: Format,
-    width: int,
-    tell: Callable[[str, int, int], None],
+    simulation: "Simulation", made: "Film", out: Path, kind: Format, width: int, tell: Callable[[str, int, int], None]
 ) -> Path:
     from hydrostat.plot import save_gif, save_glb, save_mp4
 

@@ -30,8 +30,7 @@ def fabricate(
         str, typer.Option(metavar="NAME", help="n20, xl330, 25d; auto takes the first that is strong enough.")
     ] = "auto",
     mould: Annotated[
-        str | None,
-        typer.Option(metavar="printed|silicone", help="Of foam: what the mould is of; printed if left out."),
+        str | None, typer.Option(metavar="printed|silicone", help="Of foam: what the mould is of; printed if left out.")
     ] = None,
     bed: Annotated[
         str, typer.Option(metavar="LENGTHS", help="The most that your 3D printer takes, along x, y and z.")

@@ -27,8 +27,7 @@ def pose(
         str | None, typer.Option("--pose", metavar="NAME", help="One pose; all if left out, none with --drawing.")
     ] = None,
     drawing: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="The shape of the pose, drawn over the body's own drawing."),
+        Path | None, typer.Option(metavar="FILE", help="The shape of the pose, drawn over the body's own drawing.")
     ] = None,
     tension: MostTension = None,
     equal: EqualWinches = None,

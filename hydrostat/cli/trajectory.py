@@ -26,8 +26,7 @@ def trajectory(
     robot: RobotFolder,
     out: OutFolder,
     poses: Annotated[
-        str | None,
-        typer.Option(metavar="NAME,NAME...", help="Poses in their order, rest among them; all if left out."),
+        str | None, typer.Option(metavar="NAME,NAME...", help="Poses in their order, rest among them; all if left out.")
     ] = None,
     path: Annotated[
         str,
@@ -170,11 +169,7 @@ def _key_facts(made: "Trajectory", key: Any) -> dict[str, Any]:
         "same_pose": key.same,
     }
     if key.found is not None:
-        facts |= {
-            "reason": str(key.found.reason),
-            "optimality": key.found.optimality,
-            "held": list(key.found.held),
-        }
+        facts |= {"reason": str(key.found.reason), "optimality": key.found.optimality, "held": list(key.found.held)}
     return facts
 
 

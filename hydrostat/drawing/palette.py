@@ -11,14 +11,7 @@ GHOST_FILL = "#f3f1f5"
 PAPER = "#ffffff"
 ERROR = "#c8243f"
 
-PAGE_COLOURS = {
-    INK: "ink",
-    MUTED: "muted",
-    GRID: "grid",
-    GHOST: "ghost",
-    GHOST_FILL: "ghost-fill",
-    PAPER: "paper",
-}
+PAGE_COLOURS = {INK: "ink", MUTED: "muted", GRID: "grid", GHOST: "ghost", GHOST_FILL: "ghost-fill", PAPER: "paper"}
 """Colours that follow the page: there they become CSS variables of these names, which dark pages change."""
 
 SHADE = "#7d4527"

@@ -115,13 +115,7 @@ SHORTEST = 0.02  # shortest time of a frame [s]: browsers play shorter ones of a
 
 
 def save_gif(
-    robot: Robot,
-    frames: Sequence[Frame],
-    path: str | Path,
-    *,
-    step: float,
-    width: int = 640,
-    tell: Tell | None = None,
+    robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float, width: int = 640, tell: Tell | None = None
 ) -> Path:
     """Write frames as a GIF that plays for ever, whole or not at all; returns its path.
 
@@ -151,13 +145,7 @@ def save_gif(
 
 
 def save_mp4(
-    robot: Robot,
-    frames: Sequence[Frame],
-    path: str | Path,
-    *,
-    step: float,
-    width: int = 640,
-    tell: Tell | None = None,
+    robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float, width: int = 640, tell: Tell | None = None
 ) -> Path:
     """Write frames as an MP4 (H.264), whole or not at all; returns its path. It needs the program ffmpeg.
 

@@ -27,12 +27,7 @@ EDGES = 0.75  # of that for words and numbers [inch]
 
 
 def draw_branches(
-    robot: Robot,
-    found: PathDependence,
-    branches: Sequence[Branch],
-    *,
-    title: str | None = None,
-    width: float = WIDTH,
+    robot: Robot, found: PathDependence, branches: Sequence[Branch], *, title: str | None = None, width: float = WIDTH
 ) -> Figure:
     """The poses found, one over the other; below how far markers move along the branches, if there are any.
 

@@ -16,14 +16,7 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.held import Anchored, Held, Mode, Now, Wish, renamed_markers, with_network_of
 from hydrostat.studio.posing.movers import Movers, same_body
-from hydrostat.studio.posing.poses import (
-    checked_name,
-    held_of,
-    renamed_pose,
-    wishes_after,
-    with_pose,
-    without_pose,
-)
+from hydrostat.studio.posing.poses import checked_name, held_of, renamed_pose, wishes_after, with_pose, without_pose
 from hydrostat.studio.posing.reach import MarkerReach
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.stage import Hit, Stage

@@ -23,9 +23,7 @@ class RobotShape:
 def rest_shape(robot: Robot) -> RobotShape:
     """A robot as it was drawn."""
     return RobotShape(
-        nodes=robot.body.mesh.nodes,
-        tensions=np.zeros(len(robot.cables)),
-        contractions=np.zeros(len(robot.winches)),
+        nodes=robot.body.mesh.nodes, tensions=np.zeros(len(robot.cables)), contractions=np.zeros(len(robot.winches))
     )
 
 
