@@ -63,8 +63,7 @@ def check_width(width: int) -> None:
 def contractions(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
     """Contractions [m] by winch, from texts such as "left=12mm"; notes are printed of what a winch cannot take in.
 
-    Raises:
-        InputError: no such text, no such winch, or it would take in all of a cable.
+    A text or winch that is none, or a winch that would take in all of a cable, is an InputError.
     """
     given = dict(_contraction(text) for text in texts or [])
     for name, value in given.items():

@@ -82,17 +82,13 @@ def _lines() -> Callable[[str, int, int], None]:
 
 @contextmanager
 def one_interrupt(words: str, *, signals: Sequence[int] = (signal.SIGINT,)) -> Iterator[Callable[[], None]]:
-    """Let the first Ctrl-C stop the work, and no later one spoil how it ends.
+    """Let the first Ctrl-C stop the work, and no later one spoil how it ends; some words, if any, are printed then.
 
     The first signal raises KeyboardInterrupt, or SystemExit for another signal than SIGINT; every later one is passed
-    over until the block ends. Then signals do again what they did before, whatever that was. A handler that was not
-    set from Python cannot be put back by it, so where there is such a one it stays, and answers.
+    over until the block ends. Then signals do again what they did before, whatever that was. A handler that was not set
+    from Python cannot be put back by it, so where there is such a one it stays, and answers.
 
     Gives what to call where the work is over: from there on every signal is passed over, so that results are whole.
-
-    Args:
-        words: printed when it stops; none if empty.
-        signals: that stop it.
     """
     before = {number: signal.getsignal(number) for number in signals}
     ours = [number for number, handler in before.items() if handler is not None]

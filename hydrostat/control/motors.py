@@ -43,14 +43,9 @@ class Motors:
         fastest: float = FASTEST,
         patience: float = SILENCE,
     ) -> None:
-        """Motors that stand still.
+        """Motors that stand still where they are [m], at 0 if that is left out.
 
-        Args:
-            winches: of the robot.
-            link: that turns them.
-            places: what they have taken in [m]; nothing if left out.
-            fastest: largest speed of their cables [m/s].
-            patience: infinite where gaps are usual, and the watch of the link itself is enough [s].
+        Their patience is infinite where gaps are usual, and the watch of the link itself is enough [s].
         """
         self.names = tuple(winch.name for winch in winches)
         self.low = np.array([-winch.release for winch in winches], dtype=float)
@@ -75,8 +70,7 @@ class Motors:
     def check(self, table: ProfileTable, *, speed: float = 1.0) -> None:
         """Refuse a table that these motors cannot play at so many times its own speed.
 
-        Raises:
-            InputError: a row is beyond the limits of its winch, or too fast; the text names the line and the column.
+        The InputError names the line and the column of what is beyond the limits of its winch, or too fast.
         """
         times, values = table.profile.times, table.profile.values
         if times[0] < 0:

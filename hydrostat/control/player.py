@@ -76,15 +76,9 @@ def play(
 ) -> None:
     """Play contractions in time on motors, in real time; they hold at its end, on any error and when interrupted.
 
-    First they go to where it begins. What the player is told meanwhile counts at once: its speed, its rounds, to stop.
-
-    Args:
-        motors: that play; they stand still.
-        profile: what their winches take in, from 0 s to its last time.
-        player: the playhead, where it shall begin.
-        tell: called after each command.
-        clock: that only runs forward [s].
-        wait: lets so much time pass [s].
+    First they go to where the player begins, in a profile from 0 s to its last time. What the player is told meanwhile
+    counts at once: its speed, its rounds, to stop. `tell` is called after each command, the clock only runs forward
+    [s], `wait` lets so much time pass [s].
 
     Raises:
         InputError: a winch cannot take in what it should.

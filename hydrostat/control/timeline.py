@@ -100,8 +100,7 @@ def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
 def read_timeline(robot: Robot, name: str, content: bytes) -> Timeline:
     """Read a timeline from the table of a named file, its times counted from its first row.
 
-    Raises:
-        InputError: it is too large, or no such table; the text names the line.
+    The InputError of one that is too large, or no such table, names the line.
     """
     if len(content) > LARGEST:
         raise InputError(f"{name}: a table may have {LARGEST / 1e6:g} MB, not {len(content) / 1e6:.1f} MB")

@@ -75,11 +75,8 @@ def three_quarter(
 ) -> Camera:
     """The camera that shows the length of a body, some of its depth, and that side of it where most is to be seen.
 
-    Args:
-        shape: points all over the body at rest [m].
-        shown: winches, cable points and markers [m]; may be empty.
-        up: what is up; z if left out.
-        asked: how far points shall move [m]: they rather come towards the eye than go away from it.
+    The shape is points all over the body at rest [m]; winches, cable points and markers are shown [m], if any; `up` is
+    z if left out. Points that are asked to move so far [m] rather come towards the eye than go away from it.
     """
     turn = np.eye(3) if up is None else upright(up)
     shape, shown = shape @ turn.T, shown @ turn.T
@@ -100,11 +97,9 @@ def three_quarter(
 def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray, " 3"] | None = None) -> Camera:
     """The camera along x, y or z that shows most of the body and of where its points go.
 
-    Args:
-        shape: points all over the body [m].
-        shown: winches, cable points and markers [m], which decide from which side; may be empty.
-        ways: how points of the body move [m].
-        up: what is up; z if left out. Of x, y and z, whichever is nearest to it stands upright.
+    The shape is points all over the body [m]; winches, cable points and markers that are shown [m], if any, decide from
+    which side; ways are how points of the body move [m]. Of x, y and z, whichever is nearest to `up`, z if left out,
+    stands upright.
     """
     turn = np.eye(3) if up is None else upright(_nearest_axis(up))
     shape, shown, ways = shape @ turn.T, shown @ turn.T, ways @ turn.T

@@ -117,18 +117,11 @@ SHORTEST = 0.02  # shortest time of a frame [s]: browsers play shorter ones of a
 def save_gif(
     robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float, width: int = 640, tell: Tell | None = None
 ) -> Path:
-    """Write frames as a GIF that plays for ever, whole or not at all; returns its path.
+    """Write frames at equal times as a GIF that plays for ever, whole or not at all; returns its path.
 
     One eye, one frame and one scale of tension for all, and one palette, so that nothing trembles or flickers. Frames
-    that look the same as the one before are stored once and shown longer. The same frames give the same bytes.
-
-    Args:
-        robot: to draw.
-        frames: at equal times.
-        path: of the file.
-        step: time of a frame [s]; a GIF counts in hundredths of a second.
-        width: of the picture [pixels].
-        tell: is told how far the work is.
+    that look the same as the one before are stored once and shown longer. The same frames give the same bytes. The step
+    is the time of a frame [s], which a GIF counts in hundredths of a second; the width is in pixels.
 
     Raises:
         InputError: frames that do not fit the robot, a time or width out of range, a file that cannot be written.

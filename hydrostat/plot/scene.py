@@ -32,17 +32,11 @@ OPACITY = 0.72  # of a body that has cables: they run inside, mostly
 
 
 def save_glb(robot: Robot, frames: Sequence[Frame], path: str | Path, *, step: float) -> Path:
-    """Write frames as a binary glTF 2.0 scene, whole or not at all; returns its path.
+    """Write frames, a step [s] apart, as a binary glTF 2.0 scene, whole or not at all; returns its path.
 
     Every frame that differs is a morph target of body and cables, and an animation goes from one to the next; winches,
     stoppers and markers are carried along. Cables are coloured by tension, targets are there while a pose is
     approached, a flat body is a slab of its thickness. Metres; what is up is y, as glTF wants it.
-
-    Args:
-        robot: to show.
-        frames: at equal times.
-        path: of the file.
-        step: time between frames [s].
 
     Raises:
         InputError: frames that do not fit the robot, a time that is not above 0, a file that cannot be written.

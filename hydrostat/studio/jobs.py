@@ -67,21 +67,13 @@ class Jobs:
         on_done: Callable[[Any], None] | None = None,
         on_end: Callable[[str], None] | None = None,
     ) -> None:
-        """Run `function(report, *arguments)` in a process of its own.
+        """Run `function(report, *arguments)` in a process of its own (InputError: other work is in progress).
 
-        What comes of it, and why if nothing does, is in `state`.
-
-        Args:
-            title: as a person would say it.
-            function: of a module, so that the process finds it; a KeyboardInterrupt asks it to end with what it has.
-            arguments: values that can be pickled, as must be what it returns.
-            on_part: called with each part that it reports, in a thread of this process.
-            on_done: called with what it returns, likewise.
-            on_end: called in the end, whatever came of it, with why nothing did, "" if something did; other work may
-                have begun by then.
-
-        Raises:
-            InputError: other work is in progress.
+        The function is one of a module, so that the process finds it; a KeyboardInterrupt asks it to end with what it
+        has. What it is given and what it returns can be pickled. What comes of it, and why if nothing does, is in
+        `state`. In a thread of this process `on_part` is called with each part that it reports, `on_done` with what it
+        returns, and in the end `on_end`, whatever came of it, with why nothing did, "" if something did; other work may
+        have begun by then.
         """
         with self._lock:
             if self.running:

@@ -95,10 +95,8 @@ def open_note(folder: Path) -> str:
 def save_work(work: Work, folder: Path, text: str = "") -> None:
     """Write everything into a folder; a robot.toml that is there keeps its comments and its form where it can.
 
-    Comments of the text, of the robot.toml that the work began with, go along into a new folder.
-
-    Raises:
-        InputError: a name that is not allowed, or a folder that cannot be written.
+    Comments of the text, of the robot.toml that the work began with, go along into a new folder. A name that is not
+    allowed, or a folder that cannot be written, is an InputError.
     """
     folder = _home(folder)
     save_robot(work.robot, folder, text=_text(work, folder, text))

@@ -167,8 +167,7 @@ def by_name(what: str, given: object, example: str) -> Mapping[str, Any]:
 def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"] | None = None) -> Vector:
     """A place to go for a part of a body at rest [m], which counts along the axes that are held, or along all.
 
-    Raises:
-        InputError: no place, one of another dimension, not finite, or so far away that it cannot be in metres.
+    What is no place, of another dimension, not finite, or so far away that it cannot be in metres, is an InputError.
     """
     found = numbers(given)
     if found is None or found.ndim != 1:

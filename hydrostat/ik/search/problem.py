@@ -91,8 +91,7 @@ class InverseProblem:
     ) -> None:
         """State what is sought; if `ready`, slack cables are kept just short of taut, so that they can join at once.
 
-        Raises:
-            InputError: a robot without cables, or one whose cables have friction.
+        A robot without cables, or one whose cables have friction, is an InputError.
         """
         robot = simulation.robot
         if not robot.cables:

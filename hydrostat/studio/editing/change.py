@@ -122,10 +122,7 @@ def remesh(
     """The body of a robot, made anew; takes a while if the elements are others. What is left out stays.
 
     The element size is the length of a mesh edge [m], the thickness that of a flat body [m], the material one of the
-    table.
-
-    Raises:
-        InputError: a number out of its range, an unknown material, or a body whose elements are given.
+    table. A number out of its range, an unknown material, or a body whose elements are given is an InputError.
     """
     body = robot.body
     for name, value in (("thickness", thickness), ("element_size", element_size)):

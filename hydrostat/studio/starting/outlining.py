@@ -84,13 +84,10 @@ def _spoke(step: float, steps: int) -> tuple[float, float]:
 
 
 def reshaped(work: Work, drawing: bytes, corner: tuple[float, float]) -> Reshaped:
-    """Give a flat robot another outline, an SVG in millimetres; thickness, element size and material stay.
+    """Give a flat robot another outline, an SVG in millimetres (InputError: it is no body, or no pin lies in it).
 
     Coordinates of a body count from the middle of its drawing, so what stays is moved when that moves: `corner` is what
     of the robot lies in the upper left corner of the drawing [mm].
-
-    Raises:
-        InputError: the drawing is no body, or no pin lies in it.
     """
     old = work.robot.body
     if old.thickness is None or old.element_size is None:

@@ -22,16 +22,11 @@ def robot_things(
     chosen: Collection[str] = (),
     vias: bool = False,
 ) -> list[Thing]:
-    """What a robot has, in the order pins, cables, winches, markers.
+    """What a robot has, in the order pins, cables, winches, markers; chosen keys are selected.
 
-    Keys are "pin:0", "cable:0", "via:0:2" (cable and point), "winch:left" and "marker:tip".
-
-    Args:
-        robot: to show.
-        tensions: of each cable [N]; none if left out.
-        scale: tension that is drawn as the largest [N].
-        chosen: keys that are selected.
-        vias: whether each point of a cable is a dot that can be taken hold of; else only its stopper is shown.
+    Keys are "pin:0", "cable:0", "via:0:2" (cable and point), "winch:left" and "marker:tip". Tensions of the cables [N]
+    are drawn on a scale up to the largest. With `vias` each point of a cable is a dot that can be taken hold of; else
+    only its stopper is shown.
     """
     colours = winch_colours(robot.winches)
     things: list[Thing] = []
