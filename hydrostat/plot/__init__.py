@@ -8,12 +8,11 @@ from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames,
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.motion import motion_frames, motion_svg
-from hydrostat.plot.motion_figures import draw_motion
+from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
 from hydrostat.plot.picture_file import inline_svg, save_png
 from hydrostat.plot.report import report_text, write_report
 from hydrostat.plot.robot_figures import draw_network, draw_portrait, draw_pose, draw_reached, draw_rest, draw_target
 from hydrostat.plot.scene import save_glb
-from hydrostat.plot.trajectory_figure import draw_trajectory
 
 __all__ = [
     "Film",

@@ -15,8 +15,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.exporting.download import Download, archive, file_name
 from hydrostat.studio.exporting.kit_work import KitMade, make_kit
-from hydrostat.studio.exporting.picture_work import make_pictures
-from hydrostat.studio.exporting.report_work import make_report
+from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.view.robot_things import robot_things

@@ -22,8 +22,7 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.exporting.exporter import Export, Exporter
 from hydrostat.studio.exporting.kit_work import KitMade, make_kit
-from hydrostat.studio.exporting.picture_work import make_pictures
-from hydrostat.studio.exporting.report_work import make_report
+from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import Work
 
