@@ -154,14 +154,7 @@ def _plan(robot: Robot, options: KitOptions, tell: _Stages) -> _Plan:
         *solid_checks(solids, (*rigid.assemblies, *work.assemblies)),
     )
     return _Plan(
-        robot=robot,
-        options=options,
-        method=method,
-        demand=demand,
-        rigid=rigid,
-        work=work,
-        lists=lists,
-        checks=checks,
+        robot=robot, options=options, method=method, demand=demand, rigid=rigid, work=work, lists=lists, checks=checks
     )
 
 

@@ -87,9 +87,7 @@ class RobotReader(TablesFile):
 
     def _winch(self, entry: Any) -> Winch:
         return Winch(
-            name=entry.name,
-            at=self.point(entry.at),
-            **_given(entry, "spool_radius", "travel", "release", "mount"),
+            name=entry.name, at=self.point(entry.at), **_given(entry, "spool_radius", "travel", "release", "mount")
         )
 
     def _cable(self, entry: Any) -> Cable:

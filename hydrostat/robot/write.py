@@ -180,11 +180,7 @@ class _Writer:
         return entry
 
     def winch(self, winch: Any) -> dict[str, Any]:
-        lengths = {
-            "spool_radius": winch.spool_radius,
-            "travel": winch.travel,
-            "release": winch.release or None,
-        }
+        lengths = {"spool_radius": winch.spool_radius, "travel": winch.travel, "release": winch.release or None}
         mount = {"mount": str(winch.mount)} if winch.mount is not Mount.BODY else {}
         return {"name": winch.name, "at": self.point(winch.at), **_lengths(lengths), **mount}
 

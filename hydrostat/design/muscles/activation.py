@@ -92,13 +92,7 @@ class _Activation:
     """One run: body and fibres assembled, markers located."""
 
     def __init__(
-        self,
-        robot: Robot,
-        target: Pose,
-        fibres: Fibres,
-        effort: float,
-        stages: int,
-        body: BodyPhysics | None,
+        self, robot: Robot, target: Pose, fibres: Fibres, effort: float, stages: int, body: BodyPhysics | None
     ) -> None:
         mesh = robot.body.mesh
         self.robot, self.target, self.fibres = robot, target, fibres

@@ -106,10 +106,7 @@ class _TreeDesign:
             request=self.request,
             reached=reached,
             trace=TreeTrace(
-                activations=activations,
-                candidates=plan.candidates,
-                trees=tuple(plan.trees.routes),
-                score=plan.score,
+                activations=activations, candidates=plan.candidates, trees=tuple(plan.trees.routes), score=plan.score
             ),
             tried=len(built),
             seconds=time.process_time() - began,
@@ -148,12 +145,7 @@ class _TreeDesign:
 
     def _activation(self, pose: Pose) -> Activation:
         return activate(
-            self.robot,
-            pose,
-            self._fibres(pose),
-            effort=self.options.effort,
-            stages=self.options.stages,
-            body=self.body,
+            self.robot, pose, self._fibres(pose), effort=self.options.effort, stages=self.options.stages, body=self.body
         )
 
     def _fibres(self, pose: Pose) -> Fibres:

@@ -69,11 +69,7 @@ PRICES = MappingProxyType(
         ),
         "thread": Price(amount=3.0, unit="spool", source=f"{_PUPPETS}: all-purpose thread, 3 a spool"),
         "filling": Price(
-            amount=5.99 / _BAG,
-            unit="kg",
-            pack=_BAG,
-            month="2011-01",
-            source=f"{_BEARS}: fibre filling, 5.99 for 32 oz",
+            amount=5.99 / _BAG, unit="kg", pack=_BAG, month="2011-01", source=f"{_BEARS}: fibre filling, 5.99 for 32 oz"
         ),
         "zipper": Price(amount=2.0),
         "needle": Price(amount=5.0, unit="set"),

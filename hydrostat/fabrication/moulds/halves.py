@@ -132,10 +132,7 @@ def mould_prints(
         ("positive_lower", "lower half of the positive", positive.lower, _OVER),
         ("positive_upper", "upper half of the positive", positive.upper, _UP),
         *(
-            (
-                ("frame_lower", "lower frame", frames.lower, _UP),
-                ("frame_upper", "upper frame", frames.upper, _UP),
-            )
+            (("frame_lower", "lower frame", frames.lower, _UP), ("frame_upper", "upper frame", frames.upper, _UP))
             if frames
             else ()
         ),

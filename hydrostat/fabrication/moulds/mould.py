@@ -102,13 +102,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
         clearance=options.key_clearance,
     )
     halves = make_halves(
-        inside.block,
-        inside.body,
-        inside.dents,
-        inside.pockets,
-        sprue=inside.sprue,
-        vents=inside.vents,
-        closing=closing,
+        inside.block, inside.body, inside.dents, inside.pockets, sprue=inside.sprue, vents=inside.vents, closing=closing
     )
     silicone = options.kind is MouldKind.SILICONE
     positive = make_positive(halves.cavity, inside.sprue)

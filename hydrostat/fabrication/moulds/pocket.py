@@ -107,13 +107,7 @@ def _worth(pocket: Pocket, others: list[Pocket]) -> tuple[float, bool, float, fl
     shared = sum(_shared(pocket.unit, other.unit) for other in others)
     crossed = sum(_shared(pocket.reach, other.reach) for other in others if other.upper != pocket.upper)
     outside = round(max(pocket.outside, _OUTSIDE), 3)
-    return (
-        outside,
-        bool(pocket.problem),
-        round(shared, 3),
-        round(crossed, 3),
-        round(float(pocket.core.volume()), 3),
-    )
+    return (outside, bool(pocket.problem), round(shared, 3), round(crossed, 3), round(float(pocket.core.volume()), 3))
 
 
 def _shared(one: Manifold, other: Manifold) -> float:

@@ -75,9 +75,7 @@ def release(surface: FineSurface, direction: Float[np.ndarray, "3"]) -> Release:
     asked = (surface.middles + _OUT * surface.size * surface.normals) @ turned
     above, below = _covered(np.ascontiguousarray(asked), np.ascontiguousarray(surface.corners @ turned))
     return Release(
-        heights=surface.middles @ direction,
-        upward=(facing > -_STEEP) & ~above,
-        downward=(facing < _STEEP) & ~below,
+        heights=surface.middles @ direction, upward=(facing > -_STEEP) & ~above, downward=(facing < _STEEP) & ~below
     )
 
 

@@ -9,15 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.base_plan import (
-    FREE,
-    HOLDER_DEPTH,
-    BasePlan,
-    Ring,
-    Seat,
-    holder_at,
-    tube_holder,
-)
+from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, BasePlan, Ring, Seat, holder_at, tube_holder
 from hydrostat.fabrication.parts.housing import SHEET
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, letters
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed

@@ -35,9 +35,7 @@ def lay_out(panels: tuple[Panel, ...], strips: tuple[Panel, ...], gap: float) ->
     """Lay panels in a row, and strips below them in rows that are no wider, a gap [mm] between all."""
     row, others = [_bounds(panel) for panel in panels], [_bounds(strip) for strip in strips]
     width = max(
-        sum(box.size[0] + gap for box in row) + gap,
-        _RULER + 30 + 2 * gap,
-        *(box.size[0] + 2 * gap for box in others),
+        sum(box.size[0] + gap for box in row) + gap, _RULER + 30 + 2 * gap, *(box.size[0] + 2 * gap for box in others)
     )
     floor = gap + _RULER_HEIGHT
     laid: dict[str, Panel] = {}

@@ -116,7 +116,5 @@ def _stuff(given: SheetInput) -> AssemblyStep:
     winches = ", then round the winches," if inside else ""
     lumps = " No lumps by the cables." if given.robot.cables else ""
     return AssemblyStep(
-        "Stuff the body",
-        30,
-        f"{places}Fill limbs first{winches} softly and evenly, until the body is {full}." + lumps,
+        "Stuff the body", 30, f"{places}Fill limbs first{winches} softly and evenly, until the body is {full}." + lumps
     )

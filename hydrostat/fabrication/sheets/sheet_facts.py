@@ -18,12 +18,7 @@ _NAME, _SHORT = 60, 26  # longest name of the robot, of a winch, in letters
 
 _POURS = ("first", "second")
 
-_CABLES = {
-    "cable": "cable",
-    "cut to": "cut to",
-    "slack": "slack",
-    "spool mark from end": "spool mark",
-}
+_CABLES = {"cable": "cable", "cut to": "cut to", "slack": "slack", "spool mark from end": "spool mark"}
 """Columns of the list of cables, and what the sheet calls them."""
 
 _TUBES = {"cable": "cable", "from": "from", "to": "to", "cut to": "cut to"}  # the same of the list of tubes
