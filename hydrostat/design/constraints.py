@@ -151,9 +151,8 @@ class Constraints:
     def check(self, robot: Robot) -> None:
         """Refuse a robot that these constraints do not fit.
 
-        Raises:
-            InputError: a zone of another dimension, a winch or cable to lock that it does not have, a mirror that its
-                body is not centred on, or winches in the world where it has no winch to stand for one.
+        Raises InputError: a zone of another dimension, a winch or cable to lock that it does not have, a mirror that
+        its body is not centred on, or winches in the world where it has no winch to stand for one.
         """
         mesh = robot.body.mesh
         for field in ("winch_zones", "keep_out", "still"):

@@ -180,8 +180,7 @@ class DesignRequest:
     def fitted(self, robot: Robot) -> "DesignRequest":
         """The request as one robot can be designed for: where its network is improved, that is within the constraints.
 
-        Raises:
-            InputError: a pose of a marker that it does not have, or constraints that do not fit it.
+        Raises InputError: a pose of a marker that it does not have, or constraints that do not fit it.
         """
         markers, dim = [marker.name for marker in robot.markers], robot.body.mesh.dim
         for pose in self.poses:

@@ -63,8 +63,7 @@ class Kit:
     def write(self, folder: str | Path) -> list[Path]:
         """Write all files into a folder, made if need be; what an earlier kit left there is removed.
 
-        Raises:
-            InputError: the folder or a file cannot be written.
+        Raises InputError: the folder or a file cannot be written.
         """
         return write_files(self.files, folder)
 

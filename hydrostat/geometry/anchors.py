@@ -56,10 +56,8 @@ def locate(mesh: Mesh, points: Points) -> Anchors:
     """Stick points to the rest shape of a mesh.
 
     A point inside is held by the element in which it lies deepest, by its least weight; of several by the first. A
-    point outside is stuck to the nearest place of the body; `distances` says how far that was.
-
-    Raises:
-        InputError: the points are not finite or have another dimension than the mesh.
+    point outside is stuck to the nearest place of the body; `distances` says how far that was. Raises InputError: the
+    points are not finite or have another dimension than the mesh.
     """
     points = np.asarray(points, dtype=float)
     if points.ndim != 2 or points.shape[1] != mesh.dim or not np.isfinite(points).all():

@@ -90,8 +90,7 @@ class Body:
     def element_size_for(self, nodes: int) -> float:
         """The element size [m] with which the same body has about a number of nodes.
 
-        Raises:
-            InputError: a ready mesh, or no mesh has about so few or so many.
+        Raises InputError: a ready mesh, or no mesh has about so few or so many.
         """
         from hydrostat.geometry.sizing import size_for
         from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
@@ -160,8 +159,7 @@ def outline_body(
 ) -> Body:
     """Body from the bytes of a drawing or picture: SVG, DXF, PNG or JPG by the name of the file.
 
-    Raises:
-        InputError: the drawing is no closed outline, or a number is out of its range.
+    Raises InputError: the drawing is no closed outline, or a number is out of its range.
     """
     from hydrostat.geometry.files.outline_file import read_outline
     from hydrostat.geometry.triangles.triangulate import triangulate
@@ -243,8 +241,7 @@ def mesh_body(
 ) -> Body:
     """Body from a ready mesh of triangles or tetrahedra whose coordinates count `unit` metres each.
 
-    Raises:
-        InputError: the file cannot be read or holds no such mesh.
+    Raises InputError: the file cannot be read or holds no such mesh.
     """
     from hydrostat.geometry.files.mesh_file import read_mesh
 

@@ -234,11 +234,7 @@ MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
 
 
 def find_material(name: str) -> Material:
-    """Material of the table; capitals do not matter.
-
-    Raises:
-        InputError: no material has this name.
-    """
+    """Material of the table; capitals do not matter. Raises InputError: no material has this name."""
     material = MATERIALS.get(name.lower())
     if material is None:
         from difflib import get_close_matches

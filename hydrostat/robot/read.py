@@ -30,8 +30,7 @@ LARGEST_FILE = 200_000_000  # the file of a body may have this many bytes
 def load_robot(path: str | Path) -> Robot:
     """Robot from its folder, or from the robot.toml in it.
 
-    Raises:
-        InputError: one line that names the file, the line or key, what is wrong and what is allowed.
+    Raises InputError: one line that names the file, the line or key, what is wrong and what is allowed.
     """
     path = Path(path)
     file = path if path.suffix == ".toml" and not os.path.isdir(path) else path / FILE

@@ -102,8 +102,7 @@ def sketch_surface(
 def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: str = "flexfoam-it x") -> Robot:
     """Robot from a ready mesh of tetrahedra, whose coordinates count in mm unless a size [m] is given.
 
-    Raises:
-        InputError: the file holds no mesh in space.
+    Raises InputError: the file holds no mesh in space.
     """
     body = mesh_body(path, unit=1e-3, material=find_material(material), size=size)
     _check_scale(body.mesh.size, size)

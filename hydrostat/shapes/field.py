@@ -24,11 +24,9 @@ Place = Float[np.ndarray, " 3"] | Sequence[float]
 def round_cone(start: Place, end: Place, start_radius: float, end_radius: float) -> Field:
     """Distance from the hull of two balls [m]; a capsule where their radii are equal.
 
-    In the plane of the axis and a point, the nearest place is on the slanted side, which touches both balls, or on
-    one of the balls: which one is told by where the foot of the point along the slant falls.
-
-    Raises:
-        InputError: a ball lies within the other, so that there is no cone.
+    In the plane of the axis and a point, the nearest place is on the slanted side, which touches both balls, or on one
+    of the balls: which one is told by where the foot of the point along the slant falls. Raises InputError: a ball lies
+    within the other, so that there is no cone.
     """
     first, axis = np.array(start, dtype=float), np.subtract(end, start).astype(float)
     length, fall = float(np.linalg.norm(axis)), start_radius - end_radius

@@ -200,8 +200,7 @@ class Shape:
     def surface(self, spacing: float) -> Surface:
         """The closed surface, drawn on a grid [m]; details smaller than the spacing are lost.
 
-        Raises:
-            SurfaceError: the spacing is not above 0, too fine for the memory or so coarse that nothing is left.
+        Raises SurfaceError: the spacing is not above 0, too fine for the memory or so coarse that nothing is left.
         """
         # Halved, for the distance from a flat section can change by more than the way, though by less than twice.
         return contour(lambda points: self.field(points) / 2, self.box, spacing, distance=True)

@@ -87,9 +87,7 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     """The mould for a robot's body.
 
     `pockets` are what winches that sit in the body take up, by name; three sides [mm] if the shaft is in the middle.
-
-    Raises:
-        InputError: the body is not closed, or a pocket is of a winch that is not there.
+    Raises InputError: the body is not closed, or a pocket is of a winch that is not there.
     """
     solid = body_solid(robot.body)
     pull = find_pull(solid)

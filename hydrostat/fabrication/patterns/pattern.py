@@ -44,11 +44,7 @@ class Pattern:
     warnings: tuple[str, ...] = ()
 
     def panel(self, name: str) -> Panel:
-        """The panel of this name.
-
-        Raises:
-            InputError: there is none.
-        """
+        """The panel of this name. Raises InputError: there is none."""
         for panel in self.panels:
             if panel.name == name:
                 return panel
@@ -77,10 +73,8 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     """Front and back of a flat plush robot, and a gusset for a thick one, to be sewn, turned and stuffed (R10).
 
     All panels show the right side of the cloth: the front as drawn, the back as seen from behind. Cables run along the
-    front panel, stitched in and out of it at their points, so the pinholes are there. The zipper is in the back.
-
-    Raises:
-        InputError: the body is not flat, or a hole or an edge cannot be cut as drawn (unless `force`).
+    front panel, stitched in and out of it at their points, so the pinholes are there. The zipper is in the back. Raises
+    InputError: the body is not flat, or a hole or an edge cannot be cut as drawn (unless `force`).
     """
     options = options or PatternOptions()
     skin = flat_skin(robot.body, options)

@@ -73,8 +73,7 @@ class Cylinder(Construction):
 class Prism(Construction):
     """A polygon in the plane, counter-clockwise, raised from z = 0 upwards [mm].
 
-    Raises:
-        ValueError: the corners turn clockwise, or enclose nothing.
+    Raises ValueError: the corners turn clockwise, or enclose nothing.
     """
 
     profile: tuple[Corner, ...]
@@ -88,8 +87,7 @@ class Prism(Construction):
 class Turning(Construction):
     """A polygon of (radius, height) corners, counter-clockwise, turned once round the z axis [mm].
 
-    Raises:
-        ValueError: the corners turn clockwise, enclose nothing, or are beyond the axis.
+    Raises ValueError: the corners turn clockwise, enclose nothing, or are beyond the axis.
     """
 
     profile: tuple[Corner, ...]
