@@ -25,7 +25,7 @@ from hydrostat.geometry.contour import contour
 from hydrostat.geometry.healing.heal import heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Surface
-from hydrostat.geometry.tetrahedra.lattice import turned_outward
+from hydrostat.geometry.tetrahedra.stuffing import turned_outward
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 from hydrostat.robot import gallery_folder, load_robot
 

@@ -2,8 +2,7 @@
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.design_cables import design_cables, find_network
-from hydrostat.design.muscles.activation import Activation, activate
-from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
+from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, TreeTrace
 from hydrostat.design.request import AUTO, DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.score_card import rest_error, score_card

@@ -6,7 +6,7 @@ from typing import Any
 
 from hydrostat.closed_set import make_member
 from hydrostat.design.constraints import Constraints, Range
-from hydrostat.design.muscles.fibres import FibreKind
+from hydrostat.design.muscles.activation import FibreKind
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 

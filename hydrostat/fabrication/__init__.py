@@ -2,7 +2,7 @@
 
 from hydrostat.fabrication.build_kit import build_kit, export_kit
 from hydrostat.fabrication.demand import Demand, find_demand
-from hydrostat.fabrication.kit import Kit, UnbuildableError
+from hydrostat.fabrication.kit import Check, Kit, UnbuildableError
 from hydrostat.fabrication.kit_options import (
     Corner,
     KitOptions,
@@ -19,7 +19,6 @@ from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
 from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Shape
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
-from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.printed import Printed
 
 __all__ = [

@@ -1,14 +1,31 @@
-"""`BodyWork`: what making the soft body takes, by either method."""
+"""`BodyWork`: what making the soft body takes: of felt its pattern (R10), of foam its mould and mixes (R50 to R54)."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.fabrication.checks.mould_checks import mould_checks
+from hydrostat.fabrication.checks.pattern_checks import patch_checks, pattern_checks
+from hydrostat.fabrication.kit import Check
+from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions, MouldKind, PartOptions
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds
-from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.moulds.mould import Mould, make_mould
+from hydrostat.fabrication.moulds.pocket import WinchRoom
+from hydrostat.fabrication.parts.winch_unit import WinchUnit
+from hydrostat.fabrication.patches.space_pattern import space_pattern
+from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
+from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
+from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.patterns.stitches import CableStitches
-from hydrostat.fabrication.self_check import Check
+from hydrostat.fabrication.patterns.svg_writer import pattern_svg
+from hydrostat.fabrication.sheets.tiles import tiled_pdf
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.robot import Mount, Robot
+from hydrostat.units import counted
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -29,3 +46,161 @@ class BodyWork:
     problems: tuple[str, ...] = ()  # why it cannot be built well
     warnings: tuple[str, ...] = ()  # what to mind
     checks: tuple[Check, ...] = ()  # that it is true to the simulation
+
+
+MANY_PIECES = 40  # more pieces of a mould than that are a warning: a judgement, each is some hours on a printer
+MUCH_PLASTIC = 5e3  # more plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too
+
+
+def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
+    """Make the mould of a body, with room for the winches that sit in it. Raises InputError: the body is not closed."""
+    pockets = {
+        unit.winch: WinchRoom(low=unit.room.low, high=unit.room.high) for unit in units if unit.mount is Mount.BODY
+    }
+    mould = make_mould(robot, options.mould, pockets=pockets)
+    spare = tuple(
+        part for part in mould.printed if part.name.startswith("positive") and mould.kind is MouldKind.PRINTED
+    )
+    printed = tuple(part for part in mould.printed if part not in spare)
+    pieces, sides = sum(part.count for part in printed), " x ".join(f"{side:.0f}" for side in mould.box)
+    body, held = mould.casting.body, 100 * mould.pull.share
+    return BodyWork(
+        printed=printed,
+        spare=spare,
+        assemblies=(mould.assembly,),
+        foam=FoamNeeds(
+            volume=body.volume,
+            part_a=body.part_a,
+            part_b=body.part_b,
+            material=body.material,
+            silicone=sum(mix.volume for mix in mould.casting.silicone),
+            silicone_mass=sum(mix.mass for mix in mould.casting.silicone),
+        ),
+        mould=mould,
+        summary=(
+            f"Mould: {counted(pieces, 'piece')}, closed {sides} mm; {held:.1f} % of the skin is undercut",
+            f"Pour: {body.mass:.0f} g of {body.material}",
+        ),
+        problems=(*mould.problems, *channel_problems(robot, options.parts)),
+        warnings=(*mould.warnings, *_effort(printed)),
+        checks=mould_checks(robot, mould),
+    )
+
+
+def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
+    """A sentence if a mould takes more printing than a person has in mind."""
+    pieces, mass = sum(part.count for part in printed), sum(part.count * part.mass for part in printed)
+    if pieces <= MANY_PIECES and mass <= MUCH_PLASTIC:
+        return ()
+    return (
+        f"the mould takes {counted(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic: make the body smaller, use "
+        "a printer with a larger bed, or cut the body out of a block of foam",
+    )
+
+
+SKIN = 1.0  # Least foam between a tube and the skin [mm]: thinner, it tears when the tube is pulled. Measured on none.
+_STEP = 1e-3  # distance of the places that are looked at [m]
+
+
+def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
+    """Tell which sheaths come too near the skin between two deeper places, a line each.
+
+    Where a tube enters the body, or ends at the skin, it is near by intent.
+    """
+    solid = robot.body.solid
+    if solid is None:
+        return ()
+    needed = options.tube / 2 + SKIN
+    problems = []
+    for number, cable in enumerate(robot.cables, start=1):
+        for start, end in cable.sheathed:
+            places = _along(np.array(cable.points[start : end + 1]))
+            depths = -1e3 * solid.distances(places)
+            thin = _between(depths, needed)
+            if thin is not None:
+                at = ", ".join(f"{1e3 * value:.0f}" for value in places[thin])
+                problems.append(
+                    f"cable {number}: its tube comes within {max(depths[thin], 0.0):.1f} mm of the skin at [{at}] mm, "
+                    f"but needs {needed:.1f} mm of depth; move the points of the sheath inwards"
+                )
+    return tuple(problems)
+
+
+def _between(depths: Float[np.ndarray, " places"], needed: float) -> int | None:
+    """The shallowest place between the first and the last deep one, if it is too shallow."""
+    deep = np.flatnonzero(depths >= needed)
+    if not len(deep):
+        return None
+    inner = depths[deep[0] : deep[-1] + 1]
+    lowest = int(inner.argmin())
+    return int(deep[0]) + lowest if inner[lowest] < needed else None
+
+
+def _along(points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "places 3"]:
+    """Places along a line through points [m]."""
+    pieces = []
+    for one, other in pairwise(points):
+        count = max(int(np.ceil(np.linalg.norm(other - one) / _STEP)), 1)
+        pieces.append(one + np.linspace(0.0, 1.0, count, endpoint=False)[:, None] * (other - one))
+    return np.concatenate([*pieces, points[-1:]])
+
+
+def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
+    """Make the pattern of a body: of a flat one front and back, of one in space its skin in patches.
+
+    Raises InputError: the body is in several pieces, or its skin cannot be cut into patches.
+    """
+    drawn = replace(options.pattern, force=True)
+    if robot.body.mesh.dim == 2:
+        pattern = plush_pattern(robot, options=drawn)
+        svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
+        checks = pattern_checks(robot, pattern, svg, dxf, drawn)
+    else:
+        pattern = space_pattern(robot, drawn)
+        svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
+        checks = patch_checks(robot, pattern, svg, dxf)
+    return BodyWork(
+        files={
+            "pattern/pattern.svg": svg,
+            "pattern/pattern.dxf": dxf,
+            f"pattern/pattern_{options.paper}.pdf": tiled_pdf(pattern, options.paper),
+        },
+        holes=sum(shape.part is PatternPart.PINHOLE for panel in pattern.panels for shape in panel.shapes),
+        stitches=pattern.stitches,
+        gusset=bool(pattern.gusset),
+        cloth=_cloth(pattern),
+        summary=(f"Pattern: {counted(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
+        problems=(*pattern.problems, *_wrong_stuffing(robot)),
+        warnings=pattern.warnings,
+        checks=checks,
+    )
+
+
+def _wrong_stuffing(robot: Robot) -> tuple[str, ...]:
+    """Why what is built would be another robot than was simulated; nothing is said of a material given by numbers."""
+    name = robot.body.material.name
+    if not name or name in STUFFINGS:
+        return ()
+    return (
+        f'the body was simulated as "{name}", which is not stuffed into cloth: set its material to '
+        f'"{STUFFINGS[0]}" and simulate again, or cast it (--method foam)',
+    )
+
+
+def _size(pattern: Pattern) -> str:
+    return f"{pattern.width:.0f} x {pattern.height:.0f}"
+
+
+def _cloth(pattern: Pattern) -> Cloth:
+    """What the sheet takes: all of its felt, and every seam that is drawn once for each of two panels."""
+    seams = (
+        shape.geometry.length
+        for panel in pattern.panels
+        for shape in panel.shapes
+        if shape.part is PatternPart.SEAM and not isinstance(shape, Circle)
+    )
+    return Cloth(
+        felt=pattern.width * pattern.height,
+        seam=sum(seams) / 2,
+        zipper=0.0 if pattern.opening is None else float(pattern.opening.zipper),
+    )

@@ -4,11 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from hydrostat.fabrication.body_work import BodyWork
+from hydrostat.fabrication.body_work import BodyWork, foam_work, plush_work
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.demand import Demand, find_demand
-from hydrostat.fabrication.foam import foam_work
-from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
+from hydrostat.fabrication.kit import MANIFEST, Check, Kit, UnbuildableError, manifest
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.list_input import ListInput
 from hydrostat.fabrication.lists.lists import Lists, make_lists
@@ -17,8 +16,6 @@ from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
-from hydrostat.fabrication.plush import plush_work
-from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates

@@ -1,4 +1,4 @@
-"""`Kit`: everything that a robot is built from, as files (R9 to R14, R50 to R57); its manifest and its folder."""
+"""`Kit`: what a robot is built from, as files (R9 to R14, R50 to R57); its manifest, folder and self-check."""
 
 import hashlib
 import json
@@ -11,10 +11,27 @@ from typing import Any
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import KitOptions, Method
-from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot, replace_file, robot_hash
 from hydrostat.units import counted
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """A claim that was measured on the finished drawing or solid, not on what it was made from.
+
+    Attributes:
+        what: the claim, such as "pinholes are where the cables pass".
+        measured: what was found, with its unit, such as "at most 0.004 mm off".
+        allowed: such as "0.1 mm".
+        passed: whether it holds.
+    """
+
+    what: str
+    measured: str
+    allowed: str
+    passed: bool
+
 
 MANIFEST = "manifest.json"  # its file in a kit; written last, so that a kit without it is not whole
 

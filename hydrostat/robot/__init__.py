@@ -6,8 +6,7 @@ from hydrostat.robot.checks import Point
 from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.gravity import STANDARD_GRAVITY
 from hydrostat.robot.marker import Marker, Pose
-from hydrostat.robot.material import Material, Relaxation
-from hydrostat.robot.materials import MATERIALS, find_material
+from hydrostat.robot.materials import MATERIALS, Material, Relaxation, find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.read import load_robot
 from hydrostat.robot.risks import find_risks

@@ -19,8 +19,7 @@ from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.surface import Solid
 from hydrostat.robot.checks import check_positive
-from hydrostat.robot.material import Material
-from hydrostat.robot.materials import find_material
+from hydrostat.robot.materials import Material, find_material
 
 
 class Source(StrEnum):

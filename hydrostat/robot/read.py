@@ -13,8 +13,7 @@ from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.marker import Marker, Pose
-from hydrostat.robot.material import Material, Relaxation
-from hydrostat.robot.materials import find_material
+from hydrostat.robot.materials import Material, Relaxation, find_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.tables_file import TablesFile, read_bytes, read_text

@@ -22,7 +22,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Volume
 from hydrostat.robot.checks import check_name
 from hydrostat.robot.gravity import DIRECTIONS
-from hydrostat.robot.material import MOST_BRANCHES
+from hydrostat.robot.materials import MOST_BRANCHES
 from hydrostat.robot.winch import Mount
 from hydrostat.units import quote
 

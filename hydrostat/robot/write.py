@@ -13,8 +13,7 @@ from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
 from hydrostat.robot.gravity import direction_of
-from hydrostat.robot.material import Material, Relaxation
-from hydrostat.robot.materials import MATERIALS
+from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Mount

@@ -5,8 +5,7 @@ import pytest
 from builders import strip_robot
 from scipy.optimize import lsq_linear
 
-from hydrostat.design.muscles.activation import activate, least_effort
-from hydrostat.design.muscles.fibres import edge_fibres
+from hydrostat.design.muscles.activation import activate, edge_fibres, least_effort
 from hydrostat.design.muscles.free_posing import FreePosing
 from hydrostat.geometry.anchors import locate
 from hydrostat.robot import Pose

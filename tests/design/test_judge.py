@@ -7,7 +7,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design.network import rms_error
-from hydrostat.design.trees.judge import cost, judge, prune
+from hydrostat.design.trees.design_trees import cost, judge, prune
 from hydrostat.ik import ReachedPose, solve_ik
 from hydrostat.robot import Cable, Pose, Robot
 from hydrostat.simulation import Simulation

@@ -9,7 +9,7 @@ from test_judge import POSES, shifted
 
 from hydrostat.design import DesignStage, RouteTrace, design_cables
 from hydrostat.design.progress import Better
-from hydrostat.design.trees.judge import judge
+from hydrostat.design.trees.design_trees import judge
 
 
 def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) -> None:

@@ -12,7 +12,7 @@ from hydrostat.geometry.mesh import Mesh, dihedral_angles
 from hydrostat.geometry.surface import Solid, Surface, covering_points
 from hydrostat.geometry.tetrahedra import improve as module
 from hydrostat.geometry.tetrahedra.improve import ImproveStage, improve
-from hydrostat.geometry.tetrahedra.lattice import signed_volumes
+from hydrostat.geometry.tetrahedra.stuffing import signed_volumes
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 
 REGULAR = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])[[0, 2, 1, 3]]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hydrostat.geometry.mesh import Mesh, dihedral_angles
-from hydrostat.geometry.tetrahedra.lattice import (
+from hydrostat.geometry.tetrahedra.stuffing import (
     MEAN_EDGE,
     bisect,
     edges_of,

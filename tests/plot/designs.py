@@ -20,7 +20,7 @@ from hydrostat.design import (
     RouteTrace,
     TreeTrace,
 )
-from hydrostat.design.muscles.fibres import edge_fibres
+from hydrostat.design.muscles.activation import edge_fibres
 from hydrostat.ik import InverseReason, ReachedPose
 from hydrostat.robot import Cable, Marker, Mount, Pin, Pose, Robot, Winch, mesh_body
 from hydrostat.simulation import Simulation

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hydrostat.robot import gallery_folder, gallery_names
-from hydrostat.robot.toml_blocks import comments, split_blocks
+from hydrostat.robot.merge import comments, split_blocks
 
 TRICKY = '''\
 # top

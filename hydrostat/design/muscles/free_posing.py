@@ -5,8 +5,7 @@ from jaxtyping import Float
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.design.muscles.activation import least_effort, place_slopes
-from hydrostat.design.muscles.fibres import Fibres, edge_fibres
+from hydrostat.design.muscles.activation import Fibres, edge_fibres, least_effort, place_slopes
 from hydrostat.geometry.anchors import Anchors
 from hydrostat.mechanics import NewtonOptions, NewtonResult, minimise
 from hydrostat.robot import Robot

@@ -1,7 +1,7 @@
-"""`design_trees`: from poses to winches and cables, as the thesis has it, judged by the pose error (R35 to R46)."""
+"""`design_trees`: from poses to winches and cables as in the thesis, judged by the pose error (R35 to R46, E24)."""
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, islice, product
 from math import comb
@@ -10,19 +10,26 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.design.buildable import violations
-from hydrostat.design.muscles.activation import Activation, activate, wanted_directions
-from hydrostat.design.muscles.fibres import FibreKind, Fibres, edge_fibres, element_fibres
-from hydrostat.design.network import Network, TreeTrace
+from hydrostat.design.muscles.activation import (
+    Activation,
+    FibreKind,
+    Fibres,
+    activate,
+    edge_fibres,
+    element_fibres,
+    wanted_directions,
+)
+from hydrostat.design.network import DesignStage, Network, TreeTrace, rms_error
 from hydrostat.design.polyline import Route, length, sharpest_turn
-from hydrostat.design.progress import Progress, Watch, unseen
+from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.design.region import body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
-from hydrostat.design.trees.judge import judge, prune
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
 from hydrostat.errors import HydrostatError
+from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Cable, Pose, Robot, Winch
-from hydrostat.simulation import BodyPhysics
+from hydrostat.simulation import BodyPhysics, Simulation
 
 
 def design_trees(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
@@ -255,3 +262,83 @@ def _apart(routes: list[Route], spacing: float) -> list[Route]:
         if not any(close.mean() > 0.6 for close in near):
             kept.append(route)
     return kept
+
+
+_ROUNDS = tuple(InverseOptions(iterations=steps, restarts=0, unique=False) for steps in (3, 4, 100))
+"""Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
+
+_KEPT = 4  # one in so many robots goes on to the next round
+_FEWEST = 4  # at least so many robots go on
+
+
+def judge(
+    robots: Sequence[Robot],
+    poses: Sequence[Pose],
+    *,
+    tension: float,
+    progress: Progress,
+    watch: Watch = unseen,
+    body: BodyPhysics | None = None,
+) -> tuple[int, tuple[ReachedPose, ...]]:
+    """The index of the robot of least cost, and what it reaches of each pose.
+
+    In rounds of inverse kinematics, each of which takes up where the last one ended, for ever fewer robots. Cables
+    should bear at most the tension [N], see `cost`; `watch` is told each robot that is better than all before and keeps
+    to it.
+    """
+    simulations = [Simulation(robot, body=body) for robot in robots]
+    reached: dict[int, tuple[ReachedPose, ...]] = {}
+    chosen = list(range(len(robots)))
+    better = Better(watch)
+    for number, options in enumerate(_ROUNDS):
+        for done, index in enumerate(chosen):
+            if number == 0:
+                progress("Judging networks", done, len(robots))
+            starts = [pose.pose for pose in reached[index]] if index in reached else [None] * len(poses)
+            pairs = zip(poses, starts, strict=True)
+            reached[index] = tuple(
+                solve_ik(simulations[index], pose, start=start, options=options) for pose, start in pairs
+            )
+            error = rms_error(reached[index])
+            if cost(reached[index], tension) <= error:
+                better(DesignStage(words="a network judged", robot=robots[index], error=error))
+        chosen.sort(key=lambda index: cost(reached[index], tension))
+        if number < len(_ROUNDS) - 1:
+            chosen = chosen[: max(_FEWEST, len(chosen) // _KEPT)]
+    progress("Judging networks", len(robots), len(robots))
+    return chosen[0], reached[chosen[0]]
+
+
+def cost(reached: Sequence[ReachedPose], tension: float) -> float:
+    """Pose error [m], times how often the largest tension exceeds `tension` [N] if it does."""
+    largest = max(float(pose.pose.tensions.max(initial=0.0)) for pose in reached)
+    return rms_error(reached) * max(largest / tension, 1.0)
+
+
+def prune(
+    robot: Robot,
+    poses: Sequence[Pose],
+    reached: tuple[ReachedPose, ...],
+    *,
+    tension: float,
+    loss: float,
+    body: BodyPhysics | None = None,
+) -> tuple[Robot, tuple[ReachedPose, ...]]:
+    """Leave out cables, the shortest first, while the cost stays within 1 + `loss` of what it was.
+
+    All omissions together may add that share. Every winch keeps a cable. Cables should bear at most the tension [N].
+    """
+    allowed = (1.0 + loss) * cost(reached, tension)
+    for cable in sorted(robot.cables, key=lambda cable: float(cable.segments[cable.bare].sum())):
+        others = [other for other in robot.cables if other is not cable]
+        if not any(other.winch == cable.winch for other in others):
+            continue
+        trial = robot.with_network(robot.winches, others)
+        simulation = Simulation(trial, body=body)
+        found = tuple(solve_ik(simulation, pose, options=_OPTIONS) for pose in poses)
+        if cost(found, tension) <= allowed:
+            robot, reached = trial, found
+    return robot, reached
+
+
+_OPTIONS = InverseOptions(restarts=0, unique=False)  # one descent tells enough

@@ -2,9 +2,9 @@
 
 import math
 
+from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import MouldKind
 from hydrostat.fabrication.moulds.mould import Mould
-from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Robot
 
 LEFT_OVER = 1e-6  # share of the block whose whereabouts may be unknown: what booleans round

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float, Int
 from manifold3d import Error
 
+from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
-from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interferences
 from hydrostat.fabrication.solids.printed import Printed, connected, loose_edges
 from hydrostat.robot import Robot

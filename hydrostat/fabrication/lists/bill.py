@@ -1,11 +1,114 @@
-"""The bill of materials: what is bought, how much of it, and what it costs."""
+"""The bill of materials: what is bought, how much of it, and what it costs, roughly, and where that is from."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.prices import Price
 from hydrostat.fabrication.lists.table import Cell, Table, number_columns, text_columns
+from hydrostat.fabrication.moulds.casting import SILICONE_PRICE
+
+NO_SOURCE = "estimate, no source"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Price:
+    """A rough price.
+
+    Attributes:
+        amount: in its currency, of one unit.
+        unit: what it is of, such as "m" or "kg".
+        pack: in how many units it is sold.
+        month: when it was asked or noted; empty if the source has no date.
+        source: where it is from, in words.
+        currency: its code.
+
+    Raises:
+        InputError: an amount below 0, or a pack of nothing.
+    """
+
+    amount: float
+    unit: str = "piece"
+    pack: float = 1.0
+    month: str = ""
+    source: str = NO_SOURCE
+    currency: str = "USD"
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.amount) and self.amount >= 0):
+            raise InputError(f"amount must be at least 0 {self.currency}, not {self.amount:g}")
+        if not (math.isfinite(self.pack) and self.pack > 0):
+            raise InputError(f"pack must be above 0 {self.unit}, not {self.pack:g}")
+
+    @property
+    def words(self) -> str:
+        """Its source and its month, in words."""
+        if self.source == NO_SOURCE:
+            return NO_SOURCE
+        return f"rough, from {self.source}; {self.month or 'no date'}"
+
+    def packs(self, quantity: float) -> int:
+        """Count of the packs that hold a quantity."""
+        return math.ceil(quantity / self.pack - 1e-9)
+
+    def of_packs(self, quantity: float) -> float:
+        """Cost of the packs that hold a quantity."""
+        return self.packs(quantity) * self.pack * self.amount
+
+
+_SHEET = 0.2286 * 0.3048  # of craft felt, 9 by 12 inches [m^2]
+_BAG = 32 * 0.0283495  # of fibre filling, 32 oz [kg]
+_ANGLER = 91.44  # line on a spool, 100 yards [m]
+
+_PUPPETS = "a puppet maker's list of costs (The Tucson Puppet Lady)"
+_BEARS = "a sewing group's list of costs (Crafting 4 Jesus)"
+
+PRICES = MappingProxyType(
+    {
+        "felt": Price(
+            amount=0.40 / _SHEET, unit="m^2", pack=_SHEET, source=f"{_PUPPETS}: craft felt, 0.40 a sheet of 9 by 12 in"
+        ),
+        "thread": Price(amount=3.0, unit="spool", source=f"{_PUPPETS}: all-purpose thread, 3 a spool"),
+        "filling": Price(
+            amount=5.99 / _BAG, unit="kg", pack=_BAG, month="2011-01", source=f"{_BEARS}: fibre filling, 5.99 for 32 oz"
+        ),
+        "zipper": Price(amount=2.0),
+        "needle": Price(amount=5.0, unit="set"),
+        "line": Price(
+            amount=6.95 / _ANGLER,
+            unit="m",
+            pack=_ANGLER,
+            month="2007-10",
+            source="an angler's notes (Singlebarbed): braided Dyneema line, 6.95 for 100 yd",
+        ),
+        "tube": Price(amount=2.0, unit="m"),
+        "controller": Price(
+            amount=5.44, source="parts list of a drawing robot (RISE STEM kits): board like the Arduino Nano"
+        ),
+        "servo board": Price(
+            amount=28.64,
+            source="parts list of a gripper with two Dynamixel servos (force_gripper_hardware): OpenRB-150",
+        ),
+        "driver": Price(amount=5.0),
+        "supply": Price(amount=10.0),
+        "screws": Price(amount=0.08, pack=100.0, source="parts list of a printed robot hand: M3 screws, 8 for 100"),
+        "pla": Price(
+            amount=19.99, unit="kg", month="2023-05", source="parts list of SCUTTLE mini (D. Malawey): filament, 1 kg"
+        ),
+        "foam": Price(amount=40.0, unit="kg", pack=0.5),
+        "silicone": Price(amount=SILICONE_PRICE, unit="kg"),
+        "release": Price(amount=15.0, unit="can"),
+        "glue": Price(amount=15.0, unit="can"),
+        "sealer": Price(amount=8.0, unit="can"),
+        "clay": Price(amount=8.0, unit="pack"),
+        "plastic glue": Price(amount=5.0, unit="tube"),
+        "bolts": Price(amount=0.25),
+        "rod": Price(amount=1.0, unit="m", pack=0.3),
+        "skin": Price(amount=8.0),
+    }
+)
+"""By key; none is younger than its month says, and those without a source are guesses: ask your shop."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.lists.table import Table, number_columns, text_columns
 from hydrostat.fabrication.patterns.stitches import runs_of
-from hydrostat.fabrication.self_check import Check
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
 from hydrostat.fabrication.lists.cuts import (
@@ -19,7 +20,6 @@ from hydrostat.fabrication.lists.motor_sizing import motor_table, motor_warnings
 from hydrostat.fabrication.lists.needs import all_needs
 from hydrostat.fabrication.lists.stitching import close_warnings, deep_warnings, depth_table, plane_table, stitch_table
 from hydrostat.fabrication.lists.table import Table
-from hydrostat.fabrication.self_check import Check
 from hydrostat.simulation import Simulation
 
 _MOULD_COST = "For hands of foam the thesis gives about 100 USD for a silicone mould and a few dollars for each core"

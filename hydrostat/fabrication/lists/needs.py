@@ -2,11 +2,10 @@
 
 import math
 
-from hydrostat.fabrication.lists.bill import Item
+from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
-from hydrostat.fabrication.lists.prices import NO_SOURCE, PRICES, Price
 from hydrostat.fabrication.solids.printed import Printed
 
 POLYETHYLENE = 0.97e-3  # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)

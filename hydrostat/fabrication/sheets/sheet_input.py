@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.mould import Mould
 from hydrostat.fabrication.patterns.stitches import CableStitches
-from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot

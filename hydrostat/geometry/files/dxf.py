@@ -14,16 +14,18 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.page import Drawing, Page, page_about
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
+    Drawing,
+    Page,
     body_and_holes,
     checked_lines,
     closed_rings,
     join_lines,
     one_line,
     outline_on_page,
+    page_about,
     without_repeats,
 )
 from hydrostat.geometry.outline import Ring

@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.page import Drawing, Page, page_about
-from hydrostat.geometry.files.rings import one_line, outline_on_page
+from hydrostat.geometry.files.rings import Drawing, Page, one_line, outline_on_page, page_about
 from hydrostat.geometry.files.silhouette import Contrast, PixelPatch, Silhouette, contrast, covered, silhouette
 from hydrostat.units import counted
 

@@ -5,7 +5,7 @@ from pathlib import PurePath
 import numpy as np
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.files.page import Drawing, Page
+from hydrostat.geometry.files.rings import Drawing, Page
 from hydrostat.geometry.outline import Outline
 
 _MOST_BYTES = {".svg": 20_000_000, ".dxf": 10_000_000, ".png": 50_000_000, ".jpg": 50_000_000, ".jpeg": 50_000_000}

@@ -11,14 +11,16 @@ from xml.parsers import expat
 import numpy as np
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.page import Drawing, Page, page_about
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
+    Drawing,
+    Page,
     body_and_holes,
     closed_rings,
     one_line,
     outline_on_page,
+    page_about,
     without_repeats,
 )
 from hydrostat.geometry.outline import Ring

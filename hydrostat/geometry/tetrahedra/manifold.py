@@ -6,7 +6,7 @@ from scipy.spatial import KDTree
 
 from hydrostat.arrays import Elements, Nodes, Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
-from hydrostat.geometry.tetrahedra.lattice import Numbers, signed_volumes
+from hydrostat.geometry.tetrahedra.stuffing import Numbers, signed_volumes
 
 
 def manifold(nodes: Nodes, elements: Elements) -> tuple[Mesh, Points]:

@@ -10,9 +10,18 @@ from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Solid, Surface, covering_points
 from hydrostat.geometry.tetrahedra.improve import ImproveStage, improve
-from hydrostat.geometry.tetrahedra.lattice import MEAN_EDGE, PAIRS, Places, Tetrahedra, bisect, lattice, signed_volumes
 from hydrostat.geometry.tetrahedra.manifold import euler, manifold
-from hydrostat.geometry.tetrahedra.stuffing import find_bridges, stuff
+from hydrostat.geometry.tetrahedra.stuffing import (
+    MEAN_EDGE,
+    PAIRS,
+    Places,
+    Tetrahedra,
+    bisect,
+    find_bridges,
+    lattice,
+    signed_volumes,
+    stuff,
+)
 
 CLOSE = 0.25  # the boundary of a mesh should be as near to the surface, in element sizes
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.robot.material import Material
+from hydrostat.robot.materials import Material
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from foam_bricks import foam_brick
 
-from hydrostat.fabrication.foam import channel_problems
+from hydrostat.fabrication.body_work import channel_problems
 from hydrostat.fabrication.kit_options import PartOptions
 
 OPTIONS = PartOptions(tube=2.0)

@@ -8,7 +8,7 @@ from plush_robots import crossed
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Pattern, PatternOptions, PatternPart, pattern_dxf, pattern_svg, plush_pattern
 from hydrostat.fabrication.checks.pattern_checks import pattern_checks
-from hydrostat.fabrication.self_check import Check
+from hydrostat.fabrication.kit import Check
 
 
 def checked(svg: bytes | None = None, dxf: bytes | None = None) -> tuple[bool, ...]:

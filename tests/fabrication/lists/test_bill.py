@@ -7,12 +7,11 @@ import pytest
 from small_inputs import PLAIN, box, given, square
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.lists.bill import Item, bill_table, cost_of
+from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, Item, Price, bill_table, cost_of
 from hydrostat.fabrication.lists.cuts import cable_cuts, sheath_cuts
 from hydrostat.fabrication.lists.line import line_for
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
 from hydrostat.fabrication.lists.needs import all_needs, filling_mass
-from hydrostat.fabrication.lists.prices import NO_SOURCE, PRICES, Price
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed

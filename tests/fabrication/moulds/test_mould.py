@@ -12,8 +12,8 @@ from manifold3d import Manifold
 from mould_robots import blob_body, foam_robot, slab_body
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.body_work import MANY_PIECES, foam_work
 from hydrostat.fabrication.checks.mould_checks import mould_checks
-from hydrostat.fabrication.foam import MANY_PIECES, foam_work
 from hydrostat.fabrication.kit_options import KitOptions, Method, MouldKind, MouldOptions
 from hydrostat.fabrication.moulds import mould as mould_module
 from hydrostat.fabrication.moulds.closing import Closing, make_closing

@@ -7,6 +7,7 @@ from builders import box_mesh, mesh_body
 from manifold3d import Manifold
 from plush_robots import SQUARE, drawn_body
 
+from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method, MouldKind, Paper
 from hydrostat.fabrication.lists.table import Align, Column, Table
 from hydrostat.fabrication.moulds.casting import make_casting
@@ -15,7 +16,6 @@ from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import FineSurface
 from hydrostat.fabrication.moulds.stance import Stance
 from hydrostat.fabrication.patterns.stitches import cable_stitches
-from hydrostat.fabrication.self_check import Check
 from hydrostat.fabrication.sheets.cable_map import body_solid
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed

@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, Winch, gallery_folder, load_robot, robot_text
-from hydrostat.robot.merge import lost_comments, merged_text
+from hydrostat.robot.merge import comments, lost_comments, merged_text
 from hydrostat.robot.read import RobotReader
-from hydrostat.robot.toml_blocks import comments
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.change import change, rename, set_gravity
