@@ -87,10 +87,9 @@ class Session:
         return self.stages[self.stage]
 
     def go(self, name: StageName | str) -> None:
-        """Show another stage; where it is shown already nothing happens, and nothing is let go.
+        """Show another stage (InputError: there is none of this name, or it needs a robot, and none is open).
 
-        Raises:
-            InputError: there is none of this name, or it needs a robot, and none is open.
+        Where it is shown already nothing happens, and nothing is let go.
         """
         name = member(StageName, name, what="stage")
         if name is not StageName.START:
