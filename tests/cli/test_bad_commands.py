@@ -50,6 +50,7 @@ def test_one_clear_line(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_robot_that_cannot_be_cut_is_refused_with_the_reason(run: Run, starfish: Path, tmp_path: Path) -> None:
     folder = tmp_path / "bad"
     assert run("new", folder, "--from", "gallery:starfish")[0] == 0
@@ -71,6 +72,7 @@ def test_a_file_in_the_way_of_the_results_is_told_before_the_work(run: Run, star
     assert (tmp_path / "out").read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_a_solve_that_does_not_converge_ends_with_code_1(
     run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -28,6 +28,7 @@ def test_version(run: Run) -> None:
     assert run("--version")[1] == f"hydrostat {hs.__version__}\n"
 
 
+@pytest.mark.slow
 def test_new_from_the_gallery_is_the_gallery_robot(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, out, _ = run("new", tmp_path / "mine", "--from", "gallery:starfish")
     assert code == 0
@@ -36,6 +37,7 @@ def test_new_from_the_gallery_is_the_gallery_robot(run: Run, tmp_path: Path, sta
     assert (tmp_path / "mine" / "rest.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_new_from_a_drawing_can_be_checked_and_simulated(run: Run, tmp_path: Path) -> None:
     drawing = tmp_path / "my drawing.svg"
     drawing.write_bytes(SQUARE)

@@ -163,6 +163,7 @@ def test_a_bad_file_leaves_nothing(run: Run, tmp_path: Path, content: bytes) -> 
     _only(tmp_path, "bad.stl")
 
 
+@pytest.mark.slow
 def test_an_empty_folder_is_filled_and_stays_when_that_fails(run: Run, tmp_path: Path, bar: Path) -> None:
     (tmp_path / "bar").mkdir()
     assert run("new", tmp_path / "bar", "--from", bar, "--element-size", "1 m")[0] == 2

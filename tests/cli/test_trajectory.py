@@ -97,6 +97,7 @@ def test_a_search_that_is_stuck_ends_with_1(
     assert (tmp_path / "out" / "trajectory.csv").exists()
 
 
+@pytest.mark.slow
 def test_cables_with_friction_are_refused_in_one_line(run: Run, starfish: Path, tmp_path: Path) -> None:
     robot = tmp_path / "rubbing"
     hs.save_robot(hs.load_robot(starfish), robot)

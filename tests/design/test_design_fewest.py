@@ -40,6 +40,7 @@ def test_fewer_winches_miss_it(unchecked: None) -> None:
     assert max(reached.rms_error for reached in one.reached) > TOLERANCE
 
 
+@pytest.mark.slow
 def test_the_front_holds_every_size_once(unchecked: None) -> None:
     network = fewest()
     counts = [(len(one.robot.winches), len(one.robot.cables)) for one in network.alternatives]

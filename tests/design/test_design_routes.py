@@ -139,6 +139,7 @@ def test_every_constraint_has_a_case() -> None:
 
 
 @pytest.mark.parametrize("name", ["usual", "tension", "mirror, two winches"])
+@pytest.mark.slow
 def test_the_error_told_is_what_its_user_finds(name: str, unchecked: None) -> None:
     """Oracle: inverse kinematics of a fresh simulation."""
     network = designed(name)

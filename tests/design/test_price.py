@@ -312,6 +312,7 @@ def joint_gain(moves: np.ndarray, case: dict[str, Any]) -> float:
     return max(gains)
 
 
+@pytest.mark.slow
 def test_loops_do_not_crowd_out_paths() -> None:
     """Where loops would pay, as in moves without any order, what is returned still is a path, and a good one."""
     ratios = []

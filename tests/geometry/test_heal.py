@@ -238,6 +238,7 @@ def test_many_specks_are_counted() -> None:
     assert _says(healing, "35 more")
 
 
+@pytest.mark.slow
 def test_a_bump_that_crosses_the_body_is_no_speck() -> None:
     bump = both(sphere(divisions=4), sphere(0.002, (0.03, 0.0, 0.0), 2))
     healing = _healed(bump, 0.0008)

@@ -98,6 +98,7 @@ def test_too_many_for_memory_gives_what_comes_nearest() -> None:
     assert 4.0 <= size_for(5000, make, content=1000.0, dim=3) < 8.0
 
 
+@pytest.mark.slow
 def test_thin_bodies_are_found_beyond_sizes_that_are_refused() -> None:
     """The first guess is thicker than the plate, which the mesher refuses; smaller ones follow."""
     body = brick(0.1, 0.1, 0.005)

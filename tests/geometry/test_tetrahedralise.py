@@ -120,6 +120,7 @@ def _digest(mesh: Mesh) -> str:
     return hashlib.sha256(mesh.nodes.tobytes() + mesh.elements.tobytes()).hexdigest()
 
 
+@pytest.mark.slow
 def test_the_same_bytes_on_two_runs_and_in_a_fresh_process() -> None:
     digest = _digest(tetrahedralise(two_fingers(0.005), 0.012))
     assert _digest(tetrahedralise(two_fingers(0.005), 0.012)) == digest

@@ -47,6 +47,7 @@ def test_edges_that_do_not_agree() -> None:
     assert len(_bad_edges(_welded(soup(whole(), over=1)))) == 3
 
 
+@pytest.mark.slow
 def test_what_is_wrong_is_red() -> None:
     """Oracle: a sound surface shows no red, and more red the more is wrong."""
     after = whole()

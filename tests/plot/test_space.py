@@ -51,6 +51,7 @@ def test_png_twice_the_same(kind: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", FIGURES)
+@pytest.mark.slow
 def test_svg_twice_the_same(kind: str) -> None:
     text = plot.inline_svg(figure(kind), name="it", label="a box")
     assert text == plot.inline_svg(figure(kind), name="it", label="a box")
@@ -62,6 +63,7 @@ def test_svg_twice_the_same(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", FIGURES)
 @pytest.mark.parametrize("width", [4.9, 6.4])
+@pytest.mark.slow
 def test_all_words_lie_within_the_picture(kind: str, width: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: matplotlib's own measure of every text."""
     drawn = figure(kind) if width == 6.4 else None
@@ -158,6 +160,7 @@ def test_the_ghost_is_there_only_where_the_body_moved() -> None:
     assert counts[1] < 0.02 * counts[0]
 
 
+@pytest.mark.slow
 def test_a_robot_without_cables_or_markers() -> None:
     bare = replace(space_network().robot.with_network((), ()), markers=(), poses={})
     assert plot.inline_svg(plot.draw_rest(bare), name="it", label="").endswith("</svg>")

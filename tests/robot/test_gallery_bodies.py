@@ -46,6 +46,7 @@ def test_bodies(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", gallery.SHEETS)
+@pytest.mark.slow
 def test_poses(name: str) -> None:
     """Oracle: at least two poses; each target far from rest for some marker, and with whole millimetres."""
     rest = {marker.name: np.array(marker.at) for marker in robot(name).markers}

@@ -155,6 +155,7 @@ WORDS = st.text("aZ9_-. éß世हाথ", min_size=1, max_size=60).map(lambda t
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(data=st.data(), unit=st.sampled_from(["mm", "cm", "m", "in", "ft", "um", "yard"]))
+@pytest.mark.slow
 def test_any_number(data: st.DataObject, unit: str, small: Robot) -> None:
     """Oracle: bits: whatever floats the records hold, the file gives the very same (the body is not meshed again)."""
     from hydrostat.robot.read import RobotReader, _gravity, read_material

@@ -82,6 +82,7 @@ def test_the_curvature_converges_to_finite_flexure_at_second_order() -> None:
     assert abs(limits[-1]) < 2e-3
 
 
+@pytest.mark.slow
 def test_a_misplaced_cable_is_told_apart() -> None:
     """The check can fail: a cable 2 % of the height away is 5 % off."""
     finest = bend(ROWS[-1])

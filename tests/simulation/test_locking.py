@@ -83,6 +83,7 @@ def test_a_bar_in_space_is_no_stiffer_when_incompressible() -> None:
     assert bar(4, 0.49, Volume.ELEMENT) > 10 * shear[1]
 
 
+@pytest.mark.slow
 def test_the_warning_tells_what_a_bar_loses() -> None:
     """Oracle: this bar, with 4 elements across; and it is a share of what is left with patches."""
     for poisson, added in LOCKING[3].items():

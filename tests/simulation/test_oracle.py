@@ -241,6 +241,7 @@ def test_the_oracle_is_at_an_equilibrium_that_moved(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.slow
 def test_nodes_tensions_and_jacobian_are_those_of_jax(name: str) -> None:
     nodes, tensions, jacobian = gaps(name)
     assert nodes < 1e-8

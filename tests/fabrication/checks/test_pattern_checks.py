@@ -46,6 +46,7 @@ def test_drawings_that_differ_are_seen():
     assert not checked(dxf=pattern_dxf(shifted(0.02)))[1]
 
 
+@pytest.mark.slow
 def test_holes_in_each_others_columns_are_seen():
     """Oracle: two drawings with the same x and the same y, but not in the same holes."""
     pattern = plush_pattern(crossed())

@@ -69,6 +69,7 @@ def failed(robot: Robot, mould: Mould) -> list[str]:
     return [check.what[:8] for check in mould_checks(robot, mould) if not check.passed]
 
 
+@pytest.mark.slow
 def test_checks_of_a_mould_hold_and_fail_on_geometry(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keys that fill the cavity, a sprue beside the mould, one that ends in the wall, a half with a hole too many."""
     robot = foam_robot(slab_body())
@@ -97,6 +98,7 @@ def test_checks_of_a_mould_hold_and_fail_on_geometry(monkeypatch: pytest.MonkeyP
     assert failed(robot, replace(whole, printed=printed)) == ["pieces, "]
 
 
+@pytest.mark.slow
 def test_check_of_a_silicone_mould_fails_on_its_positive() -> None:
     robot = foam_robot(slab_body())
     mould = make_mould(robot, MouldOptions(kind=MouldKind.SILICONE, bed=BIG))
@@ -104,6 +106,7 @@ def test_check_of_a_silicone_mould_fails_on_its_positive() -> None:
     assert failed(robot, replace(mould, printed=mould.printed[1:])) == ["pieces o"]
 
 
+@pytest.mark.slow
 def test_much_printing_is_a_warning() -> None:
     """Oracle: pieces and mass, counted here."""
     robot = foam_robot(slab_body((1.2, 0.9, 0.03)))
@@ -115,6 +118,7 @@ def test_much_printing_is_a_warning() -> None:
     assert foam_work(foam_robot(slab_body()), KitOptions(method=Method.FOAM), ()).warnings == ()
 
 
+@pytest.mark.slow
 def test_material_that_is_not_poured_is_a_problem() -> None:
     mould = make_mould(foam_robot(slab_body(material="polyester fibre")), MouldOptions(bed=BIG))
     assert len(mould.problems) == 1
@@ -146,6 +150,7 @@ def test_keys_have_their_clearance_and_holes_meet(blob: Mould) -> None:
     assert len({round(key.volume()) for key in keys}) == 2  # one is smaller
 
 
+@pytest.mark.slow
 def test_nothing_is_in_the_way_of_anything(blob: Mould, trunk: Mould) -> None:
     assert not interferences(blob.assembly)
     assert not interferences(trunk.assembly)
@@ -195,17 +200,20 @@ def caught(void: Manifold, block: Manifold, step: float = 1.5) -> list[float]:
     return found
 
 
+@pytest.mark.slow
 def test_air_leaves_everywhere(trunk: Mould, blob: Mould) -> None:
     assert caught(*void_of(trunk)) == []
     assert caught(*void_of(blob)) == []
 
 
+@pytest.mark.slow
 def test_search_for_air_can_fail(trunk: Mould) -> None:
     void, block = void_of(trunk)
     lid = block.trim_by_plane((0, 0, 1), block.bounding_box()[5] - 10)
     assert caught(void - lid, block)
 
 
+@pytest.mark.slow
 def test_pieces_fit_the_bed_and_are_watertight_for_trimesh(trunk: Mould) -> None:
     for piece in trunk.printed:
         vertices, triangles = piece.mesh
@@ -220,6 +228,7 @@ def test_pieces_fit_the_bed_and_are_watertight_for_trimesh(trunk: Mould) -> None
     assert halves == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_trunk_is_poured_into_its_held_end(trunk: Mould) -> None:
     assert "held at the top" in trunk.stands
     assert trunk.stance.axes[1] @ [0, 0, 1] > 0.9  # it is held at z = 0 and hangs down
@@ -243,6 +252,7 @@ def test_flat_body_is_parted_at_half_its_thickness() -> None:
     assert abs(left_over(mould)) < 1e-9
 
 
+@pytest.mark.slow
 def test_same_robot_gives_the_same_numbers(blob: Mould) -> None:
     robot = foam_robot(blob_body(), (0.0, 0.0, 0.0), at=(0.02, 0.0, 0.02))
     again = make_mould(robot, MouldOptions(bed=BIG), pockets={"w0": (14.0, 12.0, 10.0)})
@@ -252,6 +262,7 @@ def test_same_robot_gives_the_same_numbers(blob: Mould) -> None:
         assert np.array_equal(one.mesh[1], other.mesh[1])
 
 
+@pytest.mark.slow
 def test_silicone_frames_hold_what_the_pours_say() -> None:
     mould = make_mould(foam_robot(slab_body()), MouldOptions(kind=MouldKind.SILICONE, bed=BIG))
     names = [piece.name for piece in mould.printed]

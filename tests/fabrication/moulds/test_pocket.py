@@ -57,6 +57,7 @@ def test_winches_that_meet_are_a_problem() -> None:
     assert '"w0" and "w1"' in found[0]
 
 
+@pytest.mark.slow
 def test_pockets_that_meet_become_one_room() -> None:
     """Oracle: winches of 15 mm, 16 mm apart, with 1 mm of air each: rooms share 1 mm, winches nothing."""
     robot = foam_robot(SLAB, (-0.008, 0.0, 0.005), (0.008, 0.0, 0.005))

@@ -134,6 +134,7 @@ def test_names_are_words_not_markup(make):
     assert NASTY in words(assembly_sheet(make(name=NASTY)))
 
 
+@pytest.mark.slow
 def test_names_in_other_alphabets():
     assert "Übergrößenärmel Жук" in words(assembly_sheet(plush(name="Übergrößenärmel Жук")))
 

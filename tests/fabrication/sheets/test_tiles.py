@@ -82,6 +82,7 @@ def test_pages_are_at_true_scale(paper, pattern, tmp_path):
 
 
 @needs_poppler
+@pytest.mark.slow
 def test_the_check_of_the_scale_of_pages_can_fail(pattern, tmp_path):
     """Oracle: the same pages printed at 99.5 %, as by "fit to page"."""
     writer = PdfWriter(clone_from=io.BytesIO(tiled_pdf(pattern, Paper.A4)))
