@@ -21,76 +21,49 @@ def rms_error(reached: Sequence[ReachedPose]) -> float:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TreeTrace:
-    """How winch trees led to a network.
+    """How winch trees led to a network."""
 
-    Attributes:
-        activations: one for each pose (Fig 3.9a).
-        candidates: for each pose, the fibres that passed the threshold, strongest first (Fig 3.9b).
-        trees: routes that were grown from them [m] (Fig 3.9c).
-        score: the thesis's score of the network, between 0 and 1 (R43).
-    """
-
-    activations: tuple[Activation, ...]
+    activations: tuple[Activation, ...]  # one for each pose (Fig 3.9a)
+    # for each pose, the fibres that passed the threshold, strongest first (Fig 3.9b)
     candidates: tuple[Int[np.ndarray, " candidates"], ...]
-    trees: tuple[Route, ...]
-    score: float
+    trees: tuple[Route, ...]  # routes that were grown from them [m] (Fig 3.9c)
+    score: float  # the thesis's score of the network, between 0 and 1 (R43)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DesignStage:
-    """A network on the way.
+    """A network on the way."""
 
-    Attributes:
-        words: what was done, such as "a cable added to winch_1".
-        robot: with the network as it was then.
-        error: root of the mean squared marker error over all poses [m].
-    """
-
-    words: str
-    robot: Robot
-    error: float
+    words: str  # what was done, such as "a cable added to winch_1"
+    robot: Robot  # with the network as it was then
+    error: float  # root of the mean squared marker error over all poses [m]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Certificate:
-    """What first-order optimality says of the network: what no small change, and no further cable, would gain.
+    """What first-order optimality says of the network: what no small change, and no further cable, would gain."""
 
-    Attributes:
-        further: rms error [m] that one more cable, with a winch of its own along the best path of all, promises.
-        paths: states of the dynamic program that found it: each the best few paths of so many edges that end so.
-        slope: the steepest fall of the error along one number of the network, such as a coordinate of a via point, that
-            the limits allow to move [m/m].
-    """
-
-    further: float
-    paths: int
+    further: float  # rms error [m] that one more cable, with a winch of its own along the best path of all, promises
+    paths: int  # states of the dynamic program that found it: each the best few paths of so many edges that end so
+    # the steepest fall of the error along one number of the network, such as a coordinate of a via point, that the
+    # limits allow to move [m/m]
     slope: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RouteTrace:
-    """How priced routes led to a network.
+    """How priced routes led to a network."""
 
-    Attributes:
-        stages: networks on the way, in order.
-        certificate: of the one that was returned; None where the work was interrupted.
-    """
-
-    stages: tuple[DesignStage, ...]
-    certificate: Certificate | None
+    stages: tuple[DesignStage, ...]  # networks on the way, in order
+    certificate: Certificate | None  # of the one that was returned; None where the work was interrupted
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Alternative:
-    """Another network that was found, with other routes or other counts.
+    """Another network that was found, with other routes or other counts."""
 
-    Attributes:
-        robot: with that network.
-        reached: what it reaches of each pose.
-    """
-
-    robot: Robot
-    reached: tuple[ReachedPose, ...]
+    robot: Robot  # with that network
+    reached: tuple[ReachedPose, ...]  # what it reaches of each pose
 
     @property
     def rms_error(self) -> float:

@@ -10,8 +10,7 @@ from hydrostat.design.muscles.activation import FibreKind
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 
-AUTO = "auto"
-"""As many winches as are needed."""
+AUTO = "auto"  # as many winches as are needed
 
 COUNTS = {"winches": Range(whole=True, least=1, most=20), "cables": Range(whole=True, least=1, most=60)}
 """How many winches and cables may be asked for."""
@@ -125,27 +124,21 @@ class TreeOptions:
 class DesignRequest:
     """What a design is asked: the poses to reach, with how many winches and cables, within which constraints, and how.
 
-    Attributes:
-        poses: what the network should reach, all of them with the same cables.
-        winches: how many; "auto" for the fewest that bring every pose under the tolerance of the options (F1, F2).
-        cables: how many in all, at least one a winch.
-        method: "routes" prices routes by the pose error and moves them to where it is least; "trees" is the thesis's.
-        constraints: what can be built, and what of the robot's own network stays.
-        options: of the method; its usual ones if left out.
-        improve: begin with the robot's own winches and cables, and move and exchange those that are not locked; what
-            travel, release, slack and spools these have is allowed.
-
-    Raises:
-        InputError: no pose, a count out of its range, a method that there is not, options of another one, or what the
-            method does not do.
+    Raises InputError: no pose, a count out of its range, a method that there is not, options of another one, or what
+    the method does not do.
     """
 
-    poses: tuple[Pose, ...]
+    poses: tuple[Pose, ...]  # what the network should reach, all of them with the same cables
+    # how many; "auto" for the fewest that bring every pose under the tolerance of the options (F1, F2)
     winches: int | str = 2
-    cables: int = 6
+    cables: int = 6  # how many in all, at least one a winch
+    # "routes" prices routes by the pose error and moves them to where it is least; "trees" is the thesis's
     method: DesignMethod = DesignMethod.ROUTES
+    # what can be built, and what of the robot's own network stays
     constraints: Constraints = field(default_factory=Constraints)
-    options: RouteOptions | TreeOptions | None = None
+    options: RouteOptions | TreeOptions | None = None  # of the method; its usual ones if left out
+    # begin with the robot's own winches and cables, and move and exchange those that are not locked; what travel,
+    # release, slack and spools these have is allowed
     improve: bool = False
 
     def __post_init__(self) -> None:

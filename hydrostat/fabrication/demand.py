@@ -22,23 +22,15 @@ FAR = 0.1
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Demand:
-    """The largest loads in all poses that were solved.
+    """The largest loads in all poses that were solved."""
 
-    Attributes:
-        poses: what was solved, in words.
-        tensions: largest of each cable [N], in cable order.
-        torques: largest on the shaft of each winch [N m], in winch order: sum of tension times radius of the spool.
-        taken: least and most cable that each winch takes in [m], (winches, 2).
-        missed: what could not be solved, in words.
-        far: sentences on poses that are out of reach.
-    """
-
-    poses: tuple[str, ...]
-    tensions: Vector
+    poses: tuple[str, ...]  # what was solved, in words
+    tensions: Vector  # largest of each cable [N], in cable order
+    # largest on the shaft of each winch [N m], in winch order: sum of tension times radius of the spool
     torques: Vector
-    taken: Float[np.ndarray, "winches 2"]
-    missed: tuple[str, ...] = ()
-    far: tuple[str, ...] = ()
+    taken: Float[np.ndarray, "winches 2"]  # least and most cable that each winch takes in [m], (winches, 2)
+    missed: tuple[str, ...] = ()  # what could not be solved, in words
+    far: tuple[str, ...] = ()  # sentences on poses that are out of reach
 
 
 def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = None) -> Demand:

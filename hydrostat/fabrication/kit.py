@@ -18,19 +18,12 @@ from hydrostat.units import counted
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """A claim that was measured on the finished drawing or solid, not on what it was made from.
+    """A claim that was measured on the finished drawing or solid, not on what it was made from."""
 
-    Attributes:
-        what: the claim, such as "pinholes are where the cables pass".
-        measured: what was found, with its unit, such as "at most 0.004 mm off".
-        allowed: such as "0.1 mm".
-        passed: whether it holds.
-    """
-
-    what: str
-    measured: str
-    allowed: str
-    passed: bool
+    what: str  # the claim, such as "pinholes are where the cables pass"
+    measured: str  # what was found, with its unit, such as "at most 0.004 mm off"
+    allowed: str  # such as "0.1 mm"
+    passed: bool  # whether it holds
 
 
 MANIFEST = "manifest.json"  # its file in a kit; written last, so that a kit without it is not whole

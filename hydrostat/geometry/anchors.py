@@ -19,17 +19,11 @@ _AT_ONCE = 3_000_000  # pairs of point and facet whose distances are looked at t
 
 @dataclass(frozen=True, eq=False)
 class Anchors:
-    """Points held by an element and barycentric weights (R24, E10).
+    """Points held by an element and barycentric weights (R24, E10)."""
 
-    Attributes:
-        stencils: nodes of the element that holds each point, (points, dim + 1).
-        weights: barycentric weights, rows sum to one.
-        distances: how far each asked point was from the body [m]; 0 where it was inside.
-    """
-
-    stencils: Int[np.ndarray, "points corners"]
-    weights: Float[np.ndarray, "points corners"]
-    distances: Float[np.ndarray, " points"]
+    stencils: Int[np.ndarray, "points corners"]  # nodes of the element that holds each point, (points, dim + 1)
+    weights: Float[np.ndarray, "points corners"]  # barycentric weights, rows sum to one
+    distances: Float[np.ndarray, " points"]  # how far each asked point was from the body [m]; 0 where it was inside
 
     def positions(self, nodes: Nodes) -> Points:
         """Positions [m] of the anchors when the nodes are at `nodes` [m]."""

@@ -22,17 +22,12 @@ def joined_groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarr
 class Mesh:
     """Linear simplices: triangles (dim 2) or tetrahedra (dim 3), positively oriented.
 
-    Attributes:
-        nodes: rest positions [m], (nodes, dim); kept as a read-only copy.
-        elements: node indices, (elements, dim + 1); kept as a read-only copy.
-
-    Raises:
-        InputError: wrong shapes, nodes that are not finite, indices out of range, or an element without positive
-            volume.
+    Raises InputError: wrong shapes, nodes that are not finite, indices out of range, or an element without positive
+    volume.
     """
 
-    nodes: Nodes
-    elements: Elements
+    nodes: Nodes  # rest positions [m], (nodes, dim); kept as a read-only copy
+    elements: Elements  # node indices, (elements, dim + 1); kept as a read-only copy
 
     def __post_init__(self) -> None:
         nodes = np.array(self.nodes, dtype=float)

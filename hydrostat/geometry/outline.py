@@ -19,16 +19,11 @@ Ring = Float[np.ndarray, "_ 2"]  # corners of a closed polygon [m], first point 
 class Outline:
     """One outer ring and any holes, as dense polygons.
 
-    Attributes:
-        exterior: corners of the outer ring [m], first point not repeated; kept counter-clockwise, however given.
-        holes: corners of each hole [m]; kept clockwise, however given.
-
-    Raises:
-        OutlineError: a ring with fewer than three corners or not finite, no area, or rings that cross or touch.
+    Raises OutlineError: a ring with fewer than three corners or not finite, no area, or rings that cross or touch.
     """
 
-    exterior: Ring
-    holes: tuple[Ring, ...] = ()
+    exterior: Ring  # corners of the outer ring [m], first point not repeated; kept counter-clockwise, however given
+    holes: tuple[Ring, ...] = ()  # corners of each hole [m]; kept clockwise, however given
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "exterior", _ring(self.exterior, counter_clockwise=True))

@@ -15,15 +15,11 @@ from hydrostat.errors import SurfaceError
 class Surface:
     """Triangles in space; nothing is promised of how they meet, only that their numbers are numbers.
 
-    Attributes:
-        vertices: places [m], (vertices, 3); kept as a read-only copy.
-        triangles: indices of three vertices each, (triangles, 3); seen from outside they turn counter-clockwise.
-
-    Raises:
-        SurfaceError: wrong shapes, no triangle, coordinates that are not finite, or indices out of range.
+    Raises SurfaceError: wrong shapes, no triangle, coordinates that are not finite, or indices out of range.
     """
 
-    vertices: Float[np.ndarray, "vertices 3"]
+    vertices: Float[np.ndarray, "vertices 3"]  # places [m], (vertices, 3); kept as a read-only copy
+    # indices of three vertices each, (triangles, 3); seen from outside they turn counter-clockwise
     triangles: Int[np.ndarray, "triangles 3"]
 
     def __post_init__(self) -> None:

@@ -46,33 +46,20 @@ class Body:
 
     A text stands for the source, the material or the volume of that name.
 
-    Attributes:
-        source: what the file holds.
-        file: its name in the robot's folder.
-        content: its bytes, so that a robot can be saved anywhere.
-        material: what it is made of.
-        size: longest side of the bounding box [m]; None: as the file says.
-        element_size: length of a mesh edge [m]; None for a ready mesh.
-        thickness: of a flat body [m]; None in space.
-        volume: how its change of volume is measured.
-        mesh: nodes and elements.
-        outline: of a flat body that was drawn.
-        healing: of a body in space that came as a surface: that surface closed, and what that took.
-
-    Raises:
-        InputError: a thickness that is missing or too much, a length out of its range, or an unknown name.
+    Raises InputError: a thickness that is missing or too much, a length out of its range, or an unknown name.
     """
 
-    source: Source
-    file: str
-    content: bytes = field(repr=False)
-    material: Material
-    size: float | None = None
-    element_size: float | None = None
-    thickness: float | None = None
-    volume: Volume = Volume.ELEMENT
-    mesh: Mesh = field(compare=False, repr=False)
-    outline: Outline | None = field(default=None, compare=False, repr=False)
+    source: Source  # what the file holds
+    file: str  # its name in the robot's folder
+    content: bytes = field(repr=False)  # its bytes, so that a robot can be saved anywhere
+    material: Material  # what it is made of
+    size: float | None = None  # longest side of the bounding box [m]; None: as the file says
+    element_size: float | None = None  # length of a mesh edge [m]; None for a ready mesh
+    thickness: float | None = None  # of a flat body [m]; None in space
+    volume: Volume = Volume.ELEMENT  # how its change of volume is measured
+    mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
+    outline: Outline | None = field(default=None, compare=False, repr=False)  # of a flat body that was drawn
+    # of a body in space that came as a surface: that surface closed, and what that took
     healing: Healing | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:

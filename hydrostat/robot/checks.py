@@ -6,8 +6,7 @@ import unicodedata
 from hydrostat import units
 from hydrostat.errors import InputError
 
-Point = tuple[float, ...]
-"""Coordinates [m] in the rest pose, two or three."""
+Point = tuple[float, ...]  # coordinates [m] in the rest pose, two or three
 
 
 def check_positive(field: str, value: float, unit: str) -> None:

@@ -4,8 +4,7 @@ import math
 
 from hydrostat.errors import InputError
 
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2] (CGPM 1901)."""
+STANDARD_GRAVITY = 9.80665  # standard acceleration of free fall [m/s^2] (CGPM 1901)
 
 LARGEST_GRAVITY = 1000.0  # no component of gravity is larger [m/s^2]: about a hundred times that on earth
 DIRECTIONS = ("-x", "+x", "-y", "+y", "-z", "+z")  # words for standard gravity along an axis

@@ -24,16 +24,11 @@ class Relaxation:
     After a sudden shear the branch carries modulus * exp(-t / time) of its stress, so the material begins stiffer by
     `modulus` and settles to the elastic material alone.
 
-    Attributes:
-        modulus: shear modulus of the branch [Pa].
-        time: after which its stress has fallen to 1/e [s].
-
-    Raises:
-        InputError: a number that is not finite and above 0.
+    Raises InputError: a number that is not finite and above 0.
     """
 
-    modulus: float
-    time: float
+    modulus: float  # shear modulus of the branch [Pa]
+    time: float  # after which its stress has fallen to 1/e [s]
 
     def __post_init__(self) -> None:
         check_positive("modulus", self.modulus, "Pa")
@@ -317,8 +312,7 @@ _TABLE = (
     _lattice(_TPU, 0.2),
 )
 
-MATERIALS = MappingProxyType({material.name: material for material in _TABLE})
-"""Materials by name."""
+MATERIALS = MappingProxyType({material.name: material for material in _TABLE})  # materials by name
 
 
 def find_material(name: str) -> Material:

@@ -32,17 +32,11 @@ SHORTEST, LONGEST = 0.002, 20.0  # bodies are as long [m]; what is not was proba
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSketch:
-    """A robot from a surface, and how that was healed.
+    """A robot from a surface, and how that was healed."""
 
-    Attributes:
-        robot: its body's file is the one that came if that was clean, else the healed surface as PLY.
-        before: the surface as it came.
-        healing: of it.
-    """
-
-    robot: Robot
-    before: Surface
-    healing: Healing
+    robot: Robot  # its body's file is the one that came if that was clean, else the healed surface as PLY
+    before: Surface  # the surface as it came
+    healing: Healing  # of it
 
 
 def sketch_surface(

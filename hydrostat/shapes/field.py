@@ -14,11 +14,8 @@ from jaxtyping import Float
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 
-Field = Callable[[Points], Vector]
-"""About how far each point, (points, 3) [m], is outside [m]; negative inside."""
-
-Place = Float[np.ndarray, " 3"] | Sequence[float]
-"""A point or a direction in space."""
+Field = Callable[[Points], Vector]  # about how far each point, (points, 3) [m], is outside [m]; negative inside
+Place = Float[np.ndarray, " 3"] | Sequence[float]  # a point or a direction in space
 
 
 def round_cone(start: Place, end: Place, start_radius: float, end_radius: float) -> Field:

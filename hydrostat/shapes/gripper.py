@@ -8,8 +8,7 @@ from hydrostat.shapes.limb import Limb, Shape, limb
 SIDES = {"right": 0, "back": 90, "left": 180, "front": 270}
 """Fingers and their directions about z [degrees]; x runs to the right, y to the back."""
 
-BASE = 28e-3
-"""How far the base reaches below the middle of the palm, to be held by [m]."""
+BASE = 28e-3  # how far the base reaches below the middle of the palm, to be held by [m]
 
 
 def caging_gripper() -> Shape:

@@ -30,8 +30,7 @@ from hydrostat.shapes.hand_sizes import (
 )
 from hydrostat.shapes.limb import Limb, Shape, limb
 
-FOREARM = 20e-3
-"""How much of the forearm stands below the crease of the wrist, to be held by [m]."""
+FOREARM = 20e-3  # how much of the forearm stands below the crease of the wrist, to be held by [m]
 
 Direction = Float[np.ndarray, " 3"]
 
@@ -46,23 +45,17 @@ _SIZES = MappingProxyType({"index": 1.0, "middle": 1.0, "ring": 0.95, "little": 
 
 @dataclass(frozen=True, kw_only=True)
 class HandPosture:
-    """Way in which a hand holds its fingers.
+    """Way in which a hand holds its fingers."""
 
-    Attributes:
-        fans: angle of each finger in the plane of the palm, towards the thumb [degrees].
-        bends: of knuckle, middle and last joint of each finger towards the palm [degrees].
-        arch: how far each knuckle lies towards the palm from that of the middle finger [m].
-        thumb: direction of the metacarpal of the thumb.
-        thumb_pad: about the direction that the pad of the thumb faces.
-        thumb_bends: of its two outer joints towards its pad [degrees].
-    """
-
+    # angle of each finger in the plane of the palm, towards the thumb [degrees]
     fans: tuple[float, float, float, float]
+    # of knuckle, middle and last joint of each finger towards the palm [degrees]
     bends: tuple[tuple[float, float, float], ...]
+    # how far each knuckle lies towards the palm from that of the middle finger [m]
     arch: tuple[float, float, float, float]
-    thumb: tuple[float, float, float]
-    thumb_pad: tuple[float, float, float]
-    thumb_bends: tuple[float, float]
+    thumb: tuple[float, float, float]  # direction of the metacarpal of the thumb
+    thumb_pad: tuple[float, float, float]  # about the direction that the pad of the thumb faces
+    thumb_bends: tuple[float, float]  # of its two outer joints towards its pad [degrees]
 
 
 CUPPING = HandPosture(

@@ -18,25 +18,16 @@ _SPACING = 4e-3  # stations along the spine of a limb are about this far apart [
 
 @dataclass(frozen=True, eq=False)
 class Limb:
-    """A finger, an arm, a trunk: sections across a spine.
+    """A finger, an arm, a trunk: sections across a spine."""
 
-    Attributes:
-        spine: stations from the root to the tip [m], (stations, 3).
-        sides: unit vector across the limb at each station; back = direction of the spine x side.
-        breadths: from the spine to the side [m], (stations,).
-        backs: from the spine to the back [m].
-        bellies: from the spine to the belly, the side to which the limb bends [m].
-        caps: length of the rounded ends at root and tip [m].
-        joints: landmarks along the limb from root to tip [m], (joints, 3).
-    """
-
-    spine: Float[np.ndarray, "stations 3"]
+    spine: Float[np.ndarray, "stations 3"]  # stations from the root to the tip [m], (stations, 3)
+    # unit vector across the limb at each station; back = direction of the spine x side
     sides: Float[np.ndarray, "stations 3"]
-    breadths: Vector
-    backs: Vector
-    bellies: Vector
-    caps: tuple[float, float]
-    joints: Float[np.ndarray, "joints 3"]
+    breadths: Vector  # from the spine to the side [m], (stations,)
+    backs: Vector  # from the spine to the back [m]
+    bellies: Vector  # from the spine to the belly, the side to which the limb bends [m]
+    caps: tuple[float, float]  # length of the rounded ends at root and tip [m]
+    joints: Float[np.ndarray, "joints 3"]  # landmarks along the limb from root to tip [m], (joints, 3)
 
     @cached_property
     def stations(self) -> Vector:
@@ -185,17 +176,11 @@ def _smooth(corners: Float[np.ndarray, "joints 3"], bend: float) -> Float[np.nda
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """A body in space.
+    """A body in space."""
 
-    Attributes:
-        field: about how far points are outside [m], negative inside.
-        box: lowest and highest coordinates that hold the whole body [m].
-        limbs: by name; their landmarks are the joints.
-    """
-
-    field: Field
-    box: Float[np.ndarray, "2 3"]
-    limbs: Mapping[str, Limb]
+    field: Field  # about how far points are outside [m], negative inside
+    box: Float[np.ndarray, "2 3"]  # lowest and highest coordinates that hold the whole body [m]
+    limbs: Mapping[str, Limb]  # by name; their landmarks are the joints
 
     def surface(self, spacing: float) -> Surface:
         """The closed surface, drawn on a grid [m]; details smaller than the spacing are lost.

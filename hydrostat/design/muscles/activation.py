@@ -24,17 +24,11 @@ class FibreKind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Fibres:
-    """Straight fibres between two points of the material each.
+    """Straight fibres between two points of the material each."""
 
-    Attributes:
-        stencils: nodes that each fibre depends on, (fibres, corners).
-        start: weights of those nodes at its first end, rows sum to one.
-        end: weights at its second end.
-    """
-
-    stencils: Int[np.ndarray, "fibres corners"]
-    start: Float[np.ndarray, "fibres corners"]
-    end: Float[np.ndarray, "fibres corners"]
+    stencils: Int[np.ndarray, "fibres corners"]  # nodes that each fibre depends on, (fibres, corners)
+    start: Float[np.ndarray, "fibres corners"]  # weights of those nodes at its first end, rows sum to one
+    end: Float[np.ndarray, "fibres corners"]  # weights at its second end
 
     def __len__(self) -> int:
         """Number of fibres."""
@@ -96,21 +90,13 @@ def wanted_directions(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Activation:
-    """The muscle fibres that bring a body into a pose (R36, R38).
+    """The muscle fibres that bring a body into a pose (R36, R38)."""
 
-    Attributes:
-        target: the pose asked for.
-        fibres: all candidate muscles.
-        tensions: of each fibre [N], not negative.
-        nodes: positions of the nodes in the activated pose [m].
-        errors: distance of each targeted marker from its target [m].
-    """
-
-    target: Pose
-    fibres: Fibres
-    tensions: Vector
-    nodes: Nodes
-    errors: Mapping[str, float]
+    target: Pose  # the pose asked for
+    fibres: Fibres  # all candidate muscles
+    tensions: Vector  # of each fibre [N], not negative
+    nodes: Nodes  # positions of the nodes in the activated pose [m]
+    errors: Mapping[str, float]  # distance of each targeted marker from its target [m]
 
     @property
     def rms_error(self) -> float:

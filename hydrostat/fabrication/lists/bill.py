@@ -16,24 +16,15 @@ NO_SOURCE = "estimate, no source"
 class Price:
     """A rough price.
 
-    Attributes:
-        amount: in its currency, of one unit.
-        unit: what it is of, such as "m" or "kg".
-        pack: in how many units it is sold.
-        month: when it was asked or noted; empty if the source has no date.
-        source: where it is from, in words.
-        currency: its code.
-
-    Raises:
-        InputError: an amount below 0, or a pack of nothing.
+    Raises InputError: an amount below 0, or a pack of nothing.
     """
 
-    amount: float
-    unit: str = "piece"
-    pack: float = 1.0
-    month: str = ""
-    source: str = NO_SOURCE
-    currency: str = "USD"
+    amount: float  # in its currency, of one unit
+    unit: str = "piece"  # what it is of, such as "m" or "kg"
+    pack: float = 1.0  # in how many units it is sold
+    month: str = ""  # when it was asked or noted; empty if the source has no date
+    source: str = NO_SOURCE  # where it is from, in words
+    currency: str = "USD"  # its code
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.amount) and self.amount >= 0):

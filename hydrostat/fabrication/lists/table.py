@@ -59,22 +59,14 @@ def number_columns(*titles: str, unit: str = "", decimals: int = 1) -> tuple[Col
 class Table:
     """Rows of text and numbers.
 
-    Attributes:
-        name: stem of its file.
-        title: what a person calls it.
-        columns: of each row.
-        rows: as many cells as columns each.
-        notes: sentences that belong below it.
-
-    Raises:
-        InputError: a row of another length, or a number that is not finite.
+    Raises InputError: a row of another length, or a number that is not finite.
     """
 
-    name: str
-    title: str
-    columns: tuple[Column, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    notes: tuple[str, ...] = ()
+    name: str  # stem of its file
+    title: str  # what a person calls it
+    columns: tuple[Column, ...]  # of each row
+    rows: tuple[tuple[Cell, ...], ...]  # as many cells as columns each
+    notes: tuple[str, ...] = ()  # sentences that belong below it
 
     def __post_init__(self) -> None:
         for index, row in enumerate(self.rows):

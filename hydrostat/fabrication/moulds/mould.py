@@ -29,45 +29,29 @@ TOP_RIM = 20.0  # height of the rim above the body [mm]: the funnel is in it
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Mould:
-    """A mould in two halves; lengths in millimetres.
+    """A mould in two halves; lengths in millimetres."""
 
-    Attributes:
-        kind: printed halves, or silicone round a printed positive.
-        pull: how the halves come off, in the coordinates of the robot.
-        stance: how it lies in these, and which way is up while it is poured.
-        printed: as they lie on the bed.
-        assembly: halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across,
-            y upwards as it stands, z along the pull, parted at z = 0.
-        volumes: where the block goes [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue +
-            vents + bolts + slots + keys = box; "cutting" is what upper and lower lose to holes for dowels when they are
-            cut to fit the bed. Silicone: cavity + sprue + silicone_lower + silicone_upper = box; "cutting" is what the
-            positive loses. Both: cavity = body - dents - pockets.
-        poured: all that is filled with foam, in coordinates of the mould.
-        box: sides of the closed mould: across, upwards as it stands, along the pull [mm].
-        bolts: how many M4 bolts hold it; 0 for silicone.
-        dowels: how many of 3 mm join pieces.
-        vents: how many.
-        stands: how it stands when it is poured, in words.
-        casting: amounts and times.
-        problems: why it cannot be built well.
-        warnings: what to mind.
-    """
-
-    kind: MouldKind
-    pull: Pull
-    stance: Stance
-    printed: tuple[Printed, ...]
+    kind: MouldKind  # printed halves, or silicone round a printed positive
+    pull: Pull  # how the halves come off, in the coordinates of the robot
+    stance: Stance  # how it lies in these, and which way is up while it is poured
+    printed: tuple[Printed, ...]  # as they lie on the bed
+    # halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across, y upwards as
+    # it stands, z along the pull, parted at z = 0.
     assembly: PartAssembly
+    # where the block goes [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue + vents +
+    # bolts + slots + keys = box; "cutting" is what upper and lower lose to holes for dowels when they are cut to fit
+    # the bed. Silicone: cavity + sprue + silicone_lower + silicone_upper = box; "cutting" is what the positive loses.
+    # Both: cavity = body - dents - pockets.
     volumes: dict[str, float]
-    poured: Manifold
-    box: tuple[float, float, float]
-    bolts: int
-    dowels: int
-    vents: int
-    stands: str
-    casting: Casting
-    problems: tuple[str, ...]
-    warnings: tuple[str, ...]
+    poured: Manifold  # all that is filled with foam, in coordinates of the mould
+    box: tuple[float, float, float]  # sides of the closed mould: across, upwards as it stands, along the pull [mm]
+    bolts: int  # how many M4 bolts hold it; 0 for silicone
+    dowels: int  # how many of 3 mm join pieces
+    vents: int  # how many
+    stands: str  # how it stands when it is poured, in words
+    casting: Casting  # amounts and times
+    problems: tuple[str, ...]  # why it cannot be built well
+    warnings: tuple[str, ...]  # what to mind
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -68,46 +68,27 @@ class Horn:
 
 @dataclass(frozen=True, kw_only=True)
 class Motor:
-    """A geared motor; lengths in millimetres.
+    """A geared motor; lengths in millimetres."""
 
-    Attributes:
-        key: by which it is chosen.
-        title: what it is bought as.
-        body: its envelope below the face, without shaft, boss and horn.
-        outline: of all of it below the face, seen along the shaft, counter-clockwise.
-        depth: how far it reaches below the face [mm].
-        shaft: that turns the spool; with a horn that of the coupling, its length counted from the top of the horn.
-        horn: of a servo; None: the shaft is the motor's own.
-        holes: where screws go into the face.
-        slot: how far the holes in what is screwed on are drawn out to both sides along x, as the place of the holes in
-            the motor is not sure [mm].
-        screw: that goes into the face.
-        stall_torque: at which it stands still, at the voltage that its title or source names [N mm].
-        rated_torque: that it should be loaded with at most [N mm].
-        speed: without load [rpm].
-        mass: [g].
-        price: of one, rough [USD].
-        price_source: where that is from, and when.
-        source: which figures are from where, and which are not sure.
-    """
-
-    key: str
-    title: str
-    body: Construction
-    outline: tuple[Corner, ...]
-    depth: float
-    shaft: Shaft
-    horn: Horn | None = None
-    holes: tuple[Corner, ...]
+    key: str  # by which it is chosen
+    title: str  # what it is bought as
+    body: Construction  # its envelope below the face, without shaft, boss and horn
+    outline: tuple[Corner, ...]  # of all of it below the face, seen along the shaft, counter-clockwise
+    depth: float  # how far it reaches below the face [mm]
+    shaft: Shaft  # that turns the spool; with a horn that of the coupling, its length counted from the top of the horn
+    horn: Horn | None = None  # of a servo; None: the shaft is the motor's own
+    holes: tuple[Corner, ...]  # where screws go into the face
+    # how far the holes in what is screwed on are drawn out to both sides along x, as the place of the holes in the
+    # motor is not sure [mm]
     slot: float = 0.0
-    screw: FaceScrew
-    stall_torque: float
-    rated_torque: float
-    speed: float
-    mass: float
-    price: float
-    price_source: str
-    source: str
+    screw: FaceScrew  # that goes into the face
+    stall_torque: float  # at which it stands still, at the voltage that its title or source names [N mm]
+    rated_torque: float  # that it should be loaded with at most [N mm]
+    speed: float  # without load [rpm]
+    mass: float  # [g]
+    price: float  # of one, rough [USD]
+    price_source: str  # where that is from, and when
+    source: str  # which figures are from where, and which are not sure
 
     @property
     def envelope(self) -> Construction:
@@ -197,8 +178,7 @@ _POLOLU_25D = Motor(
     "public OpenSCAD model), flat of 3.5 mm, depth of the threads, mass: measured on none, check yours.",
 )
 
-MOTORS = (_N20, _XL330, _POLOLU_25D)
-"""From the weakest to the strongest."""
+MOTORS = (_N20, _XL330, _POLOLU_25D)  # from the weakest to the strongest
 
 MARGIN = 2.0
 """Torque that a motor should have over the largest that was simulated. Simulated cables mostly run without friction:

@@ -19,29 +19,18 @@ from hydrostat.robot import Robot
 
 @dataclass(frozen=True, kw_only=True)
 class Pattern:
-    """A sheet of panels at true scale, its lower left corner at (0, 0).
+    """A sheet of panels at true scale, its lower left corner at (0, 0)."""
 
-    Attributes:
-        name: of the robot.
-        panels: pieces of cloth: the front, the back, and the pieces of the gusset if there is one.
-        shapes: what lies on the sheet beside the panels: the bar of 100 mm.
-        width: of the sheet [mm].
-        height: of the sheet [mm].
-        stitches: how each cable is sewn, in cable order.
-        opening: the slit in the back, seen from the front, from the robot's origin; None if there is none.
-        problems: what cannot be cut honestly, a line each; only with `force`.
-        warnings: what to mind, a line each.
-    """
-
-    name: str
-    panels: tuple[Panel, ...]
-    shapes: tuple[Shape, ...]
-    width: float
-    height: float
-    stitches: tuple[CableStitches, ...] = ()
+    name: str  # of the robot
+    panels: tuple[Panel, ...]  # pieces of cloth: the front, the back, and the pieces of the gusset if there is one
+    shapes: tuple[Shape, ...]  # what lies on the sheet beside the panels: the bar of 100 mm
+    width: float  # of the sheet [mm]
+    height: float  # of the sheet [mm]
+    stitches: tuple[CableStitches, ...] = ()  # how each cable is sewn, in cable order
+    # the slit in the back, seen from the front, from the robot's origin; None if there is none
     opening: Opening | None = None
-    problems: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()  # what cannot be cut honestly, a line each; only with `force`
+    warnings: tuple[str, ...] = ()  # what to mind, a line each
 
     def panel(self, name: str) -> Panel:
         """The panel of this name. Raises InputError: there is none."""

@@ -10,8 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.robot import Point
 
-Place = tuple[float, float]
-"""A place on a panel or sheet [mm]: x to the right, y up."""
+Place = tuple[float, float]  # a place on a panel or sheet [mm]: x to the right, y up
 
 
 class Layer(StrEnum):
@@ -45,19 +44,12 @@ class PatternPart(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class LaserLine:
-    """A polyline.
+    """A polyline."""
 
-    Attributes:
-        layer: what the laser does along it.
-        part: what it stands for.
-        points: [mm]; the first is not repeated at the end of a closed line.
-        closed: whether it ends where it begins.
-    """
-
-    layer: Layer
-    part: PatternPart
-    points: tuple[Place, ...]
-    closed: bool = False
+    layer: Layer  # what the laser does along it
+    part: PatternPart  # what it stands for
+    points: tuple[Place, ...]  # [mm]; the first is not repeated at the end of a closed line
+    closed: bool = False  # whether it ends where it begins
 
     def moved(self, dx: float, dy: float) -> Self:
         """The same line elsewhere, by a shift [mm]."""
@@ -75,19 +67,12 @@ class LaserLine:
 
 @dataclass(frozen=True, kw_only=True)
 class Circle:
-    """A circle.
+    """A circle."""
 
-    Attributes:
-        layer: what the laser does along it.
-        part: what it stands for.
-        centre: [mm].
-        radius: [mm].
-    """
-
-    layer: Layer
-    part: PatternPart
-    centre: Place
-    radius: float
+    layer: Layer  # what the laser does along it
+    part: PatternPart  # what it stands for
+    centre: Place  # [mm]
+    radius: float  # [mm]
 
     def moved(self, dx: float, dy: float) -> Self:
         """The same circle elsewhere, by a shift [mm]."""
@@ -103,8 +88,7 @@ class Circle:
         return shapely.Point(self.centre).buffer(self.radius).exterior
 
 
-Shape = LaserLine | Circle
-"""Anything on a sheet."""
+Shape = LaserLine | Circle  # anything on a sheet
 
 
 def trace(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> tuple[LaserLine, ...]:
@@ -127,20 +111,13 @@ def _lines(geometry: BaseGeometry, layer: Layer, part: PatternPart) -> Iterable[
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
-    """One piece of cloth, its right side up.
+    """One piece of cloth, its right side up."""
 
-    Attributes:
-        name: "front", "back", or "gusset-1" and so on for the pieces of the strip between them.
-        origin: where the robot's [0, 0] lies on the sheet [mm]; of a piece of the gusset, where its seam with the back
-            begins.
-        mirrored: whether the robot's x runs to the left, as seen from behind.
-        shapes: in places of the sheet [mm].
-    """
-
-    name: str
+    name: str  # "front", "back", or "gusset-1" and so on for the pieces of the strip between them
+    # where the robot's [0, 0] lies on the sheet [mm]; of a piece of the gusset, where its seam with the back begins
     origin: Place
-    mirrored: bool
-    shapes: tuple[Shape, ...]
+    mirrored: bool  # whether the robot's x runs to the left, as seen from behind
+    shapes: tuple[Shape, ...]  # in places of the sheet [mm]
 
     def on_sheet(self, point: Point) -> Place:
         """Place of a point of the robot [m] on the sheet [mm]; for the front and the back."""

@@ -11,8 +11,7 @@ from functools import singledispatch
 import numpy as np
 from manifold3d import CrossSection, Manifold
 
-Corner = tuple[float, float]
-"""A corner of a profile [mm]."""
+Corner = tuple[float, float]  # a corner of a profile [mm]
 
 Sides = tuple[float, float, float]  # lengths along three axes [mm]
 _SAG = 0.02  # how far a round side is at most from its true place [mm]

@@ -96,23 +96,14 @@ INFILL = 0.15  # share of what is inside the shell that is plastic, as slicers h
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Printed:
-    """A solid as it lies on the print bed, in millimetres: z up, its lowest point at z = 0.
+    """A solid as it lies on the print bed, in millimetres: z up, its lowest point at z = 0."""
 
-    Attributes:
-        name: stem of its files, of letters, digits and underscores.
-        title: what a person calls it.
-        solid: watertight.
-        count: how many are needed.
-        note: how to print it: which way up, what to mind.
-        model: how it is made of shapes, for STEP; None for what is no sum of simple shapes.
-    """
-
-    name: str
-    title: str
-    solid: Manifold
-    count: int = 1
-    note: str = ""
-    model: Construction | None = None
+    name: str  # stem of its files, of letters, digits and underscores
+    title: str  # what a person calls it
+    solid: Manifold  # watertight
+    count: int = 1  # how many are needed
+    note: str = ""  # how to print it: which way up, what to mind
+    model: Construction | None = None  # how it is made of shapes, for STEP; None for what is no sum of simple shapes
 
     @classmethod
     def of(cls, model: Construction, *, name: str, title: str, note: str, count: int = 1) -> "Printed":

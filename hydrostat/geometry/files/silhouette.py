@@ -16,8 +16,7 @@ _GRAIN = 1.0
 _MOST_SAMPLES = 40_000
 _DARKEST_SHADOW = 0.4
 
-Field = Float[np.ndarray, "rows columns"]
-"""A value for each pixel."""
+Field = Float[np.ndarray, "rows columns"]  # a value for each pixel
 
 
 @dataclass(frozen=True, eq=False)
