@@ -136,10 +136,7 @@ class _ConstraintsReader(TablesFile):
 
 
 def cable_name(given: str | int, robot: Robot) -> str:
-    """The name of a cable, given that, or, where no cable has such a name, its number, which counts from 1.
-
-    Raises InputError: there is no such cable.
-    """
+    """The name of a cable, given that, or its number from 1 if no cable has such a name (InputError: there is none)."""
     names, text = [cable.name for cable in robot.cables], str(given)
     if text not in names and text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= len(names):
         return names[int(text[:9]) - 1]

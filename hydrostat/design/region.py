@@ -170,10 +170,7 @@ def space_region(body: Body, clearance: float) -> SpaceRegion | None:
 
 
 def body_region(body: Body, clearance: float) -> Region:
-    """The region of a body, as it was drawn or scanned; of its mesh where there is no such thing.
-
-    Raises InputError: the body is too thin for the clearance everywhere.
-    """
+    """The region of a body, as drawn or scanned, or of its mesh (InputError: too thin everywhere for the clearance)."""
     region = (flat_region if body.mesh.dim == 2 else space_region)(body, clearance)
     if region is None:
         depth = f"{1e3 * clearance:g} mm inside its {'edge' if body.mesh.dim == 2 else 'surface'}"

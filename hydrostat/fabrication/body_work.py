@@ -53,7 +53,7 @@ MUCH_PLASTIC = 5e3  # more plastic for a mould than that is a warning [g]: five 
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
-    """Make the mould of a body, with room for the winches that sit in it. Raises InputError: the body is not closed."""
+    """Make the mould of a body, with room for the winches that sit in it (InputError: the body is not closed)."""
     pockets = {
         unit.winch: WinchRoom(low=unit.room.low, high=unit.room.high) for unit in units if unit.mount is Mount.BODY
     }
@@ -103,10 +103,7 @@ _STEP = 1e-3  # distance of the places that are looked at [m]
 
 
 def channel_problems(robot: Robot, options: PartOptions) -> tuple[str, ...]:
-    """Tell which sheaths come too near the skin between two deeper places, a line each.
-
-    Where a tube enters the body, or ends at the skin, it is near by intent.
-    """
+    """Tell which sheaths come too near the skin between two deeper places, a line each; at their ends they may."""
     solid = robot.body.solid
     if solid is None:
         return ()
@@ -146,10 +143,7 @@ def _along(points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "places 3
 
 
 def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
-    """Make the pattern of a body: of a flat one front and back, of one in space its skin in patches.
-
-    Raises InputError: the body is in several pieces, or its skin cannot be cut into patches.
-    """
+    """Make the pattern of a body (InputError: it is in several pieces, or its skin cannot be cut into patches)."""
     drawn = replace(options.pattern, force=True)
     if robot.body.mesh.dim == 2:
         pattern = plush_pattern(robot, options=drawn)

@@ -71,10 +71,7 @@ class Kit:
     checks: tuple[Check, ...]
 
     def write(self, folder: str | Path) -> list[Path]:
-        """Write all files into a folder, made if need be; what an earlier kit left there is removed.
-
-        Raises InputError: the folder or a file cannot be written.
-        """
+        """Write all files into a folder, in place of an earlier kit (InputError: a file cannot be written)."""
         return write_files(self.files, folder)
 
 

@@ -42,7 +42,7 @@ class Paper(StrEnum):
 
 
 def _check_sizes(options: Any, *, above_zero: tuple[str, ...]) -> None:
-    """Refuse numbers that are negative or not finite, and 0 for those of some names. Raises InputError: one is."""
+    """Refuse numbers that are negative or not finite, and 0 for those of some names (InputError: one is)."""
     for item in fields(options):
         value, least = getattr(options, item.name), item.name in above_zero
         if isinstance(value, float | int) and not (math.isfinite(value) and (value > 0 if least else value >= 0)):

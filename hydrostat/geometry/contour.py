@@ -134,10 +134,7 @@ def _inside_by_blocks(field: Field, settled: Settled, grid: _Grid) -> Bool[np.nd
 def _crossed_edges(
     inside: Bool[np.ndarray, " points"], grid: _Grid
 ) -> tuple[Int[np.ndarray, " vertices"], Int[np.ndarray, " vertices"], Int[np.ndarray, "triangles 3"]]:
-    """Both ends of every grid edge with a crossing, and how the crossings join.
-
-    Marching cubes on -1 and 1 put each vertex in the middle of its edge, which tells the edge without a look-up.
-    """
+    """Ends of every grid edge with a crossing, and how these join: by marching cubes on -1 and 1, met mid-edge."""
     import igl
 
     places = grid.indices(np.arange(grid.points)).astype(float)

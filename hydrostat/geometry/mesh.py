@@ -153,7 +153,7 @@ class Mesh:
 
 
 def smallest_angle(mesh: Mesh) -> float:
-    """Smallest angle of any triangle [degrees]; 60 at best. Raises InputError: the mesh is not flat."""
+    """Smallest angle of any triangle [degrees]; 60 at best (InputError: the mesh is not flat)."""
     if mesh.dim != 2:
         raise InputError(f"angles are those of a flat mesh, this one has dimension {mesh.dim}")
     return float(angles(mesh.nodes, mesh.elements).min())

@@ -69,7 +69,7 @@ class Shell:
         return np.linalg.norm(self._crosses, axis=1) / (self.facets.shape[1] - 1)
 
     def nearest(self, points: Points) -> Nearest:
-        """The place of the shell nearest to each point. Raises ValueError: nodes or points that are not finite."""
+        """The place of the shell nearest to each point (ValueError: nodes or points that are not finite)."""
         if not (np.isfinite(self.nodes).all() and np.isfinite(points).all()):
             raise ValueError("a distance needs finite places")
         _, found, places = self._tree.squared_distance(_in_space(self.nodes), self.facets, _in_space(points))

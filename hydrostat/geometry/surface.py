@@ -13,10 +13,7 @@ from hydrostat.errors import SurfaceError
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles in space; nothing is promised of how they meet, only that their numbers are numbers.
-
-    Raises SurfaceError: wrong shapes, no triangle, coordinates that are not finite, or indices out of range.
-    """
+    """Triangles in space; their numbers are numbers, no more (SurfaceError: wrong shapes, no triangle, indices)."""
 
     vertices: Float[np.ndarray, "vertices 3"]  # places [m], (vertices, 3); kept as a read-only copy
     # indices of three vertices each, (triangles, 3); seen from outside they turn counter-clockwise
@@ -80,10 +77,7 @@ def covering_points(surface: Surface, spacing: float) -> Float[np.ndarray, "poin
 
 
 def spread_points(surface: Surface, spacing: float) -> tuple[Float[np.ndarray, "points 3"], Int[np.ndarray, " points"]]:
-    """Points spread evenly over the triangles of a surface, one at least on each, and the triangle each is on.
-
-    There is about one point for each square whose side is the spacing [m].
-    """
+    """Points spread evenly, about one for each square of the spacing [m], at least one on each triangle; and which."""
     areas = np.linalg.norm(surface.crosses, axis=1) / 2
     square = max(spacing**2, float(areas.sum()) / _MOST_POINTS)
     counts = np.maximum(np.ceil(areas / square).astype(np.int64), 1)

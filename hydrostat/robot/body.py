@@ -74,10 +74,7 @@ class Body:
         _check_lengths(size=self.size, element_size=self.element_size, thickness=self.thickness)
 
     def element_size_for(self, nodes: int) -> float:
-        """The element size [m] with which the same body has about a number of nodes.
-
-        Raises InputError: a ready mesh, or no mesh has about so few or so many.
-        """
+        """Element size [m] for about so many nodes (InputError: a ready mesh, or no mesh has so few or so many)."""
         from hydrostat.geometry.sizing import size_for
         from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
         from hydrostat.geometry.triangles.triangulate import triangulate
@@ -143,10 +140,7 @@ def outline_body(
     size: float | None = None,
     volume: Volume = Volume.ELEMENT,
 ) -> Body:
-    """Body from the bytes of a drawing or picture: SVG, DXF, PNG or JPG by the name of the file.
-
-    Raises InputError: the drawing is no closed outline, or a number is out of its range.
-    """
+    """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
     from hydrostat.geometry.files.outline_file import read_outline
     from hydrostat.geometry.triangles.triangulate import triangulate
 
@@ -225,10 +219,7 @@ def mesh_body(
     thickness: float | None = None,
     volume: Volume = Volume.ELEMENT,
 ) -> Body:
-    """Body from a ready mesh of triangles or tetrahedra whose coordinates count `unit` metres each.
-
-    Raises InputError: the file cannot be read or holds no such mesh.
-    """
+    """Body from a ready mesh, in units of `unit` metres (InputError: the file cannot be read or holds no such mesh)."""
     from hydrostat.geometry.files.mesh_file import read_mesh
 
     _check_lengths(size=size, thickness=thickness)

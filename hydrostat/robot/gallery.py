@@ -12,7 +12,7 @@ def gallery_names() -> list[str]:
 
 
 def gallery_folder(name: str) -> Path:
-    """Folder of a gallery robot. Raises InputError: the gallery has no robot of this name."""
+    """Folder of a gallery robot (InputError: the gallery has no robot of this name)."""
     if name not in gallery_names():
         raise InputError(f'the gallery has no robot "{name}"; it has: {", ".join(gallery_names())}')
     return _shelf() / name

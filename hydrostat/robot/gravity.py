@@ -11,10 +11,7 @@ DIRECTIONS = ("-x", "+x", "-y", "+y", "-z", "+z")  # words for standard gravity 
 
 
 def gravity_along(direction: str, dim: int) -> tuple[float, ...]:
-    """Standard gravity [m/s^2] in a direction such as "-y", (dim,).
-
-    Raises InputError: no such direction, or no such axis in a flat body.
-    """
+    """Standard gravity [m/s^2] in a direction such as "-y", (dim,) (InputError: no such direction of this body)."""
     allowed = DIRECTIONS[: 2 * dim]
     if direction not in allowed:
         raise InputError(f'gravity: "{direction}" is no direction of this body; allowed are: {", ".join(allowed)}')

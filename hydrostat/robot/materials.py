@@ -110,10 +110,7 @@ _GIBSON = "L. J. Gibson, M. F. Ashby, Cellular Solids, Cambridge, 1997"
 
 
 def young_of_rubber(stress: float) -> float:
-    """Young's modulus [Pa] of an incompressible Neo-Hookean material whose stress at twice its length is `stress` [Pa].
-
-    Stress there is mu (2 - 1/4), and Young's modulus 3 mu.
-    """
+    """Young's modulus 3 mu [Pa] of a Neo-Hookean rubber whose stress at twice its length is mu (2 - 1/4) [Pa]."""
     return 3 * stress / (2 - 1 / 4)
 
 
@@ -316,7 +313,7 @@ MATERIALS = MappingProxyType({material.name: material for material in _TABLE})  
 
 
 def find_material(name: str) -> Material:
-    """Material of the table; capitals do not matter. Raises InputError: no material has this name."""
+    """Material of the table; capitals do not matter (InputError: no material has this name)."""
     material = MATERIALS.get(name.lower())
     if material is None:
         from difflib import get_close_matches

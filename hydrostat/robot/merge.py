@@ -323,10 +323,7 @@ def _update_points(points: Any, fresh: Any, was: Sequence[Any], now: Sequence[An
 
 
 def matched(old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]]) -> dict[int, int]:
-    """Number of the old entry of each new one that has one: by name, else the same, else the most alike.
-
-    Entries are what their keys mean.
-    """
+    """Number of the old entry of each new one, by what keys mean: by name, else the same, else the most alike."""
     pairs: dict[int, int] = {}
     for likeness in (_same_name, _same, _alike):
         ranked = sorted(_ranked(old, new, pairs, likeness))

@@ -41,7 +41,7 @@ class Pin:
         check_positive("stiffness", self.stiffness, "N/m")
 
     def anchors(self, mesh: Mesh) -> Anchors:
-        """Find what the pin holds. Raises InputError: the pin lies outside the body and holds nothing."""
+        """Find what the pin holds (InputError: the pin lies outside the body and holds nothing)."""
         held = np.flatnonzero(self.holds(mesh))
         if len(held) > 0:
             anchors = anchor_nodes(mesh, held)

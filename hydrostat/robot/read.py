@@ -27,10 +27,7 @@ LARGEST_FILE = 200_000_000  # the file of a body may have this many bytes
 
 
 def load_robot(path: str | Path) -> Robot:
-    """Robot from its folder, or from the robot.toml in it.
-
-    Raises InputError: one line that names the file, the line or key, what is wrong and what is allowed.
-    """
+    """Robot from its folder or robot.toml (InputError: one line with file, line or key, what is wrong and allowed)."""
     path = Path(path)
     file = path if path.suffix == ".toml" and not os.path.isdir(path) else path / FILE
     if os.path.isfile(path) and file != path:
@@ -148,7 +145,7 @@ class RobotReader(TablesFile):
 
 
 def read_material(entry: Any) -> Material:
-    """A material by its name, or by its numbers. Raises InputError: an unknown name, or a number out of its range."""
+    """A material by its name, or by its numbers (InputError: an unknown name, or a number out of its range)."""
     if isinstance(entry, str):
         return find_material(entry)
     viscous = _given(entry, "viscosity")

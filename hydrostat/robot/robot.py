@@ -76,11 +76,11 @@ class Robot:
         self._check_cables()
 
     def winch(self, name: str) -> Winch:
-        """The winch of this name. Raises InputError: there is none."""
+        """The winch of this name (InputError: there is none)."""
         return _named("winch", "winches", self.winches, name)
 
     def cable(self, name: str) -> Cable:
-        """The cable of this name. Raises InputError: there is none."""
+        """The cable of this name (InputError: there is none)."""
         return _named("cable", "cables", self.cables, name)
 
     @property
@@ -89,7 +89,7 @@ class Robot:
         return given_names(self.cables)
 
     def pose(self, name: str) -> Pose:
-        """The pose of this name. Raises InputError: there is none."""
+        """The pose of this name (InputError: there is none)."""
         if name not in self.poses:
             raise InputError(f'there is no pose "{name}"; {_choices("poses", list(self.poses))}')
         return self.poses[name]

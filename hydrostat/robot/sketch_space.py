@@ -94,10 +94,7 @@ def sketch_surface(
 
 
 def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: str = "flexfoam-it x") -> Robot:
-    """Robot from a ready mesh of tetrahedra, whose coordinates count in mm unless a size [m] is given.
-
-    Raises InputError: the file holds no mesh in space.
-    """
+    """Robot from a ready mesh of tetrahedra, in mm unless a size [m] is given (InputError: no mesh in space)."""
     body = mesh_body(path, unit=1e-3, material=find_material(material), size=size)
     _check_scale(body.mesh.size, size)
     return _first_robot(body, name)
@@ -243,10 +240,7 @@ def _smoothed(points: Points) -> Points:
 
 
 def _covered(mesh: Mesh, solid: Solid, middle: Vector, way: Vector) -> Vector:
-    """A place off the middle of a limb, towards its skin, as far as there is cover; the best there is if there is none.
-
-    It is inside the solid, so that it stays inside the body with finer elements.
-    """
+    """A place off the middle of a limb towards its skin, in the solid, as far as there is cover, or else the best."""
     places = middle + np.multiply.outer(_OFFS, way)
     found = locate(mesh, np.concatenate([places, middle[None]]))
     places = np.concatenate([places, mesh.nodes[found.stencils[-1:]].mean(axis=1)])

@@ -65,7 +65,7 @@ class TablesFile(ABC):
             self.fail(key if otherwise is None else otherwise, message)
 
     def fail(self, key: str, message: str, line: int | None = None) -> NoReturn:
-        """Complain of a key. Raises InputError: always."""
+        """Complain of a key (InputError: always)."""
         line = line or find_line(self.text, key)
         where = f"{self.file}{f', line {line}' if line else ''}"
         told = key + message if message.startswith((" ", ":")) else f"{key}: {message}" if key else message
@@ -101,7 +101,7 @@ class TablesFile(ABC):
 
 
 def read_text(file: Path) -> str:
-    """The text of a file in UTF-8. Raises InputError: it cannot be read, is too large, or is no such text."""
+    """The text of a file in UTF-8 (InputError: it cannot be read, is too large, or is no such text)."""
     content = read_bytes(file, units.printable(str(file)), LARGEST_TEXT)
     try:
         return content.decode("utf-8-sig")
@@ -111,10 +111,7 @@ def read_text(file: Path) -> str:
 
 
 def read_bytes(file: Path, name: str, most: int) -> bytes:
-    """Bytes of a file, at most so many; complaints name it `name`.
-
-    Raises InputError: it cannot be read, or is larger.
-    """
+    """Bytes of a file, at most so many; complaints name it `name` (InputError: it cannot be read, or is larger)."""
     try:
         if not file.exists():
             raise InputError(f"{name}: there is no such file")

@@ -54,7 +54,7 @@ def with_element_size(text: str, element_size: float) -> str:
 
 
 def replace_file(path: Path, content: bytes) -> Path:
-    """Write a file whole or not at all. Raises InputError: it cannot be written."""
+    """Write a file whole or not at all (InputError: it cannot be written)."""
     part = path.with_name(f".{path.name}.part")
     try:
         part.write_bytes(content)

@@ -12,10 +12,7 @@ BASE = 28e-3  # how far the base reaches below the middle of the palm, to be hel
 
 
 def caging_gripper() -> Shape:
-    """The third foam hand: a round palm that looks up, and four fingers in whose cage a tennis ball (67 mm) has room.
-
-    The joints of a finger are four: its root in the palm, two bends and the end.
-    """
+    """The third foam hand: a round palm that looks up, four fingers of four joints, room for a tennis ball (67 mm)."""
     limbs = {name: _finger(degrees) for name, degrees in SIDES.items()}
     fingers = union(*(finger.distance for finger in limbs.values()), blend=10e-3)
     whole = union(fingers, _palm().distance, blend=14e-3)

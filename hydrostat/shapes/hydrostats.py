@@ -10,10 +10,7 @@ from hydrostat.shapes.limb import Limb, Shape, limb
 
 
 def trunk() -> Shape:
-    """The trunk of an elephant that looks towards -y: it hangs down from z = 0, its tip a little raised.
-
-    The belly of its limb is the side to the mouth (+y).
-    """
+    """The trunk of an elephant that looks towards -y: down from z = 0, its tip a little raised, its mouth at +y."""
     joints = [(0, 0, 12e-3), (0, 2e-3, -75e-3), (0, 8e-3, -155e-3), (0, -2e-3, -225e-3), (0, -42e-3, -276e-3)]
     arm = limb(
         joints,

@@ -122,10 +122,7 @@ Hole = tuple[int, int]  # a hole: number of the cable, and of its point
 
 
 def hole_violations(parts: Parts) -> Iterator[str]:
-    """Via points of cables too near to each other, or to a winch in the body that pulls other cables.
-
-    The first point of a cable, at its winch, is no hole.
-    """
+    """Via points, but first ones, too near to each other, or to a winch in the body that pulls other cables."""
     cables = parts.robot.cables
     holes = [(index, at) for index, cable in enumerate(cables) for at in range(1, len(cable.points))]
     if not holes:

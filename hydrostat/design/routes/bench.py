@@ -63,10 +63,7 @@ class Bench:
         return self.weights[pose] * (self.goals[pose] - places).ravel()
 
     def reached(self, layout: Layout, before: Trial | None, *, iterations: int = 30) -> Trial | None:
-        """The layout with contractions that bring every pose nearest; None where no equilibrium is found.
-
-        It begins from a trial `before`, whose winches come first among those of the layout.
-        """
+        """The layout brought nearest to every pose, from a trial whose winches are its first; None: no equilibrium."""
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)
         options = InverseOptions(restarts=0, unique=False, iterations=iterations, tolerance=1e-5, progress=1e-5)

@@ -133,10 +133,7 @@ class _Refinement:
 def linear_model(
     bench: Bench, region: Region, trial: Trial, *, effort: float, reach: float, bend: float = 0.0
 ) -> Model:
-    """A trial at its equilibria to first order, with all limits that lie within `reach` [m], the most that things move.
-
-    Effort is what a tension counts [m/N], bend what a turn of 1 rad counts [m].
-    """
+    """A trial to first order, with limits within `reach` [m]; effort weighs tensions [m/N], bend turns of 1 rad [m]."""
     layout, limit = trial.layout, bench.constraints.tension_limit
     winches, free = len(layout.sites), layout.ties.shape[1]
     count = free + winches * len(trial.poses)

@@ -185,7 +185,7 @@ def _joined(points: Points, pairs: Pairs, region: Region, constraints: Constrain
 
 
 def _in_world(robot: Robot, constraints: Constraints) -> bool:
-    """Whether winches stand in the world. Raises InputError: they should, but the robot has none that says where."""
+    """Whether winches stand in the world (InputError: they should, but the robot has none that says where)."""
     if constraints.mount is None:
         return bool(robot.winches) and all(winch.mount is Mount.WORLD for winch in robot.winches)
     if constraints.mount is Mount.WORLD and not robot.winches:

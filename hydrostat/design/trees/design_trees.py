@@ -241,10 +241,7 @@ def _shares(cables: int, winches: int) -> Iterator[tuple[int, ...]]:
 
 
 def _shortlist(groups: list[list["_TreePlan"]]) -> list["_TreePlan"]:
-    """The best plan of every group, then every second best, and so on; each network once.
-
-    Scores of one group compare, those of different phi do not.
-    """
+    """The best plan of every group (its phi alone compares), then every second best, and so on; each network once."""
     ranked = [sorted(group, key=lambda plan: -plan.score) for group in groups]
     plans: dict[object, _TreePlan] = {}
     for rank in range(max(map(len, ranked), default=0)):

@@ -102,10 +102,7 @@ def _along(ends: FibreEnds, route: Route, reach: float) -> Bool[np.ndarray, " fi
 
 
 def lay_route(route: Route, region: Region, spacing: float) -> Route | None:
-    """A route as a cable can run: a clearance inside the body, smoothed, a via point about every `spacing`.
-
-    None if it cannot keep clear of the edge.
-    """
+    """A route as a cable can run: in the clearance, smoothed, a via point about every `spacing`; None if it cannot."""
     smooth = resample(region.push_inside(route), spacing / 4)
     for _ in range(6):
         smooth[1:-1] = 0.25 * smooth[:-2] + 0.5 * smooth[1:-1] + 0.25 * smooth[2:]

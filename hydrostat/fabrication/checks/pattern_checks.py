@@ -26,7 +26,7 @@ _MILLIMETRES = 4  # how a DXF says that it counts millimetres ($INSUNITS)
 
 
 class SeenSvg:
-    """An SVG as it is written. Raises InputError: it has no size in millimetres."""
+    """An SVG as it is written (InputError: it has no size in millimetres)."""
 
     def __init__(self, content: bytes) -> None:
         self._root = ElementTree.fromstring(content)

@@ -14,10 +14,7 @@ NO_SOURCE = "estimate, no source"
 
 @dataclass(frozen=True, kw_only=True)
 class Price:
-    """A rough price.
-
-    Raises InputError: an amount below 0, or a pack of nothing.
-    """
+    """A rough price (InputError: an amount below 0, or a pack of nothing)."""
 
     amount: float  # in its currency, of one unit
     unit: str = "piece"  # what it is of, such as "m" or "kg"
@@ -130,10 +127,7 @@ def cost_of(items: Iterable[Item], group: str | None = None) -> float:
 
 
 def bill_table(items: tuple[Item, ...], notes: tuple[str, ...] = ()) -> Table:
-    """The bill, with a total after each group and at the end.
-
-    Raises InputError: a price that is not in USD: currencies cannot be added.
-    """
+    """The bill, with totals of the groups and of all (InputError: a price not in USD: currencies cannot be added)."""
     for item in items:
         if item.price.currency != "USD":
             raise InputError(f"the price of {item.what} must be in USD, not {item.price.currency}")

@@ -52,10 +52,7 @@ class CableCut:
 
     @property
     def spool_mark(self) -> float:
-        """About where the cable meets the spool at rest, from the end with the stopper.
-
-        In the body it is counted from the shaft, round which the spool is; outside from the housing of the winch.
-        """
+        """About where the cable meets the spool, or outside the housing, at rest, from the end with the stopper."""
         before = self.outside + self.lead if self.outside > 0 else 0.0
         return self.tail + self.slack + self.body + before
 
@@ -224,10 +221,7 @@ def _sheath_notes(cuts: tuple[SheathCut, ...]) -> tuple[str, ...]:
 
 
 def check_sheaths(table: Table, simulation: Simulation, *, outside: Mapping[int, float]) -> Check:
-    """Check whether the tubes of the list cover what the simulation leaves out of the lengths of the cables.
-
-    No simulation knows the tube `outside`, from the base with the motors, by cable index [mm].
-    """
+    """Check whether tubes of the list cover what the simulation leaves out of cables, beside tube `outside` [mm]."""
     robot = simulation.robot
     listed = np.array([-outside.get(index, 0.0) for index in range(len(robot.cables))])
     for cable, run in zip(table.column("cable"), table.column("run"), strict=True):

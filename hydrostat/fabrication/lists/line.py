@@ -83,10 +83,7 @@ class LineCheck:
 
 
 def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float | None = None) -> LineCheck:
-    """Check whether a line, and its stopper, which slips at `hold` [N], bear the largest tension of each cable [N].
-
-    Raises InputError if there are not as many tensions as cables.
-    """
+    """Check whether a line, and its stopper, which slips at `hold` [N], bear the largest tension of each cable [N]."""
     if len(tensions) != len(robot.cables):
         raise InputError(f"{len(tensions)} tensions given for {len(robot.cables)} cables")
     problems: list[str] = []

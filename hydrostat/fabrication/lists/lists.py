@@ -42,7 +42,7 @@ class Lists:
         return float(used or 0.0), float(packs or 0.0)
 
     def table(self, name: str) -> Table:
-        """The table of this name. Raises InputError: there is none."""
+        """The table of this name (InputError: there is none)."""
         for table in self.tables:
             if table.name == name:
                 return table
@@ -50,10 +50,7 @@ class Lists:
 
 
 def make_lists(given: ListInput) -> Lists:
-    """All lists of a robot.
-
-    Raises InputError: a demand of another robot, or lengths for cables that it does not have.
-    """
+    """All lists of a robot (InputError: a demand of another robot, or lengths for cables that it does not have)."""
     robot, options, demand = given.robot, given.options, given.demand
     cuts = cable_cuts(robot, leads=given.leads, outside=given.outside, spare_wraps=options.spare_wraps)
     tubes = sheath_cuts(robot, seats=given.seats, outside=given.outside)

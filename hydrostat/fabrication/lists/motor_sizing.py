@@ -95,10 +95,7 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
 
 
 def size_winches(robot: Robot, demand: Demand, motor: Motor) -> tuple[WinchSizing, ...]:
-    """Find what each winch of a robot asks of a motor.
-
-    Raises InputError: a demand of another robot, or a motor without torque or speed.
-    """
+    """Find what each winch asks of a motor (InputError: demand of another robot, a motor without torque or speed)."""
     if len(demand.torques) != len(robot.winches) or len(demand.tensions) != len(robot.cables):
         raise InputError(
             f"the demand is of {len(demand.torques)} winches and {len(demand.tensions)} cables, the robot has "

@@ -57,10 +57,7 @@ def number_columns(*titles: str, unit: str = "", decimals: int = 1) -> tuple[Col
 
 @dataclass(frozen=True, kw_only=True)
 class Table:
-    """Rows of text and numbers.
-
-    Raises InputError: a row of another length, or a number that is not finite.
-    """
+    """Rows of text and numbers (InputError: a row of another length, or a number that is not finite)."""
 
     name: str  # stem of its file
     title: str  # what a person calls it
@@ -91,7 +88,7 @@ class Table:
         )
 
     def column(self, title: str) -> tuple[Cell, ...]:
-        """All cells under a title. Raises InputError: there is no such column."""
+        """All cells under a title (InputError: there is no such column)."""
         titles = [column.title for column in self.columns]
         if title not in titles:
             raise InputError(f'{self.name} has no column "{title}"; its columns are: {", ".join(titles)}')

@@ -245,10 +245,7 @@ def clashes(pockets: tuple[Pocket, ...]) -> list[str]:
 
 
 def cable_dents(robot: Robot, surface: FineSurface, stance: Stance, *, deepest: float) -> Manifold:
-    """Cones on the wall, in the coordinates of the mould, at the spot nearest to each cable point.
-
-    Cable points further below the surface than `deepest` [mm] leave no mark.
-    """
+    """Cones on the wall of the mould at the spot nearest to each cable point that is no deeper than `deepest` [mm]."""
     points = [_spot(point) for cable in robot.cables for point in cable.points]
     if not points:
         return Manifold()

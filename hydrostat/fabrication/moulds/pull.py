@@ -51,10 +51,7 @@ def half_sphere(count: int) -> Float[np.ndarray, "count 3"]:
 
 
 def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
-    """The height of the plane [mm] with the least area undercut, and its share.
-
-    Of heights that are equally good it is the one nearest to the middle of the body.
-    """
+    """The height of the plane [mm] with the least area undercut, of equal ones nearest to the middle; its share."""
     order = np.argsort(freed.heights, kind="stable")
     areas = surface.areas[order]
     held_below = np.concatenate([[0.0], np.cumsum(areas * ~freed.downward[order])])
@@ -71,10 +68,7 @@ def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
 
 
 def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
-    """The best direction and height for a flat parting of a body [mm], by a search over all directions.
-
-    `count` directions are tried on half of the sphere, before those about the best of them.
-    """
+    """The best direction and height for a flat parting of a body [mm]: of `count` on half a sphere, and then nearby."""
     surface = fine_surface(solid)
     tried = np.vstack([_own_axes(surface), np.eye(3), _flat_directions(surface), half_sphere(count)])
     shares, costs = _rated(surface, tried)

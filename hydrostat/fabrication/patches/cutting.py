@@ -100,10 +100,7 @@ class Cutting:
 
 
 def cut_skin(mesh: SkinMesh) -> Cutting:
-    """Front and back, cut on where the cloth would have to give too much, or where the two sides of a seam differ.
-
-    No further than patches are few enough.
-    """
+    """Cut front and back where cloth would give too much, or a seam's sides differ, while patches are few enough."""
     mesh = front_and_back(mesh)
     back = [False, True]
     patches = [flatten(disc_of(mesh, number)) for number in (0, 1)]

@@ -91,10 +91,7 @@ def _divided(corners: list[int], middles: list[int], vertices: Float[np.ndarray,
 
 
 def skin_mesh(body: Body) -> SkinMesh:
-    """The skin of a body in space as one patch, its triangles no longer than seams need to be smooth.
-
-    Raises InputError: the body is flat, in several pieces or hollow, or a hole goes through it.
-    """
+    """The skin of a body as one patch of small triangles (InputError: flat, hollow, in pieces, or with a handle)."""
     if body.mesh.dim != 3:
         raise InputError("a flat body has a flat pattern of its own")
     surface = body.healing.surface if body.healing else _boundary(body)
@@ -135,10 +132,7 @@ _NEAR = 0.05  # a line that passes a corner nearer than this share of an edge go
 def cut_at_zero(
     mesh: SkinMesh, field: Float[np.ndarray, " vertices"], inside: Bool[np.ndarray, " triangles"]
 ) -> tuple[SkinMesh, Int[np.ndarray, " parts"], Int[np.ndarray, " parts"]]:
-    """Divide triangles along the zero line of a field over part of a mesh.
-
-    Returns the new mesh; of each of its triangles the old one; and 1 above zero, -1 below, 0 outside the part.
-    """
+    """Divide triangles along a field's zero; the old one of each, and 1 above, -1 below, 0 outside of the part."""
     edges = mesh.edges[0]
     touched = np.zeros(len(edges), dtype=bool)
     touched[mesh.edges[1][inside]] = True

@@ -33,7 +33,7 @@ class Pattern:
     warnings: tuple[str, ...] = ()  # what to mind, a line each
 
     def panel(self, name: str) -> Panel:
-        """The panel of this name. Raises InputError: there is none."""
+        """The panel of this name (InputError: there is none)."""
         for panel in self.panels:
             if panel.name == name:
                 return panel

@@ -29,7 +29,7 @@ class Skin:
 
 
 def flat_skin(body: Body, options: PatternOptions) -> Skin:
-    """The skin of a flat body. Raises InputError: the body is not flat, or is in several pieces."""
+    """The skin of a flat body (InputError: the body is not flat, or is in several pieces)."""
     return skin_of(orient(shapely.transform(_silhouette(body), lambda points: 1e3 * points)), options)
 
 

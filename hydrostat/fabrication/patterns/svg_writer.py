@@ -60,10 +60,7 @@ def shape_element(drawn: Shape, height: float) -> Html:
 def shapes_svg(
     shapes: Iterable[Shape], height: float, view: str, size: tuple[float, float], widths: Mapping[Layer, float]
 ) -> Html:
-    """A window of a sheet as a picture of this size, a group for each layer with its line width; all in mm.
-
-    The view is left, top, width and height of the window on a sheet of this height.
-    """
+    """A window (left, top, width, height) of a sheet as a picture, a group for each layer with its width; in mm."""
     shapes = tuple(shapes)
     groups = [
         tag(

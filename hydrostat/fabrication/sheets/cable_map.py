@@ -54,10 +54,7 @@ class CableRun:
 
 
 def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:
-    """A flat body from the front, so wide and at most so high [mm]; dashed is what runs on the inside of the cloth.
-
-    Without stitches the body is cast, and cables run in the middle of its thickness.
-    """
+    """A flat body from the front, at most so high [mm]; dashed is what runs inside the cloth; cast without stitches."""
     rings = [1e3 * ring for ring in flat_rings(robot)]
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
@@ -88,10 +85,7 @@ class _Pane:
 
 
 def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Camera]) -> Canvas:
-    """A body in space, side by side as it is seen from one or several places; dashed is what lies in its far half.
-
-    The picture is so wide and at most so high [mm].
-    """
+    """A body in space from several places, side by side, at most so high [mm]; dashed is what lies in its far half."""
     pixels = round(PIXELS * max(width / len(views), height))
     panes = [_pane(robot, view, pixels) for view in views]
     breadths = np.array([float(np.ptp(pane.box[:, 0])) for pane in panes])

@@ -70,10 +70,7 @@ class Cylinder(Construction):
 
 @dataclass(frozen=True)
 class Prism(Construction):
-    """A polygon in the plane, counter-clockwise, raised from z = 0 upwards [mm].
-
-    Raises ValueError: the corners turn clockwise, or enclose nothing.
-    """
+    """A polygon, counter-clockwise, raised from z = 0 [mm] (ValueError: it runs clockwise, or encloses nothing)."""
 
     profile: tuple[Corner, ...]
     height: float
@@ -153,10 +150,7 @@ def segments(radius: float) -> int:
 
 @singledispatch
 def solid_of(construction: Construction) -> Manifold:
-    """The triangles of a construction.
-
-    Corners of round sides are on the true circle: a shaft is at most 0.02 mm too thin, a bore as much too narrow.
-    """
+    """The triangles of a construction, their corners on the true round: a shaft is at most 0.02 mm too thin."""
     raise TypeError(f"no solid is known for {type(construction).__name__}")
 
 

@@ -44,7 +44,7 @@ def step_bytes(printed: Printed) -> bytes:
 
 @singledispatch
 def model_of(construction: Construction) -> Any:
-    """The build123d shape of a construction [mm]. Raises InputError: build123d is not installed."""
+    """The build123d shape of a construction [mm] (InputError: build123d is not installed)."""
     raise TypeError(f"no model is known for {type(construction).__name__}")
 
 
@@ -108,7 +108,7 @@ def _(shape: Turned) -> Any:
 
 
 def require_cad() -> None:
-    """Make sure, before long work begins, that STEP can be written. Raises InputError: build123d is not installed."""
+    """Make sure, before long work begins, that STEP can be written (InputError: build123d is not installed)."""
     if find_spec("build123d") is None:
         raise InputError('STEP needs build123d, which is not installed: pip install "hydrostat[cad]"')
 

@@ -67,7 +67,7 @@ class Cursor:
         return line
 
     def seek_after(self, mark: bytes) -> None:
-        """Go on behind a mark. Raises InputError: it is not there."""
+        """Go on behind a mark (InputError: it is not there)."""
         place = self.content.find(mark, self.at)
         if place < 0:
             raise self.damaged(f"has no {mark.decode('latin-1', 'replace')!r}")
@@ -119,7 +119,7 @@ class Cursor:
         return [], end
 
     def all_numbers(self, end: int, kind: str) -> np.ndarray:
-        """All numbers up to a place in a file of text. Raises InputError: there is something else."""
+        """All numbers up to a place in a file of text (InputError: there is something else)."""
         part = Cursor(self.content[self.at : end], self.name)
         self.at = end
         return part.numbers(sum(1 for _ in _WORD.finditer(part.content)), kind)

@@ -22,10 +22,7 @@ _Found = dict[int, list[np.ndarray]]
 
 
 def read_msh(content: bytes, name: str) -> Cells:
-    """Read nodes, tetrahedra and triangles of an MSH file; all else is passed over.
-
-    Raises InputError: another version, damaged, or with elements of an unknown kind.
-    """
+    """Read nodes, tetrahedra and triangles of an MSH file (InputError: another version, damaged, unknown elements)."""
     cursor = Cursor(content, name)
     old = _head(cursor)
     nodes, found = None, None

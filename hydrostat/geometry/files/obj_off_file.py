@@ -11,10 +11,7 @@ from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, fan
 
 
 def read_obj(content: bytes, name: str) -> Soup:
-    """Read vertices and faces of an OBJ file; all else in it is passed over.
-
-    Raises SurfaceError: a line is wrong, or there are too many of them.
-    """
+    """Read vertices and faces of an OBJ file, nothing else (SurfaceError: a line is wrong, or they are too many)."""
     content = content.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ") if b"\\" in content else content
     places, corners, counts = array("d"), array("q"), array("q")
     for number, line in text_lines(content, name):
@@ -54,7 +51,7 @@ _Rows = Iterator[tuple[int, list[bytes]]]
 
 
 def read_off(content: bytes, name: str) -> Soup:
-    """Read vertices and faces of an OFF file. Raises SurfaceError: counts, vertices or faces are wrong or missing."""
+    """Read vertices and faces of an OFF file (SurfaceError: counts, vertices or faces are wrong or missing)."""
     head = OFF_HEAD.match(content)
     if not head or content[head.end() :].lstrip(b" \t").lower().startswith(b"binary"):
         raise SurfaceError(f"{name}: does not begin like an OFF file of text: export the surface again, such as to STL")

@@ -40,10 +40,7 @@ class _Element:
 
 
 def read_ply(content: bytes, name: str) -> Soup:
-    """Read vertices and faces of a PLY file; colours, normals and all else are passed over.
-
-    Raises SurfaceError: its head is not understood, its counts do not fit its size, or it is cut short.
-    """
+    """Read vertices and faces of a PLY file (SurfaceError: an odd head, counts that do not fit its size, cut short)."""
     order, elements, start = _head(content, name)
     if not order:
         check_text(content, name)

@@ -43,7 +43,7 @@ def check_count(name: str, what: str, count: int, *, room: float, most: int = MO
 
 
 def check_text(content: bytes, name: str) -> None:
-    """Refuse text that would take long. Raises SurfaceError: it has too many bytes."""
+    """Refuse text that would take long (SurfaceError: it has too many bytes)."""
     if len(content) > MOST_TEXT_BYTES:
         raise SurfaceError(
             f"{name}: has {len(content) / 1e6:.0f} MB of text, at most {MOST_TEXT_BYTES / 1e6:.0f} MB are read: "

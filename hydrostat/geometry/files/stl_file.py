@@ -17,10 +17,7 @@ _PIECE = 4_000_000  # bytes of text taken apart at once
 
 
 def read_stl(content: bytes, name: str) -> Soup:
-    """Read the triangles of an STL file; corners in the very same place become one vertex, its normals are not used.
-
-    Raises SurfaceError: it is cut short, its count does not fit its size, or a number is none.
-    """
+    """Read an STL file; corners in one place become one vertex (SurfaceError: cut short, a wrong count, no number)."""
     corners = _text(content, name) if is_stl_text(content) else _binary(content, name)
     return _joined(corners)
 

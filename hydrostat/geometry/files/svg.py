@@ -51,10 +51,7 @@ class _SvgDocument:
 
 
 def _open(content: bytes, name: str) -> _SvgDocument:
-    """Check the bytes of a drawing, which nobody vouches for, and find the length of its unit.
-
-    Raises OutlineError: no XML, no SVG, with entities, or with `use` elements without end.
-    """
+    """Check a stranger's drawing and find its unit (OutlineError: no XML, no SVG, entities, or endless `use`)."""
     _guard(content, name)
     root = ElementTree.fromstring(content)
     if _tag(root) != "svg":

@@ -18,10 +18,7 @@ _KINDS = {
 
 
 def read_vtk(content: bytes, name: str) -> Cells:
-    """Read points, tetrahedra and triangles of a legacy VTK file; all data on them is passed over.
-
-    Raises InputError: it is no unstructured grid, or damaged.
-    """
+    """Read points and simplices of a legacy VTK file, no data (InputError: it is no unstructured grid, or damaged)."""
     cursor = Cursor(content, name)
     _head(cursor)
     points = starts = corners = types = None

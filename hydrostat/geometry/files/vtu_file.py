@@ -46,10 +46,7 @@ class _GridText:
 
 
 def read_vtu(content: bytes, name: str) -> Cells:
-    """Read points, tetrahedra and triangles of a VTU file; all data on them is passed over.
-
-    Raises InputError: it is no unstructured grid, packed in an unknown way, too large when unpacked, or damaged.
-    """
+    """Read points and simplices of a VTU file (InputError: no unstructured grid, oddly packed, too large, damaged)."""
     appended, encoding = b"", "raw"
     match = _APPENDED.search(content)
     if match:
@@ -184,7 +181,7 @@ class _Reader:
         return b"".join(result)
 
     def _cut(self, source: bytes, encoding: str, start: int, count: int) -> bytes:
-        """Some bytes of what is encoded. Raises ValueError: there are not as many."""
+        """Some bytes of what is encoded (ValueError: there are not as many)."""
         end = start + count
         if encoding == "raw":
             piece = source[start:end]

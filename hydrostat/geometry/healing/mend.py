@@ -81,10 +81,7 @@ class Welded:
 
 
 def weld(surface: Surface) -> Welded:
-    """Merge vertices in the same place; leave out triangles without a side, repeated ones, and walls inside.
-
-    Raises SurfaceError: no triangle is left.
-    """
+    """Merge vertices in one place; leave out flat or repeated triangles, walls inside (SurfaceError: none is left)."""
     used = np.unique(surface.triangles)
     place = _first_in_place(surface, used)
     triangles = place[surface.triangles]
@@ -153,10 +150,7 @@ def _without_copies(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.
 def one_way(
     triangles: Int[np.ndarray, "triangles 3"],
 ) -> tuple[Int[np.ndarray, "triangles 3"], Bool[np.ndarray, " triangles"]]:
-    """Triangles turned one way within each patch, the way of most of them, and which of them were turned for it.
-
-    A patch is what edges with two triangles join.
-    """
+    """Triangles turned the way of most of their patch, which edges of two triangles join, and which were turned."""
     import igl
 
     result, patches = igl.bfs_orient(triangles)

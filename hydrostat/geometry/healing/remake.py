@@ -134,10 +134,7 @@ class Deviation:
 
 
 def deviation(before: Surface, after: Surface, near: float) -> Deviation:
-    """Measure how far a closed surface is from what it was made of, with holes and overlaps.
-
-    What is farther away than `near` [m] is patched, lost or inside.
-    """
+    """Measure how far a closed surface is from what it was made of; beyond `near` [m] is patched, lost or inside."""
     import igl
 
     squared, nearest, _ = igl.point_mesh_squared_distance(after.vertices, before.vertices, before.triangles)

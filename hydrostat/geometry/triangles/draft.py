@@ -48,10 +48,7 @@ def _keys(pairs: Edges, base: int) -> np.ndarray:
 
 
 def _with_edge(points: Points, triangles: Elements, start: int, end: int) -> Elements:
-    """Force an edge in: take out the triangles it crosses and fill either side again (Anglada 1997).
-
-    Returns the triangles unchanged where the edge runs through a point.
-    """
+    """Force an edge in: take out what it crosses, fill either side again (Anglada 1997); not where it meets a point."""
     side = _side(points, start, end)
     shared = (triangles == start) | (triangles == end)
     crossing = np.zeros(len(triangles), dtype=bool)
