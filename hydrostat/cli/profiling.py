@@ -6,40 +6,26 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-PARTS = {
-    "neo_hookean": "elements",
-    "patch_volume": "elements",
+FILES = {
+    "elements": "neo_hookean patch_volume energy",
     "assembly": "assembly",
-    "blas": "factorisation",
-    "factorisation": "factorisation",
-    "supernodal": "factorisation",
-    "ordering": "analysis of the pattern",
-    "symbolic": "analysis of the pattern",
-    "stiffness": "factorisation",
-    "warp": "arcs",
-    "cable": "cables",
-    "friction": "cables",
-    "chain_law": "cables",
-    "loading_path": "cables",
-    "turns": "cables",
-    "viscous": "viscous branches",
+    "factorisation": "blas factorisation supernodal stiffness",
+    "analysis of the pattern": "ordering symbolic",
+    "arcs": "warp",
+    "cables": "cable friction chain_law loading_path turns",
+    "viscous branches": "viscous",
     "inertia": "inertia",
-    "pin": "pins",
+    "pins": "pin",
     "weight": "weight",
-    "energy": "elements",
-    "newton": "Newton",
-    "dynamics": "motion",
-    "motion_file": "files",
-    "pose_file": "files",
-    "mesh_file": "files",
-    "picture_file": "pictures",
-    "motion_figures": "pictures",
-    "robot_figures": "pictures",
+    "Newton": "newton",
+    "motion": "dynamics",
+    "files": "motion_file pose_file mesh_file",
+    "pictures": "picture_file motion_figures robot_figures",
     "anchors": "anchors",
     "mesh": "mesh",
-    "read": "robot.toml",
-    "schema": "robot.toml",
+    "robot.toml": "read schema",
 }
+PARTS = {file: part for part, files in FILES.items() for file in files.split()}
 """Parts of the work by the files of hydrostat; the time of anything else counts to the parts that called for it."""
 
 Place = tuple[str, int, str]  # file, line and name of a function

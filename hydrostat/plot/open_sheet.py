@@ -13,13 +13,9 @@ from hydrostat.plot.sheet import MILLIMETRES, TALLEST, WIDTH, PictureSheet, Plac
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 
-ROOM = (34.0, 34.0, 40.0, 20.0)
-"""Free border around the three-quarter view [pt], on its left, right, lower and upper side: there is place for words,
-below for the compass."""
-
+ROOM = (34.0, 34.0, 40.0, 20.0)  # left, right, lower, upper border of the three-quarter view [pt]: words; compass below
 BARE = 12.0  # free border around a view that stands alone [pt]: half a winch on its plate, that stands at the edge
-RULES = (28.0, 12.0, 20.0, 14.0)
-"""Free border around the view along an axis [pt], on its left, right, lower and upper side: there are numbers."""
+RULES = (28.0, 12.0, 20.0, 14.0)  # that of the view along an axis [pt]: there are numbers
 
 
 def open_sheet(

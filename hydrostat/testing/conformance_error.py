@@ -2,13 +2,7 @@
 
 
 class ConformanceError(AssertionError):
-    """A conformance check failed.
-
-    Attributes:
-        check: name of the check, such as "gradient".
-        index: the entry that is furthest off.
-        relative_error: how far, as a fraction of the scale of what was compared.
-    """
+    """A conformance check, such as "gradient", failed: the entry that is furthest off, and how far, as a fraction."""
 
     def __init__(self, check: str, message: str, *, index: tuple[int, ...] = (), relative_error: float = 0.0) -> None:
         where = f" at {list(index)}" if index else ""

@@ -181,9 +181,7 @@ class LinearModel:
         return np.vstack(rows), np.concatenate(room)
 
 
-_SHARES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0)
-"""How much of what exceeds a limit one step is asked to take back; the first that is possible within its radius."""
-
+_SHARES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0)  # of an excess that one step takes back: the first possible
 _FLAT = 1e-12  # least curvature of a model, as a share of the largest
 _HOLDS = 1e-9  # a limit holds when less than this share of what the channels' ranges could use of it is left
 Matrix = Float[np.ndarray, "rows size"]
@@ -230,5 +228,4 @@ def _least_distance(
     return -far * left[:-1] / left[-1]
 
 
-_INCONSISTENT = 1e-12
-"""The left-over of the nonnegative problem is 1 / (1 + |z|^2); below this no z is within the limits."""
+_INCONSISTENT = 1e-12  # what is left of the nonnegative problem is 1 / (1 + |z|^2); below this no z is allowed

@@ -18,9 +18,7 @@ from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.view.things import RobotShape, rest_shape
 
 TICK = 1 / 70  # motors are told and read once in this time [s], however often there is a step: about 60 times a second
-ROUGH = 1e-3
-"""Force that may be left over while it moves, as a share of the largest: 2 micrometres off, in half the time."""
-
+ROUGH = 1e-3  # force left over while it moves, as a share of the largest: 2 micrometres off, in half the time
 FEW = 6  # steps of Newton in which a body that moves should get there; else it is solved with all care
 
 

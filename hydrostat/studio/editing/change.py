@@ -14,12 +14,11 @@ from hydrostat.robot.checks import check_name
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.studio.editing.part import Kind, find_part
 
-FIELDS = {
+FIELDS = {  # what can be changed of a part
     Kind.PIN: ("radius", "stiffness"),
     Kind.WINCH: ("spool_radius", "travel", "release", "mount"),
     Kind.CABLE: ("winch", "stiffness", "slack", "friction", "sheathed", "spool_radius"),
 }
-"""What can be changed of a part."""
 
 RANGES = {"radius": (1e-4, 20.0), "spool_radius": (1e-4, 20.0), "travel": (0.0, 20.0), "slack": (0.0, 20.0)}
 """Least and most of each length that a person may ask for [m]."""

@@ -12,7 +12,7 @@ from hydrostat.drawing import palette
 STATIC = Path(__file__).parent / "static"
 MODULES = STATIC / "view"
 
-COLOURS = {
+COLOURS = {  # what the view is painted with; ink and ghosts are lighter on a dark page
     "felt": palette.FELT,
     "felt_light": palette.FELT_LIGHT,
     "seam": palette.SEAM,
@@ -24,7 +24,6 @@ COLOURS = {
     "ghost": palette.GHOST,
     "tension": list(palette.TENSION),
 }
-"""What the view is painted with; ink and ghosts are lighter on a dark page."""
 
 Side = Literal["front", "side", "top"]
 Axis = Literal["x", "y", "z"]

@@ -68,14 +68,13 @@ def moved_zone(zone: Zone, move: Callable[[Point], Point]) -> Zone:
 
 _COUNTED = {"cables": COUNTS["cables"], "cables_per_winch": RANGES["cables_per_winch"]}
 
-_AMOUNTS = {
+_AMOUNTS = {  # what each amount may be, and the unit in which it is told
     "tension": (RANGES["tension"], 1.0, "N"),
     "clearance": (RANGES["clearance"], 1e3, "mm"),
     "tolerance": (ROUTE_RANGES["tolerance"], 1e3, "mm"),
     "slack": (RANGES["slack"], 1e3, "mm"),
     "torque": (RANGES["torque"], 1.0, "N m"),
 }
-"""What each amount may be, and the unit in which it is told."""
 
 
 def _said(name: str) -> str:

@@ -24,14 +24,13 @@ from hydrostat.studio.work_folder import open_work, text_of
 
 TITLE = "Meshing"
 
-_MODULES = (
+_MODULES = (  # what a process that meshes needs; a process that has them already answers at once
     "hydrostat.studio.starting.sketch",
     "hydrostat.geometry.files.outline_file",
     "hydrostat.geometry.tetrahedra.tetrahedralise",
     "hydrostat.ik.first_pose",
     "hydrostat.plot",
 )
-"""What a process that meshes needs; a process that has them already answers at once."""
 
 _LIGHT = {"name", "material"}  # what can be changed without a new mesh
 

@@ -11,14 +11,13 @@ from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.edit_body import body_card, check_card
 from hydrostat.studio.face.panels.edit_part import EditNumber, chip, light, part_card
 
-TOOLS = {
+TOOLS = {  # icon, name and what to do with each tool
     Tool.MOVE: ("near_me", "Select and move", "Drag a part, or a point out of a cable. Click to select."),
     Tool.PIN: ("push_pin", "Place pins", "Click on the body where it is held."),
     Tool.MARKER: ("my_location", "Place markers", "Click on a point to track."),
     Tool.WINCH: ("album", "Place winches", "Click on the body where a winch sits."),
     Tool.CABLE: ("polyline", "Lay cables", "Click at a winch, then point after point. Enter or a double click ends."),
 }
-"""Icon, name and what to do with each tool."""
 
 
 def edit_panel(page: WindowPage) -> None:

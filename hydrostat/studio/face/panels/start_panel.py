@@ -178,8 +178,7 @@ def _head(icon: str, words: str) -> None:
         ui.label(words)
 
 
-VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}
-"""Each builds itself and returns what shows it anew."""
+VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}  # each gives what shows it anew
 
 
 def start_panel(page: WindowPage) -> None:
