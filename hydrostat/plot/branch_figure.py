@@ -104,9 +104,7 @@ def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[SolvedPose]) ->
             rings = pane.outline(sheet, pose.nodes)
             colour = _colour(index)
             fill = "none" if index == 0 else mix(colour, PAPER, 0.75)
-            sheet.area(
-                rings, facecolor=fill, alpha=0.55, edgecolor="none", joinstyle="round", zorder=2.5
-            )  # fmt: skip
+            sheet.area(rings, facecolor=fill, alpha=0.55, edgecolor="none", joinstyle="round", zorder=2.5)
             sheet.area(
                 rings, facecolor="none", edgecolor=colour, linewidth=1.3, joinstyle="round", zorder=8 - 0.1 * index
             )
@@ -207,9 +205,7 @@ def _draw_key(axes: Axes, branches: Sequence[Branch]) -> None:
     shown |= {"stable" if stable else "unstable" for branch in branches for _, stable in branch.runs()}
     if len(shown) > 1:
         names = [name for name in keys if name in shown]
-        axes.legend(
-            [keys[name] for name in names], names, loc="best", fontsize=7, frameon=False, labelcolor=INK
-        )  # fmt: skip
+        axes.legend([keys[name] for name in names], names, loc="best", fontsize=7, frameon=False, labelcolor=INK)
 
 
 def _number_poses(axes: Axes, heights: Sequence[float]) -> None:

@@ -143,9 +143,8 @@ def _routes(network: Network, trace: TreeTrace) -> Chapter:
         pictures.append(picture(figure, f"candidates-{index}", f"Candidates for {activation.target.name}", note))
     figure = draw_trees(network.robot, trace.trees, title="", width=NARROW)
     note = f": {counted(len(trace.trees), 'route')} that join neighbouring candidates"
-    return Chapter(
-        "From muscles to routes", words, [grid(*pictures, picture(figure, "trees", "Trees", note), kind="small")]
-    )
+    pictures.append(picture(figure, "trees", "Trees", note))
+    return Chapter("From muscles to routes", words, [grid(*pictures, kind="small")])
 
 
 MOST_STAGES = 8  # so many stages have a picture

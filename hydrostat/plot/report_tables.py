@@ -75,10 +75,8 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[object]], *, numbers: It
     def line(kind: str, cells: Sequence[object]) -> Html:
         return tag("tr", *(tag(kind, cell, class_="number" if i in right else None) for i, cell in enumerate(cells)))
 
-    body = [line("td", row) for row in rows]
-    return tag(
-        "div", tag("table", tag("thead", line("th", heads) if any(heads) else ""), tag("tbody", *body)), class_="table"
-    )
+    head = tag("thead", line("th", heads) if any(heads) else "")
+    return tag("div", tag("table", head, tag("tbody", *(line("td", row) for row in rows))), class_="table")
 
 
 def bar(share: float, colour: str) -> Html:

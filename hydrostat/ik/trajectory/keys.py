@@ -139,9 +139,8 @@ class KeySearch:
 
     def _solve(self, target: Targets, start: SolvedPose, options: InverseOptions) -> ReachedPose:
         options = replace(options, restarts=0)
-        return solve_ik(
-            self.simulation, target, limits=self.limits, objectives=self._wishes(), start=start, options=options
-        )
+        wishes = self._wishes()
+        return solve_ik(self.simulation, target, limits=self.limits, objectives=wishes, start=start, options=options)
 
     def _wishes(self) -> tuple[Objective, ...]:
         return (*self.objectives, _TAUT) if self.knots else self.objectives

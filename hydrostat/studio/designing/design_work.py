@@ -82,9 +82,8 @@ def network_words(robot: Robot) -> str:
 
 def solution(robot: Robot, reached: tuple[ReachedPose, ...]) -> Solution:
     """What is sent of a network."""
-    return Solution(
-        winches=robot.winches, cables=robot.cables, reaches=tuple(map(_reach, reached)), error=rms_error(reached)
-    )
+    reaches = tuple(map(_reach, reached))
+    return Solution(winches=robot.winches, cables=robot.cables, reaches=reaches, error=rms_error(reached))
 
 
 def _reach(reached: ReachedPose) -> Reach:

@@ -38,11 +38,10 @@ def rename(robot: Robot, key: str, name: str) -> Robot:
         )
         return replace(robot, winches=winches, cables=cables)
     if part is not None and part.kind is Kind.CABLE:
-        cables = tuple(
-            replace(cable, name=name) if index == part.index else cable for index, cable in enumerate(robot.cables)
-        )
+        cables = list(robot.cables)
+        cables[part.index] = replace(cables[part.index], name=name)
         _free(name, [cable.name for cable in cables])
-        return replace(robot, cables=cables)
+        return replace(robot, cables=tuple(cables))
     if part is not None and part.kind is Kind.MARKER:
         before = robot.markers[part.index].name
         markers = tuple(replace(marker, name=name) if marker.name == before else marker for marker in robot.markers)

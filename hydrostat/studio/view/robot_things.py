@@ -65,11 +65,8 @@ def target_things(targets: Mapping[str, Point], places: Mapping[str, Point], *, 
     for name, target in targets.items():
         key = f"target:{name}"
         if name in places:
-            miss = Strand(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1)
-            things.append(miss)
-        things.append(
-            Dot(key=key, at=target, look=Look.TARGET, colour=INK, label="", stuck=False, chosen=key == chosen)
-        )
+            things.append(Strand(points=(places[name], target), stroke=Stroke.MISS, colour=INK, loose=-1))
+        things.append(Dot(key=key, at=target, look=Look.TARGET, colour=INK, stuck=False, chosen=key == chosen))
     return things
 
 
