@@ -56,14 +56,9 @@ class Designer(Stage):
         self.outcome = ""  # what became of the last design, a line; "" while there is nothing to tell
         self._all: tuple[Candidate, ...] = ()
         self._numbered = 0
-        self._running = False
+        self.running = False  # whether a design goes on
         self._ease: Ease | None = None
         self._sketch: BodySketch | None = None
-
-    @property
-    def running(self) -> bool:
-        """Whether a design goes on."""
-        return self._running
 
     @property
     def seconds(self) -> float:
@@ -137,7 +132,7 @@ class Designer(Stage):
         """Begin a design in a process of its own (InputError: no pose, wishes that do not fit, or other work)."""
         robot = self._document.robot
         request = wished_request(robot, self.wishes, self._options)
-        before = self.run, self._running, self.outcome
+        before = self.run, self.running, self.outcome
         self.run = DesignRun(
             robot=robot,
             request=request,
@@ -145,13 +140,13 @@ class Designer(Stage):
             rest=error_at_rest(robot, request.poses),
             best=beginning(robot, request),
         )
-        self._running, self.outcome = True, ""
+        self.running, self.outcome = True, ""
         ended = partial(self._ended, request)
         calls: dict[str, Any] = {"on_part": self._glimpsed, "on_done": self._found, "on_end": ended}
         try:
             self._jobs.start(TITLE, design_work, robot, request, **calls)
         except InputError:
-            self.run, self._running, self.outcome = before
+            self.run, self.running, self.outcome = before
             raise
         self.show(None)
 
@@ -314,6 +309,6 @@ class Designer(Stage):
             return  # the next design has begun
         if error:
             self.outcome = "stopped before there was a network" if error == "stopped" else error
-        self._running = False
+        self.running = False
         self._jobs.warm(MODULE)
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)

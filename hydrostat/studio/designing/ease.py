@@ -14,12 +14,7 @@ class Ease:
         self.nodes, self.tensions = nodes, tensions
         self._start, self._goal, self._pulled = nodes, nodes, tensions
         self._began: float | None = None
-        self._moving = False
-
-    @property
-    def moving(self) -> bool:
-        """Whether it is on its way."""
-        return self._moving
+        self.moving = False  # whether it is on its way
 
     def go(self, nodes: Nodes, tensions: Vector) -> None:
         """Set out for another shape of the same body; nothing happens if it goes there already."""
@@ -27,12 +22,12 @@ class Ease:
             return
         far = nodes is not self._goal
         self._start, self._goal, self._pulled = self.nodes, nodes, tensions
-        self._began, self._moving = None, far
+        self._began, self.moving = None, far
         self.tensions = np.zeros_like(tensions) if far else tensions
 
     def step(self, now: float) -> bool:
         """Go on until a time [s]; whether there is more to do."""
-        if not self._moving:
+        if not self.moving:
             return False
         if self._began is None:
             self._began = now
@@ -40,5 +35,5 @@ class Ease:
         gentle = share * share * (3.0 - 2.0 * share)
         self.nodes = self._goal if share == 1.0 else (1.0 - gentle) * self._start + gentle * self._goal
         self.tensions = gentle * self._pulled
-        self._moving = share < 1.0
-        return self._moving
+        self.moving = share < 1.0
+        return self.moving
