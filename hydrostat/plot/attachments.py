@@ -12,11 +12,7 @@ from hydrostat.robot import Mount, Robot
 
 
 class Attachments:
-    """What a robot's body carries.
-
-    Args:
-        robot: whose cables, winches and markers they are.
-    """
+    """What a robot's body carries: its cables, winches and markers."""
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
