@@ -8,8 +8,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Network
 from hydrostat.design.progress import Progress, Watch, silent, unseen
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
-from hydrostat.design.routes.design_fewest import design_fewest
-from hydrostat.design.routes.design_routes import design_routes
+from hydrostat.design.routes.design_routes import design_fewest, design_routes
 from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.robot import Pose, Robot
 

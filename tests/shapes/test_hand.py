@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrostat.shapes import CUPPING, EXTENDED, HandPosture, Shape, hand
-from hydrostat.shapes.hand_sizes import (
+from hydrostat.shapes.hand import (
     FINGERS,
     HAND_BREADTH,
     HAND_LENGTH,

@@ -1,26 +1,62 @@
-"""`design_routes`: routes priced by the pose error, added one by one, and moved to where it is least."""
+"""`design_routes`: routes priced by the pose error, added one by one, and moved to where it is least (F1, F2)."""
 
 import time
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import cached_property
 
+import numpy as np
+from scipy.optimize import nnls
+
+from hydrostat.arrays import Vector
 from hydrostat.design.buildable import pulls, violations
-from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
-from hydrostat.design.progress import Progress, Watch, unseen
+from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, Size, size_of
+from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.design.region import Region, body_region
-from hydrostat.design.request import DesignRequest
+from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
-from hydrostat.design.routes.certify import certify
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.refine import pushed_back
+from hydrostat.design.routes.refine import linear_model, pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
+
+
+def certify(proposals: Proposals, trial: Trial) -> Certificate:
+    """What one more cable promises, and how steeply the error falls along a move of the network that is allowed.
+
+    Both are exact to first order at the equilibria of the poses; the search for the best path keeps a few paths for
+    each edge, so what it finds is a lower bound of what the best of all paths would gain.
+    """
+    unbiased = replace(proposals, options=replace(proposals.options, lead_penalty=0.0))
+    paths = unbiased.priced(trial, count=1)
+    gain = paths[0].gain if paths else 0.0
+    model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=_HOLDS)
+    return Certificate(
+        further=float(np.sqrt(max(trial.error**2 - 2 * gain, 0.0))),
+        paths=len(proposals.graph.edges) * 2 * proposals.options.hops,
+        slope=_slope(model.matrix, model.right, model.rows[model.left <= _HOLDS], trial.error),
+    )
+
+
+def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) -> float:
+    """The steepest fall of the error along a number that limits which hold allow [m/m] (Karush, Kuhn and Tucker)."""
+    if error == 0.0:
+        return 0.0
+    gradient = matrix.T @ right / error
+    norms = np.linalg.norm(limits, axis=1)
+    limits = limits[norms > 0] / norms[norms > 0, None]
+    if len(limits):
+        gradient = gradient + limits.T @ nnls(limits.T, -gradient)[0]
+    return float(np.abs(gradient).max(initial=0.0))
+
+
+_HOLDS = 1e-4  # a limit with a smaller margin than this [m] holds
 
 
 def design_routes(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
@@ -226,3 +262,83 @@ class RouteSearch:
 _DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a cable finer
 _ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
 _REFINED = 2  # networks that are refined to the end
+
+
+def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
+    """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
+
+    Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
+    that miss the tolerance the best one is returned. Locked winches count; `watch` is told each better network on the
+    way, whatever its number of winches.
+    """
+    size = robot.body.mesh.size
+    constraints, options, cables = request.constraints, request.route_options, request.cables
+    tolerance = _SHARE * size if options.tolerance is None else options.tolerance
+    sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
+    found: list[Network] = []
+    body, better = BodyPhysics(robot), Better(watch)
+    front: dict[Size, Alternative] = {}
+    interrupted = False
+    least = _fewest(robot, request)
+    largest = min(cables, int(COUNTS["winches"].most))
+    for winches in range(least, largest + 1):
+        most = min(cables, winches * constraints.cables_per_winch)
+        asked = replace(request, winches=winches, cables=most, options=sought)
+        search = RouteSearch(robot, asked, body, progress, watch=better)
+        try:
+            found.append(search.run())
+        except KeyboardInterrupt:
+            if not found:
+                raise
+            interrupted = True
+            break
+        except InputError:
+            raise
+        except HydrostatError:
+            if winches == largest and not found:
+                raise
+            continue
+        judged = (search.judged(trial) for trial in search.sizes.values())
+        _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
+        if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
+            break
+    best = found[-1]
+    if any(reached.rms_error > tolerance for reached in best.reached):
+        best = min(found, key=lambda network: network.rms_error)
+    return replace(
+        best,
+        alternatives=tuple(front[counts] for counts in sorted(front)),
+        request=request,
+        tried=sum(network.tried for network in found),
+        seconds=sum(network.seconds for network in found),
+        complete=not interrupted and all(network.complete for network in found),
+    )
+
+
+def _fewest(robot: Robot, request: DesignRequest) -> int:
+    """The number of winches to begin with: those that stay, two where a mirrored network has a cable on each."""
+    constraints, cables = request.constraints, request.cables
+    least = max(1, len(constraints.staying(robot)[0]))
+    if constraints.mirror is not None and constraints.cables_per_winch == 1:
+        least = max(least, 2)
+    if least > cables:
+        raise InputError(
+            f"{least} winches are needed at the least, for what is locked or mirrored, but there may be {cables} cables"
+        )
+    return least
+
+
+def _keep_best(front: dict[Size, Alternative], networks: Iterable[Alternative]) -> None:
+    """Put networks in place of those of their size that have a larger error."""
+    for network in networks:
+        size = size_of(network)
+        if size not in front or network.rms_error < front[size].rms_error:
+            front[size] = network
+
+
+def _all(network: Network) -> tuple[Alternative, ...]:
+    return Alternative(robot=network.robot, reached=network.reached), *network.alternatives
+
+
+_SHARE = 0.01  # the tolerance where none is given, as a share of the body's size
+_SAFE = 0.6  # share of the tolerance at which no more cables are added: the mean over poses hides the worst

@@ -1,19 +1,25 @@
-"""`space_pattern`: the pattern of a plush body in space (R10)."""
+"""`space_pattern`: the pattern of a plush body in space (R10): patches as pieces of cloth, lying as they are worn."""
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
+import shapely
 from jaxtyping import Float
+from shapely import LineString, Polygon
 from shapely.affinity import translate
+from shapely.geometry.polygon import orient
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.cutting import cut_skin, patch_problems, patch_warnings, thin_direction
 from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Patch
-from hydrostat.fabrication.patches.patch_panel import patch_panel, patch_skin
-from hydrostat.fabrication.patches.seams import Seam, find_seams, patch_notches, stuffing_gap
+from hydrostat.fabrication.patches.seams import PatchNotch, Seam, find_seams, patch_notches, stuffing_gap
 from hydrostat.fabrication.patches.skin_holes import (
+    SHARED,
     NearestOnSkin,
     SkinHole,
     find_holes,
@@ -22,14 +28,140 @@ from hydrostat.fabrication.patches.skin_holes import (
     way_problems,
 )
 from hydrostat.fabrication.patches.skin_mesh import skin_mesh
-from hydrostat.fabrication.patches.view import FrontView, front_view, upright
+from hydrostat.fabrication.patterns.labels import PanelLabels
+from hydrostat.fabrication.patterns.marks import dashed
 from hydrostat.fabrication.patterns.opening import Opening, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.pinholes import Pinhole
-from hydrostat.fabrication.patterns.shape import Place
+from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Place, Shape, trace
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
+from hydrostat.fabrication.patterns.skin import Skin, skin_of
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.robot import Mount, Robot
+
+_CLEAR = 0.8
+_CROSS = 2.0
+
+
+def patch_skin(patch: Patch, options: PatternOptions) -> Skin:
+    """Seam line and cut of a patch."""
+    return skin_of(orient(patch.outline), options)
+
+
+def patch_panel(
+    name: str,
+    title: str,
+    skin: Skin,
+    notches: Iterable[PatchNotch],
+    cables: Iterable[tuple[int, tuple[tuple[SkinHole, Place], ...]]],
+    opening: Opening | None,
+    options: PatternOptions,
+) -> Panel:
+    """The panel of a patch; of each cable its number, and its holes on this patch in stitch order, with places [mm]."""
+    strokes = [(notch.name, _stroke(notch.place, skin)) for notch in notches]
+    cables = tuple(cables)
+    shapes: list[Shape] = [
+        *trace(skin.cut, Layer.CUT, PatternPart.EDGE),
+        *trace(skin.slits, Layer.CUT, PatternPart.SLIT),
+        *trace(skin.seam, Layer.MARK, PatternPart.SEAM),
+        *(line for _, stroke in strokes for line in trace(stroke, Layer.MARK, PatternPart.NOTCH)),
+        *((opening.mark, *opening.placket) if opening else ()),
+    ]
+    holes = [pair for _, own in cables for pair in own]
+    for index, (hole, place) in enumerate(holes):
+        if all(math.dist(place, other) > SHARED for _, other in holes[:index]):
+            shapes += _hole(hole, place, options)
+    for _, own in cables:
+        shapes += _cable_lines(own, skin.seam, options)
+    labels = PanelLabels(skin.seam, tuple(shapes), mirrored=False)
+    labels.notch_names(strokes, skin.cut)
+    if opening:
+        labels.opening(opening)
+    for cable, own in cables:
+        if own:
+            labels.cable_name(cable, own[-1][1])
+    for hole, place in holes:
+        labels.figure(f"{hole.point}", place)
+    words = (title, name.replace("-", " "), f"{name[0]}{name.partition('-')[2]}")
+    labels.title(next((text for text in words if labels.has_room(text)), words[-1]))
+    labels.grain()
+    return Panel(name=name, origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
+
+
+def _stroke(place: Place, skin: Skin) -> LineString:
+    """Stroke from the seam across the allowance."""
+    return shapely.shortest_line(shapely.Point(place), skin.cut.exterior)
+
+
+def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape, ...]:
+    """A pinhole, or a cross on the seam line where the cable passes between two stitches."""
+    x, y = place
+    if not hole.in_seam:
+        return (Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, centre=place, radius=options.pinhole / 2),)
+    return tuple(
+        LaserLine(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
+        for dx, dy in ((_CROSS, _CROSS), (_CROSS, -_CROSS))
+    )
+
+
+def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: PatternOptions) -> tuple[Shape, ...]:
+    """The cable between neighbouring holes on this patch: solid outside, dashed inside."""
+    shapes: list[Shape] = []
+    clear = options.pinhole / 2 + _CLEAR
+    for (hole, place), (following, there) in pairwise(own):
+        if following.point != hole.point + 1 or (hole.in_seam and following.in_seam):
+            continue  # from seam to seam it runs along the seam
+        ends = shapely.union_all([shapely.Point(end).buffer(clear) for end in (place, there)])
+        drawn = LineString([place, there]).intersection(seam).difference(ends)
+        drawn = shapely.MultiLineString([part for part in shapely.get_parts(drawn).tolist() if part.length])
+        if hole.after is Side.INSIDE:
+            drawn = dashed(drawn)
+        shapes += trace(drawn, Layer.MARK, PatternPart.CABLE)
+    return tuple(shapes)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FrontView:
+    """The view of the front."""
+
+    right: Float[np.ndarray, " 3"]  # unit direction that points to the right in it
+    up: Float[np.ndarray, " 3"]  # unit direction that points up in it
+
+    def on_paper(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 2"]:
+        """Where points are in it."""
+        return points @ np.stack([self.right, self.up], axis=1)
+
+
+def front_view(thin: Float[np.ndarray, " 3"]) -> FrontView:
+    """Look along the thin direction, z up; y up where that is the thin direction."""
+    up = _across(np.eye(3)[2], thin)
+    if np.linalg.norm(up) < 0.3:
+        up = _across(np.eye(3)[1], thin)
+    up = up / np.linalg.norm(up)
+    return FrontView(right=np.cross(thin, up), up=up)
+
+
+def upright(patch: Patch, up: Float[np.ndarray, " 3"]) -> Patch:
+    """The patch turned on the cloth so that it lies as it is worn, its middle at the origin."""
+    corners = patch.disc.vertices[patch.disc.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).sum(axis=0)
+    normal = normal / np.linalg.norm(normal)
+    upward = _across(up, normal)
+    if np.linalg.norm(upward) < 0.3:
+        upward = _across(np.eye(3)[int(np.abs(normal).argmin())], normal)
+    upward = upward / np.linalg.norm(upward)
+    worn = corners.mean(axis=1) @ np.stack([np.cross(upward, normal), upward], axis=1)
+    flat = patch.flat[patch.disc.triangles].mean(axis=1)
+    worn, middle = worn - worn.mean(axis=0), np.average(flat, axis=0, weights=patch.disc.areas)
+    one, other = (flat - middle) @ [1, 1j], worn @ [1, 1j]
+    turn = np.sum(patch.disc.areas * np.conj(one) * other)
+    turned = ((patch.flat - middle) @ [1, 1j]) * (turn / abs(turn))
+    return replace(patch, flat=np.stack([turned.real, turned.imag], axis=1))
+
+
+def _across(direction: Float[np.ndarray, " 3"], normal: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " 3"]:
+    """The part of a direction across another."""
+    return direction - (direction @ normal) * normal
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -8,8 +8,7 @@ from mould_robots import foam_robot, slab_body
 from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
 from hydrostat.fabrication.moulds import mould as mould_module
 from hydrostat.fabrication.moulds.linked import linked, linking_number, loops_of
-from hydrostat.fabrication.moulds.mould import Mould, make_mould
-from hydrostat.fabrication.moulds.mould_words import TOLERATED
+from hydrostat.fabrication.moulds.mould import TOLERATED, Mould, make_mould
 
 
 def ring(radius: float = 30.0, thick: float = 8.0, *, facets: int = 24) -> Manifold:

@@ -18,8 +18,7 @@ from hydrostat.fabrication.kit_options import KitOptions, Method, MouldKind, Mou
 from hydrostat.fabrication.moulds import mould as mould_module
 from hydrostat.fabrication.moulds.closing import Closing, make_closing
 from hydrostat.fabrication.moulds.halves import Halves
-from hydrostat.fabrication.moulds.mould import TOP_RIM, Mould, make_mould
-from hydrostat.fabrication.moulds.mould_words import mould_problems
+from hydrostat.fabrication.moulds.mould import TOP_RIM, Mould, make_mould, mould_problems
 from hydrostat.fabrication.moulds.openings import Sprue, make_sprue
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.solids import body_solid
