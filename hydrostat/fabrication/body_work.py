@@ -23,6 +23,7 @@ from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.sheets.tiles import tiled_pdf
 from hydrostat.fabrication.solids.assembly import PartAssembly
+from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 from hydrostat.units import counted
@@ -62,7 +63,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
         part for part in mould.printed if part.name.startswith("positive") and mould.kind is MouldKind.PRINTED
     )
     printed = tuple(part for part in mould.printed if part not in spare)
-    pieces, sides = sum(part.count for part in printed), " x ".join(f"{side:.0f}" for side in mould.box)
+    pieces, sides = sum(part.count for part in printed), sides_text(mould.box)
     body, held = mould.casting.body, 100 * mould.pull.share
     return BodyWork(
         printed=printed,

@@ -111,23 +111,9 @@ def edge_products(moves, residual, pulls, squares):
 @njit(**KERNEL)
 @no_type_check
 def first_labels(
-    sources,
-    targets,
-    edge_of,
-    lengths,
-    begins,
-    rooms,
-    moves,
-    pulls,
-    squares,
-    ridge,
-    most,
-    labels,
-    sums,
-    marks,
-    values,
-    parents,
-):
+    sources, targets, edge_of, lengths, begins, rooms, moves, pulls, squares, ridge, most, labels, sums, marks,
+    values, parents,
+):  # fmt: skip
     """Labels of one edge, in the first slot of each directed edge that may begin a path. Layout: see `grow_labels`."""
     poses, slots = ridge.shape[0], values.shape[0] // edge_of.shape[0]
     for edge in range(edge_of.shape[0]):
@@ -154,31 +140,9 @@ def first_labels(
 @njit(fastmath=FINE, **KERNEL)
 @no_type_check
 def grow_labels(
-    turns,
-    before,
-    sources,
-    targets,
-    edge_of,
-    blocked,
-    lengths,
-    moves,
-    pulls,
-    squares,
-    ridge,
-    most,
-    hop,
-    labels,
-    sums,
-    marks,
-    values,
-    parents,
-    longer,
-    longer_sums,
-    longer_marks,
-    best,
-    ranked,
-    chosen,
-):
+    turns, before, sources, targets, edge_of, blocked, lengths, moves, pulls, squares, ridge, most, hop, labels,
+    sums, marks, values, parents, longer, longer_sums, longer_marks, best, ranked, chosen,
+):  # fmt: skip
     """Paths of one edge more: each directed edge keeps the best that end with it.
 
     Label `edge * slots + slot` is a path that ends with a directed edge. Its row of `labels` is what it moves; of

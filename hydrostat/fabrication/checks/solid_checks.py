@@ -9,6 +9,7 @@ from manifold3d import Error
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interferences
+from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed, connected, loose_edges
 from hydrostat.robot import Robot
 
@@ -93,16 +94,11 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly])
 def too_large(printed: Iterable[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
     """Why parts do not fit on the bed of the printer [mm], a line each; they may be turned on it, not tilted."""
     return tuple(
-        f"{part.name} of {' x '.join(f'{side:.0f}' for side in part.size)} mm is more than the printer takes "
-        f"({' x '.join(f'{side:.0f}' for side in bed)} mm): use a larger printer"
+        f"{part.name} of {sides_text(part.size)} mm is more than the printer takes ({sides_text(bed)} mm): use a "
+        "larger printer"
         for part in printed
-        if any(side > most + 1e-6 for side, most in zip(_turned(part.size), _turned(bed), strict=True))
+        if not part.fits(bed)
     )
-
-
-def _turned(size: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Longer side first in the plane."""
-    return max(size[:2]), min(size[:2]), size[2]
 
 
 RADIUS = 0.1  # how far the radius at which a cable is wound may be from that of the robot file [mm]

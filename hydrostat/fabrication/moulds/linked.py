@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from manifold3d import Manifold
 
-from hydrostat.fabrication.solids.printed import triangles_of
+from hydrostat.fabrication.solids.printed import root_of, triangles_of
 
 _IN = 1e-6  # how deep under its surface a loop of a solid runs [mm], so that loops of two that touch do not
 
@@ -98,17 +98,11 @@ def _closing_edges(edges: Int[np.ndarray, "edges 2"], tree: set[int], count: int
     """Edges that are neither crossed by the tree of triangles nor in a tree over all vertices: two for each handle."""
     parent = list(range(count))
 
-    def root(vertex: int) -> int:
-        while parent[vertex] != vertex:
-            parent[vertex] = parent[parent[vertex]]
-            vertex = parent[vertex]
-        return vertex
-
     spare = []
     for number, (start, end) in enumerate(edges.tolist()):
         if number in tree:
             continue
-        one, other = root(start), root(end)
+        one, other = root_of(parent, start), root_of(parent, end)
         if one == other:
             spare.append(number)
         parent[one] = other

@@ -20,6 +20,7 @@ from hydrostat.fabrication.moulds.solids import MILLIMETRES, body_solid
 from hydrostat.fabrication.moulds.split import grid
 from hydrostat.fabrication.moulds.stance import Stance, find_stance
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
+from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Material, Robot
 from hydrostat.units import counted
@@ -251,15 +252,11 @@ def mould_problems(
             if sum(part.volume() > 0 for part in parts) > 1
         ]
     for piece in printed:
-        if any(side > most + 1e-6 for side, most in zip(_sorted(piece.size), _sorted(options.bed), strict=True)):
-            size = " x ".join(f"{side:.0f}" for side in piece.size)
-            found.append(f"{piece.title}: {size} mm is more than the printer takes; use a larger printer")
+        if not piece.fits(options.bed):
+            found.append(
+                f"{piece.title}: {sides_text(piece.size)} mm is more than the printer takes; use a larger printer"
+            )
     return tuple(found)
-
-
-def _sorted(size: tuple[float, float, float]) -> list[float]:
-    """Sort sides in the plane, the longer first: a piece may be turned on the bed, not tilted."""
-    return [*sorted(size[:2], reverse=True), size[2]]
 
 
 def _reaches(links: tuple[int, int]) -> str:

@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
 from hydrostat.fabrication.moulds.solids import MILLIMETRES, joined, rod
 from hydrostat.fabrication.moulds.stance import Stance
-from hydrostat.fabrication.solids.construct import Cuboid, Sides
+from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot import Mount, Robot
 
@@ -169,7 +169,7 @@ def _pocket(name: str, body: Manifold, way: _Lying, upper: bool, clearance: floa
     core = next((part for part in (reach ^ body).decompose() if _holds(part, at)), Manifold())
     skin = _skin(at, (a, b, c), upper) - straight
     out = _part_outside(_cuboid(way, clearance), body)
-    side = " x ".join(f"{length:.0f}" for length in sorted((a, b, c), reverse=True))
+    side = sides_text(sorted((a, b, c), reverse=True))
     problem = ""
     if core.is_empty() or out > _OUTSIDE:
         problem = (

@@ -10,6 +10,7 @@ from shapely import MultiPoint
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import axes_along
+from hydrostat.fabrication.solids.printed import TriangleMesh, root_of
 
 SMALLEST_TRAP = 1.0  # a bubble no higher than that is left to the foam, which pushes it into its cells [mm]
 _HELD_UPWARDS = 3.0  # a held end at the top is worth so many vents: nobody sees there where the sprue was cut off
@@ -103,7 +104,7 @@ def high_points(
     heights = vertices @ up
     neighbours = _neighbours(len(vertices), triangles)
     summits = [summit for summit, prominence in _summits(heights, neighbours) if prominence >= rise]
-    ceilings = _facing(vertices, triangles) @ up > 0
+    ceilings = TriangleMesh(vertices, triangles).facing @ up > 0
     middles = [_middle(summit, vertices, heights, neighbours) for summit in summits if ceilings[summit]]
     return np.array(middles, dtype=np.int64)
 
@@ -115,14 +116,8 @@ def _summits(heights: Vector, neighbours: list[list[int]]) -> list[tuple[int, fl
     parent = list(range(len(heights)))
     found: list[tuple[int, float]] = []
 
-    def root(vertex: int) -> int:
-        while parent[vertex] != vertex:
-            parent[vertex] = parent[parent[vertex]]
-            vertex = parent[vertex]
-        return vertex
-
     for vertex in order.tolist():
-        regions = {root(other) for other in neighbours[vertex] if peak[other] >= 0}
+        regions = {root_of(parent, other) for other in neighbours[vertex] if peak[other] >= 0}
         if not regions:
             peak[vertex] = vertex
             continue
@@ -132,7 +127,7 @@ def _summits(heights: Vector, neighbours: list[list[int]]) -> list[tuple[int, fl
         for region in sorted(regions - {highest}):
             found.append((int(peak[region]), float(heights[peak[region]] - heights[vertex])))
             parent[region] = highest
-    lasting = {root(vertex) for vertex in range(len(heights)) if peak[vertex] >= 0}
+    lasting = {root_of(parent, vertex) for vertex in range(len(heights)) if peak[vertex] >= 0}
     found += [(int(peak[region]), float(np.ptp(heights))) for region in sorted(lasting)]
     return sorted(found, key=lambda summit: (-heights[summit[0]], summit[0]))
 
@@ -156,13 +151,3 @@ def _neighbours(count: int, triangles: Int[np.ndarray, "triangles 3"]) -> list[l
         joined[two].append(three)
         joined[three].append(one)
     return joined  # of a closed surface each edge is walked both ways, so all neighbours are there
-
-
-def _facing(vertices: np.ndarray, triangles: np.ndarray) -> Float[np.ndarray, "vertices 3"]:
-    """Outward direction at each vertex."""
-    corners = vertices[triangles]
-    crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    facing = np.zeros(vertices.shape)
-    for corner in range(3):
-        np.add.at(facing, triangles[:, corner], crosses)
-    return facing

@@ -13,7 +13,7 @@ from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, BasePlan, 
 from hydrostat.fabrication.parts.housing import SHEET
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, letters
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder
+from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 
@@ -189,12 +189,9 @@ def _assembly(
 
 
 def _too_large(pieces: Sequence[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
-    found = []
-    for piece in pieces:
-        if any(side > room + 1e-6 for side, room in zip(piece.size, bed, strict=True)):
-            sides = " x ".join(f"{side:.0f}" for side in piece.size)
-            room = " x ".join(f"{side:.0f}" for side in bed)
-            found.append(
-                f"{piece.name} is {sides} mm, the bed {room} mm: cut the base from acrylic, or take smaller motors"
-            )
-    return tuple(found)
+    return tuple(
+        f"{piece.name} is {sides_text(piece.size)} mm, the bed {sides_text(bed)} mm: cut the base from acrylic, or take "
+        "smaller motors"
+        for piece in pieces
+        if any(side > room + 1e-6 for side, room in zip(piece.size, bed, strict=True))
+    )

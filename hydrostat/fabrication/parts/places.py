@@ -7,7 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from hydrostat.fabrication.solids.construct import Corner, Cuboid
+from hydrostat.fabrication.solids.construct import Corner, Cuboid, sides_text
 from hydrostat.robot import Body
 
 GIVES = 0.25  # Share of its thickness that stuffing and cloth give for a unit. Assumed, measured on none.
@@ -31,7 +31,7 @@ class UnitBox(Cuboid):
     @property
     def words(self) -> str:
         """Name of its winch and its sides, in words."""
-        return f'the unit of winch "{self.winch}", ' + " x ".join(f"{side:.0f}" for side in self.size) + " mm,"
+        return f'the unit of winch "{self.winch}", {sides_text(self.size)} mm,'
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

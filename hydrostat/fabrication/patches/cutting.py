@@ -56,9 +56,7 @@ def _largest(mesh: SkinMesh, label: Int[np.ndarray, " triangles"], value: int) -
 
 def _looks(mesh: SkinMesh, direction: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " vertices"]:
     """How far the skin at each vertex looks along a direction: 1 along it, -1 against it."""
-    normals = np.zeros_like(mesh.vertices)
-    for corner in range(3):
-        np.add.at(normals, mesh.triangles[:, corner], mesh.crosses)
+    normals = mesh.facing
     return (normals @ direction) / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
 
 

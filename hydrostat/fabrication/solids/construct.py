@@ -5,6 +5,7 @@
 `solid_of` makes triangles of a construction; `step.py` makes a model of true cylinders and planes. All in millimetres.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import singledispatch
 
@@ -146,6 +147,11 @@ def segments(radius: float) -> int:
     """Sides of a polygon for a circle [mm] that is nowhere further than 0.02 mm from it; a multiple of 8."""
     half_angle = np.arccos(max(1 - _SAG / max(radius, 1e-9), 0.0))
     return int(8 * np.ceil(max(np.pi / half_angle, 16.0) / 8))
+
+
+def sides_text(sides: Iterable[float]) -> str:
+    """Sides of a box [mm] in words, such as "12 x 3 x 4"."""
+    return " x ".join(f"{side:.0f}" for side in sides)
 
 
 @singledispatch

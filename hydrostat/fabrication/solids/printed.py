@@ -127,6 +127,11 @@ class Printed:
         low_x, low_y, low_z, high_x, high_y, high_z = self.solid.bounding_box()
         return high_x - low_x, high_y - low_y, high_z - low_z
 
+    def fits(self, bed: tuple[float, float, float]) -> bool:
+        """Tell whether it fits on a bed [mm]; it may be turned there, not tilted."""
+        (*sides, tall), (*room, high) = self.size, bed
+        return tall <= high + 1e-6 and all(a <= b + 1e-6 for a, b in zip(sorted(sides), sorted(room), strict=True))
+
     @cached_property
     def mesh(self) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
         """Its vertices [mm] and triangles, as computed."""
@@ -161,11 +166,27 @@ class TriangleMesh:
         """Area of each triangle [mm^2]."""
         return np.linalg.norm(self.crosses, axis=1) / 2
 
+    @property
+    def facing(self) -> Float[np.ndarray, "vertices 3"]:
+        """Outward direction at each vertex, of any length: the sum of its triangles' normals."""
+        facing = np.zeros(self.vertices.shape)
+        for corner in range(3):
+            np.add.at(facing, self.triangles[:, corner], self.crosses)
+        return facing
+
 
 def connected(links: Int[np.ndarray, "links 2"], count: int) -> Int[np.ndarray, " count"]:
     """Number the groups of so many things that links join, in the order of their first members."""
     graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
     return connected_components(graph, directed=False)[1].astype(np.int64)
+
+
+def root_of(parent: list[int], member: int) -> int:
+    """The root of a member's group, given the parent of each, which is brought nearer to the root on the way."""
+    while parent[member] != member:
+        parent[member] = parent[parent[member]]
+        member = parent[member]
+    return member
 
 
 def triangles_of(solid: Manifold) -> tuple[Float[np.ndarray, "vertices 3"], Int[np.ndarray, "triangles 3"]]:
