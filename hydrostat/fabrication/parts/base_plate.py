@@ -190,8 +190,8 @@ def _assembly(
 
 def _too_large(pieces: Sequence[Printed], bed: tuple[float, float, float]) -> tuple[str, ...]:
     return tuple(
-        f"{piece.name} is {sides_text(piece.size)} mm, the bed {sides_text(bed)} mm: cut the base from acrylic, or take "
-        "smaller motors"
+        f"{piece.name} is {sides_text(piece.size)} mm, the bed {sides_text(bed)} mm: cut the base from acrylic, or "
+        "take smaller motors"
         for piece in pieces
         if any(side > room + 1e-6 for side, room in zip(piece.size, bed, strict=True))
     )
