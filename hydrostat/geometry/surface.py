@@ -13,7 +13,7 @@ from hydrostat.errors import SurfaceError
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Triangles in space; their numbers are numbers, no more (SurfaceError: wrong shapes, no triangle, indices)."""
+    """Triangles in space, however they meet (SurfaceError: none, wrong shapes or indices, or not finite)."""
 
     vertices: Float[np.ndarray, "vertices 3"]  # places [m], (vertices, 3); kept as a read-only copy
     # indices of three vertices each, (triangles, 3); seen from outside they turn counter-clockwise
@@ -77,7 +77,7 @@ def covering_points(surface: Surface, spacing: float) -> Float[np.ndarray, "poin
 
 
 def spread_points(surface: Surface, spacing: float) -> tuple[Float[np.ndarray, "points 3"], Int[np.ndarray, " points"]]:
-    """Points spread evenly, about one for each square of the spacing [m], at least one on each triangle; and which."""
+    """Points spread evenly, about one for each square of the spacing [m], one at least on each triangle; and which."""
     areas = np.linalg.norm(surface.crosses, axis=1) / 2
     square = max(spacing**2, float(areas.sum()) / _MOST_POINTS)
     counts = np.maximum(np.ceil(areas / square).astype(np.int64), 1)

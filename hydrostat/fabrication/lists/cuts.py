@@ -52,7 +52,7 @@ class CableCut:
 
     @property
     def spool_mark(self) -> float:
-        """About where the cable meets the spool, or outside the housing, at rest, from the end with the stopper."""
+        """About where the cable meets the spool at rest, in the body its shaft, from the end with the stopper."""
         before = self.outside + self.lead if self.outside > 0 else 0.0
         return self.tail + self.slack + self.body + before
 

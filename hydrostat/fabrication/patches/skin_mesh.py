@@ -132,7 +132,7 @@ _NEAR = 0.05  # a line that passes a corner nearer than this share of an edge go
 def cut_at_zero(
     mesh: SkinMesh, field: Float[np.ndarray, " vertices"], inside: Bool[np.ndarray, " triangles"]
 ) -> tuple[SkinMesh, Int[np.ndarray, " parts"], Int[np.ndarray, " parts"]]:
-    """Divide triangles along a field's zero; the old one of each, and 1 above, -1 below, 0 outside of the part."""
+    """The mesh divided at a field's zero; of each triangle the old one, and 1 above, -1 below, 0 outside the part."""
     edges = mesh.edges[0]
     touched = np.zeros(len(edges), dtype=bool)
     touched[mesh.edges[1][inside]] = True

@@ -54,7 +54,7 @@ class CableRun:
 
 
 def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:
-    """A flat body from the front, at most so high [mm]; dashed is what runs inside the cloth; cast without stitches."""
+    """A flat body from the front, at most so high [mm]; dashed runs inside the cloth. Without stitches it is cast."""
     rings = [1e3 * ring for ring in flat_rings(robot)]
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])

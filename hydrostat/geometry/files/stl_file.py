@@ -17,7 +17,7 @@ _PIECE = 4_000_000  # bytes of text taken apart at once
 
 
 def read_stl(content: bytes, name: str) -> Soup:
-    """Read an STL file; corners in one place become one vertex (SurfaceError: cut short, a wrong count, no number)."""
+    """Read an STL file, each place as one vertex, no normals (SurfaceError: cut short, a wrong count, no number)."""
     corners = _text(content, name) if is_stl_text(content) else _binary(content, name)
     return _joined(corners)
 
