@@ -34,17 +34,6 @@ class Distortion:
         """The give that this share of the area does not exceed."""
         return quantile(self.gives, self.areas, share)
 
-    def text(self) -> str:
-        """The figures in words."""
-        lengths = np.concatenate([self.shortest, self.longest]), np.tile(self.areas, 2)
-        low, high = (quantile(*lengths, share) for share in (0.05, 0.95))
-        small, large = (quantile(self.area_ratios, self.areas, share) for share in (0.05, 0.95))
-        return (
-            f"cloth gives {self.give(0.95):.1%} (95 % of the area; half of it {self.give(0.5):.1%}, at worst "
-            f"{self.gives.max():.0%}); lengths {low:.3f} to {high:.3f}, "
-            f"areas {small:.3f} to {large:.3f} of the flat ones"
-        )
-
 
 def quantile(values: Float[np.ndarray, " _"], weights: Float[np.ndarray, " _"], share: float) -> float:
     """The value that this share of the weights does not exceed."""

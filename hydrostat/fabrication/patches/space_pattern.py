@@ -15,7 +15,6 @@ from shapely.geometry.polygon import orient
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.cutting import cut_skin, patch_problems, patch_warnings, thin_direction
-from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import PatchNotch, Seam, find_seams, patch_notches, stuffing_gap
 from hydrostat.fabrication.patches.skin_holes import (
@@ -172,7 +171,6 @@ class SpacePattern(Pattern):
     seams: tuple[Seam, ...]  # between them, in places of the sheet [mm]
     holes: tuple[SkinHole, ...]  # where cables are sewn to the skin, in places of the sheet [mm]
     skin: float  # area of the skin that was cut [mm^2]
-    distortions: tuple[str, ...]  # what the cloth has to give, a line for each patch
 
 
 def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
@@ -228,7 +226,6 @@ def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
         seams=find_seams(cutting.mesh, moved, view.up),
         holes=tuple(_moved(hole, origins) for hole in holes),
         skin=float(mesh.areas.sum()),
-        distortions=tuple(f"{name}: {distortion(patch).text()}" for name, patch in zip(names, patches, strict=True)),
     )
 
 
