@@ -1,15 +1,16 @@
 """Projected Newton with a line search: the statics solver."""
 
+import time
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import count
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
+from hydrostat.mechanics.falling_mode import falling_mode
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.warp import Warp
 
@@ -19,6 +20,7 @@ class Reason(StrEnum):
 
     CONVERGED = "converged"
     ITERATION_LIMIT = "iteration limit reached"
+    TIME_LIMIT = "time limit reached"
     NO_DESCENT = "no step lowers the energy"
     BAD_START = "the start has an inverted element"
     NO_BALANCE = "friction and the tensions of cables found no balance"
@@ -33,12 +35,14 @@ class NewtonOptions:
         iterations: most iterations.
         halvings: most halvings of one step.
         whole: whether to give up at once, at no cost, where the first step cannot be taken whole.
+        deadline: when it stops at the latest [s], as `time.monotonic` counts.
     """
 
     tolerance: float = 1e-10
     iterations: int = 200
     halvings: int = 50
     whole: bool = False
+    deadline: float = np.inf
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,6 +188,8 @@ class _EnergyDescent:
                 found, reason = self._leave_saddle(place), Reason.CONVERGED
             elif iteration == self.options.iterations:
                 found, reason = None, Reason.ITERATION_LIMIT
+            elif time.monotonic() >= self.options.deadline:
+                found, reason = None, Reason.TIME_LIMIT
             else:
                 found, reason = self._advance(place, known, residual < _NEAR * scale), Reason.NO_DESCENT
             known = None
@@ -321,9 +327,8 @@ class _EnergyDescent:
         stiffness = self._stiffness(place)
         if stiffness.definite or stiffness.singular:
             return None
-        try:
-            mode = _falling_mode(stiffness, place.gradient.size)
-        except ArpackError:
+        mode = falling_mode(stiffness, place.gradient.size)
+        if mode is None:
             return None
         size = float(np.ptp(place.nodes, axis=0).max())
         trials = [self._try(place, leap * size * mode) for leap in _LEAPS]
@@ -343,7 +348,8 @@ class _EnergyDescent:
     def _result(self, place: _Iterate, reason: Reason, allowed: float, iterations: int) -> NewtonResult:
         if reason is not Reason.CONVERGED:
             self.last = None
-        blank = reason is Reason.BAD_START or (reason is Reason.NO_DESCENT and self.whole)
+        late = reason in (Reason.BAD_START, Reason.TIME_LIMIT)
+        blank = late or (reason is Reason.NO_DESCENT and self.whole)
         stiffness = None if blank else self._stiffness(place)
         return NewtonResult(
             nodes=place.nodes,
@@ -356,14 +362,6 @@ class _EnergyDescent:
             buckled=self.saddles > 0,
             stiffness=stiffness,
         )
-
-
-def _falling_mode(stiffness: Stiffness, size: int) -> Vector:
-    """A mode of negative curvature, largest entry 1: that of the most negative eigenvalue of H^-1, by Lanczos."""
-    inverse = LinearOperator((size, size), matvec=stiffness.solve, dtype=float)  # pyright: ignore[reportCallIssue]
-    start = np.random.default_rng(0).standard_normal(size)
-    mode = eigsh(inverse, k=1, which="SA", v0=start, tol=1e-3)[1][:, 0]  # pyright: ignore[reportArgumentType]
-    return mode / np.abs(mode).max()
 
 
 _NEAR = 1e-5

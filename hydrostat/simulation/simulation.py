@@ -98,7 +98,14 @@ class Simulation:
             raise InputError("a contraction is not a finite number")
         return values
 
-    def solve(self, contractions: Contractions, *, start: SolvedPose | None = None, strict: bool = True) -> SolvedPose:
+    def solve(
+        self,
+        contractions: Contractions,
+        *,
+        start: SolvedPose | None = None,
+        strict: bool = True,
+        seconds: float | None = None,
+    ) -> SolvedPose:
         """Equilibrium at the given contractions.
 
         With friction it depends on the way there. This is then followed from `start` in small increments, in which all
@@ -108,19 +115,23 @@ class Simulation:
             contractions: cable taken in [m].
             start: a pose to begin from; the rest pose if left out.
             strict: raise when the solver does not converge, rather than return the best pose found.
+            seconds: after which it stops, with what it has; no limit if left out.
 
         Raises:
-            InputError: contractions that do not fit the robot.
+            InputError: contractions that do not fit the robot, or a limit that is not above 0.
             NotConvergedError: the solver stopped early; its text says why.
         """
         goal = self.contractions(contractions)
         self.check_start(start)
-        history = np.zeros(0)
+        if seconds is not None and not seconds > 0:
+            raise InputError(f"seconds must be above 0, not {seconds:g}")
+        history, solver = np.zeros(0), self.solver.within(seconds)
         if self.assembly.has_history:
-            result, history = self._path.solve(goal, start)
+            path = self._path if seconds is None else LoadingPath(self.robot, solver)
+            result, history = path.solve(goal, start)
         else:
             begin = None if start is None else (start.nodes, start.contractions, self.stiffness_of(start))
-            result = self.solver.solve(goal, (self.robot.body.mesh.nodes, self.rest_stiffness), begin)
+            result = solver.solve(goal, (self.robot.body.mesh.nodes, self.rest_stiffness), begin)
         if strict and not result.converged:
             raise NotConvergedError(
                 f"no equilibrium found after {result.iterations} iterations: {result.reason} "

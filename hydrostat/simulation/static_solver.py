@@ -1,5 +1,6 @@
 """`StaticSolver`: equilibria of one sum of energies, by load stepping where Newton's method alone does not arrive."""
 
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -63,6 +64,12 @@ class StaticSolver:
             exact=exact,
         )
 
+    def within(self, seconds: float | None) -> "StaticSolver":
+        """The same that stops after so many seconds, counted from now; itself if that is None."""
+        if seconds is None:
+            return self
+        return replace(self, options=replace(self.options, deadline=time.monotonic() + seconds))
+
     def allowed(self, nodes: Nodes, controls: Vector) -> float:
         """Nodal force left over [N] at which nodes count as at rest."""
         return max(
@@ -88,17 +95,33 @@ class StaticSolver:
         begin, _, known = start or (rest[0], None, rest[1])
         direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS, whole=True)
         spent = result.iterations
-        if not result.converged and start and (start[1] != goal).any():
+        if _goes_on(result) and start and (start[1] != goal).any():
             result = self._in_steps(start, goal)
             spent += result.iterations
-        if not result.converged:
+        if _goes_on(result):
             result = self._in_steps((rest[0], np.zeros_like(goal), rest[1]), goal, with_load=True)
             spent += result.iterations
-        if not result.converged:
+        if _goes_on(result):
             result = self.relax(rest[0], goal, rest[1])
             spent += result.iterations
-            result = min(result, direct, key=lambda found: found.residual)
+        if not result.converged:
+            result = min(self._judged(result, goal), direct, key=lambda found: found.residual)
+            result = replace(result, reason=Reason.TIME_LIMIT) if self._late else result
         return replace(result, iterations=spent)
+
+    @property
+    def _late(self) -> bool:
+        return time.monotonic() >= self.options.deadline
+
+    def _judged(self, result: NewtonResult, goal: Vector) -> NewtonResult:
+        """A failure on the way, by what is left over at `goal`."""
+        assembly = self.assembly.near(result.nodes)
+        return replace(
+            result,
+            residual=float(np.abs(assembly.gradient(result.nodes, goal)).max()),
+            allowed=self.allowed(result.nodes, goal),
+            energy=assembly.value(result.nodes, goal),
+        )
 
     def _in_steps(
         self, start: tuple[Nodes, Vector, Stiffness | None], goal: Vector, *, with_load: bool = False
@@ -124,10 +147,16 @@ class StaticSolver:
                 nodes, stiffness, done, step = result.nodes, result.stiffness, share, 2 * step
                 continue
             step *= 0.5
-            if result.converged or step < _SMALLEST_STEP:
+            if not _goes_on(result) or step < _SMALLEST_STEP:
                 break
         assert result is not None
-        return replace(result, iterations=spent, reason=result.reason if last else Reason.ITERATION_LIMIT)
+        told = last or result.reason is Reason.TIME_LIMIT
+        return replace(result, iterations=spent, reason=result.reason if told else Reason.ITERATION_LIMIT)
+
+
+def _goes_on(result: NewtonResult) -> bool:
+    """Tell whether another way should be tried."""
+    return result.reason not in (Reason.CONVERGED, Reason.TIME_LIMIT)
 
 
 _DIRECT_ITERATIONS = 20
