@@ -1,12 +1,12 @@
 """Random robots far outside the gallery: how often, how fast and why not the statics solver arrives.
 
-    python benchmarks/attack.py [--robots 60] [--seed 0] [--seconds 10] [--save FOLDER] [--only ROBOT]
+    python benchmarks/attack.py [--robots 60] [--seed 0] [--seconds 10] [--only ROBOT ...]
 
 Each robot is a body of the gallery, flat or in space with about 300 nodes, 1 cm to 10 m large, of 100 Pa to 10 MPa, a
-Poisson's ratio of 0 to 0.499, by elements or by patches; its cables are a hundredth to ten thousand times as stiff as its
-body, its pins one to a million times. Of ten commands six are within travel (0 to 30 % of the shortest cable of each
-winch, one time in five 0 to 10 % let out), four beyond (up to all of it, or half of it let out). Every pose is judged
-afresh. The time of a solve is CPU time, and is compared with the median of its robot's size class: flat, or in space.
+Poisson's ratio of 0 to 0.499, by elements or by patches; its cables are a hundredth to ten thousand times as stiff as
+its body, its pins one to a million times. Of ten commands six are within travel (0 to 30 % of the shortest cable of
+each winch, one time in five 0 to 10 % let out), four beyond (up to all of it, or half of it let out). Every pose is
+judged afresh. The time of a solve is CPU time, and is compared with the median of its kind: flat, or in space.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
-from hydrostat.robot import Cable, Material, Pin, Robot, gallery_folder
+from hydrostat.robot import Cable, Material, Pin, Robot, Winch, gallery_folder
 from hydrostat.robot.body import Volume
 
 FLAT = ("letter_e", "letter_s", "pig", "puppy", "robot", "squid", "starfish")
@@ -116,7 +116,7 @@ def random_robot(number: int, seed: int) -> tuple[Robot, str]:
             gravity=None,
             pins=tuple(_pin(pin, scale, pins * soft) for pin in robot.pins),
             cables=tuple(_cable(cable, scale, cables * soft) for cable in robot.cables),
-            winches=tuple(replace(winch, at=_point(winch.at, scale), travel=winch.travel * scale) for winch in robot.winches),
+            winches=tuple(_winch(winch, scale) for winch in robot.winches),
             markers=(),
             poses={},
         ),
@@ -132,6 +132,10 @@ def _pin(pin: Pin, scale: float, stiffness: float) -> Pin:
     at = None if pin.at is None else _point(pin.at, scale)
     box = None if pin.box is None else (_point(pin.box[0], scale), _point(pin.box[1], scale))
     return replace(pin, at=at, box=box, radius=pin.radius * scale, stiffness=stiffness)
+
+
+def _winch(winch: Winch, scale: float) -> Winch:
+    return replace(winch, at=_point(winch.at, scale), travel=winch.travel * scale)
 
 
 def _cable(cable: Cable, scale: float, stiffness: float) -> Cable:
@@ -169,7 +173,9 @@ def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
     if not (now / before).min() > 0:
         return "an element is inverted"
     residual = float(np.abs(simulation.forces(pose.nodes, pose.contractions)).max())
-    allowed = max(1e-8 * float(pose.tensions.max(initial=0.0)), 1.01 * simulation.allowed(pose.nodes, pose.contractions))
+    allowed = max(
+        1e-8 * float(pose.tensions.max(initial=0.0)), 1.01 * simulation.allowed(pose.nodes, pose.contractions)
+    )
     return "" if residual <= allowed else f"residual {residual:.2g} N, allowed {allowed:.2g} N"
 
 
@@ -215,7 +221,7 @@ def report(outcomes: Sequence[Outcome]) -> None:
         "beyond": lambda outcome: not outcome.within,
         "flat": lambda outcome: outcome.flat,
         "in space": lambda outcome: not outcome.flat,
-        "all": lambda outcome: True,
+        "all": lambda _: True,
     }
     for kind, belongs in kinds.items():
         these = [outcome for outcome in outcomes if belongs(outcome)]

@@ -202,9 +202,9 @@ class _EnergyDescent:
         gradient = assembly.gradient(nodes, self.controls)
         return _Iterate(assembly, nodes, energy, gradient, assembly.least_volume(nodes))
 
-    def _try(self, place: _Iterate, step: Vector) -> _Trial:
+    def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> _Trial:
         """Where a step leads, as far as all energies admit it; of infinite energy where it crushes an element."""
-        nodes = self.bend(place.nodes, step)
+        nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
             nodes = place.nodes + share * (nodes - place.nodes)
@@ -271,6 +271,9 @@ class _EnergyDescent:
             trial = self._try(place, length * step)
             gain = -length * trial.share * slope
             if gain > self.noise.energy:
+                if self.warp is not None and not trial.energy <= place.energy - 1e-4 * gain:
+                    straight = self._try(place, length * step, bent=False)
+                    trial = min(trial, straight, key=lambda found: found.energy)
                 if trial.energy <= place.energy - 1e-4 * gain:
                     if self.share > 0.0 and length * trial.share == 1.0:
                         trial = self._stride(place, step, trial)

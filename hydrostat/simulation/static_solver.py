@@ -101,9 +101,6 @@ class StaticSolver:
         if _goes_on(result):
             result = self._in_steps((rest[0], np.zeros_like(goal), rest[1]), goal, with_load=True)
             spent += result.iterations
-        if _goes_on(result):
-            result = self.relax(rest[0], goal, rest[1])
-            spent += result.iterations
         if not result.converged:
             result = min(self._judged(result, goal), direct, key=lambda found: found.residual)
             result = replace(result, reason=Reason.TIME_LIMIT) if self._late else result
@@ -128,7 +125,8 @@ class StaticSolver:
     ) -> NewtonResult:
         """By load steps that are halved where one fails and doubled where not; the last failure if they get too small.
 
-        A step on the way need not end sharp. With dead loads these grow with the contractions.
+        A step on the way need not end sharp. With dead loads these grow with the contractions; that is the last resort,
+        so where these steps get too small Newton goes on from the last of them, by patience.
         """
         nodes, begin, stiffness = start
         done, step, spent = 0.0, _FIRST_STEP, 0
@@ -136,7 +134,7 @@ class StaticSolver:
         for _ in range(_MOST_STEPS):
             share = min(done + step, 1.0)
             last = share == 1.0
-            iterations, tolerance = (None, None) if last else (_DIRECT_ITERATIONS, _LOOSE)
+            iterations, tolerance = (None, None) if last else (_STEP_ITERATIONS, _LOOSE)
             controls = goal if last else begin + share * (goal - begin)
             solver = replace(self, assembly=self.assembly.with_load(share)) if with_load else self
             result = solver.relax(
@@ -150,6 +148,9 @@ class StaticSolver:
             if not _goes_on(result) or step < _SMALLEST_STEP:
                 break
         assert result is not None
+        if with_load and _goes_on(result):
+            result, last = self.relax(nodes, goal, stiffness), True
+            spent += result.iterations
         told = last or result.reason is Reason.TIME_LIMIT
         return replace(result, iterations=spent, reason=result.reason if told else Reason.ITERATION_LIMIT)
 
@@ -161,6 +162,9 @@ def _goes_on(result: NewtonResult) -> bool:
 
 _DIRECT_ITERATIONS = 20
 """So many steps of Newton before a command is approached in load steps."""
+
+_STEP_ITERATIONS = 30
+"""So many steps of Newton for one load step."""
 
 _FIRST_STEP = 0.5
 """Share of a command that is tried first."""
@@ -174,5 +178,5 @@ _SMALLEST_WHOLE = 0.05
 _MOST_STEPS = 100
 """Load steps of one solve."""
 
-_SMALLEST_STEP = 2.0**-10
+_SMALLEST_STEP = 2.0**-7
 """No load step is smaller than this share of a command."""
