@@ -4,11 +4,11 @@
 
 The goal of the tip is where our own equilibrium has it under known contractions, so it can be reached. The search
 begins at rest under gravity; what that pose costs is said below each table. SOFA's figures (SOFA 25.06 with
-SoftRobots.Inverse, one thread at 2.1 GHz, goals of the same contractions) are for its corotated material, ours is
-Neo-Hookean; the ratios are the least and the most of SOFA's CPU times over ours. For the trunk, eight cables for one
-point, no figure of its inverse is known: its direct simulation takes 2.3 to 12 s to rest with one cable. Answer "one"
-is that of least effort where cables are redundant, "any" the first that reaches the goal; "tensions" is the length of
-the vector of all tensions, as hidden and as found.
+SoftRobots.Inverse, goals of the same contractions) are the least and the most of its CPU times for its corotated
+material, ours is Neo-Hookean. They were taken on another machine (one thread at 2.1 GHz), so no ratio is given. For the
+trunk, eight cables for one point, no figure of its inverse is known: its direct simulation takes 2.3 to 12 s to rest
+with one cable. Answer "one" is that of least effort where cables are redundant, "any" the first that reaches the goal;
+"tensions" is the length of the vector of all tensions, as hidden and as found.
 """
 
 import argparse
@@ -32,7 +32,7 @@ class Task:
     Attributes:
         goals: contractions [mm] of all winches, whose pose is the goal.
         limits: least and largest contraction of every winch [mm].
-        sofa: least and largest CPU time of SOFA's inverse [ms]; none is known where it is left out.
+        sofa: least and largest CPU time of SOFA's inverse on another machine [ms]; none is known where it is left out.
         left: error that SOFA leaves [mm], in words.
     """
 
@@ -87,10 +87,10 @@ def rows(name: str, task: Task, repeats: int) -> list[str]:
             found, spent = runs[-1][0], float(np.median([milliseconds for _, milliseconds in runs[1:] or runs]))
             error = largest_error(found.pose, places(hidden))
             pulls = [np.linalg.norm(pose.tensions) for pose in (hidden, found.pose)]
-            sofa = "- | - | -"
+            sofa = "- | -"
             if task.sofa is not None:
                 least, most = task.sofa
-                sofa = f"{least:.0f} to {most:.0f} | {task.left} | {least / spent:.1f} to {most / spent:.1f}"
+                sofa = f"{least:.0f} to {most:.0f} | {task.left}"
             lines.append(
                 f"| {name} | {', '.join(f'{value:g}' for value in goal)} | {kind} | {found.reason.name} "
                 f"| {1e3 * error:.1e} | {found.iterations} | {found.solves} | {pulls[0]:.2f} / {pulls[1]:.2f} "
@@ -110,7 +110,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     print(f"{machine()}; median of {options.repeats} runs\n")
     head = (
         "robot | hidden contractions mm | answer | reason | error mm | iterations | equilibria "
-        "| tensions N, hidden / found | CPU ms | SOFA: CPU ms | error mm | times faster"
+        "| tensions N, hidden / found | CPU ms | SOFA, another machine: CPU ms | error mm"
     )
     for name in options.robots:
         if name not in known:

@@ -4,7 +4,8 @@
     python benchmarks/simulate.py --profile hand
 
 The robots that SOFA ships are read from a folder beside this checkout (see sofa_robots.py) and left out if it is not
-there. Each row is measured in a process of its own: CPU time of one thread, after one solve that is not counted.
+there; SOFA's times were taken on another machine (one thread at 2.1 GHz), so no ratio is given. Each row is measured in
+a process of its own: CPU time of one thread, after one solve that is not counted.
 """
 
 import argparse
@@ -61,7 +62,7 @@ class Case:
     Attributes:
         name: short, for --only.
         what: is solved.
-        sofa: CPU time of SOFA 25.06 for the same [ms], as text.
+        sofa: CPU time of SOFA 25.06 for the same on another machine [ms], as text.
         goal: CPU time to stay under [ms].
         repeats: how often each solve is measured; steps of the stream, poses of the hand.
         few: the same with --quick.
@@ -260,7 +261,7 @@ def print_heads(*heads: str) -> None:
 
 
 def print_cases(cases: Sequence[Case], folder: Path, *, quick: bool) -> None:
-    times = ("ms median", "p95", "SOFA", "goal")
+    times = ("ms median", "p95", "SOFA, another machine", "goal")
     print_heads("robot", "nodes", "what", "n", *times, "iterations", "converged", "residual", "least J", "MB")
     for case in cases:
         found = in_own_process(folder, "--measure", case.name, str(case.few if quick else case.repeats))
@@ -277,7 +278,8 @@ def print_cases(cases: Sequence[Case], folder: Path, *, quick: bool) -> None:
         )
     print(
         "\nTimes are CPU time. Residual: largest nodal force left over by the largest cable force, of the worst solve. "
-        "MB: most memory the process held (getrusage), Python and libraries included. SOFA's are corotated elements.\n"
+        "MB: most memory the process held (getrusage), Python and libraries included.\n"
+        "SOFA's are corotated elements, on another machine (one thread at 2.1 GHz).\n"
     )
 
 

@@ -58,8 +58,8 @@ class HeldBody:
     def load(cls, path: Path) -> "HeldBody":
         """The body that was stored at `path`."""
         with np.load(path) as stored:
-            values = {name: stored[name] for name in stored.files}
-        return cls(**{name: value if value.ndim else float(value) for name, value in values.items()})
+            arrays = {name: stored[name] for name in ("nodes", "elements", "held", "forces", "masses")}
+            return cls(**arrays, mu=float(stored["mu"]), lame=float(stored["lame"]))
 
 
 @dataclass(frozen=True)

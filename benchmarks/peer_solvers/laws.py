@@ -156,17 +156,18 @@ class Reference:
             if np.abs(residual).max() <= goal:
                 return nodes
             step = np.zeros(nodes.size)
-            step[self.free] = spsolve(self.hessian(nodes).tocsc(), -residual)
+            step[self.free] = np.asarray(spsolve(self.hessian(nodes).tocsc(), -residual))
             if not np.isfinite(step).all():
                 return None
-            size = 1.0
-            while size > 1e-3:
-                trial = nodes + size * step.reshape(nodes.shape)
-                left = self.left_over(trial, share)
-                if np.linalg.norm(left) < 10 * np.linalg.norm(residual) + goal:
+            most = 10 * np.linalg.norm(residual) + goal
+            for halvings in range(11):
+                trial = nodes + step.reshape(nodes.shape) / 2**halvings
+                residual = self.left_over(trial, share)
+                if np.linalg.norm(residual) < most:
                     break
-                size /= 2
-            nodes, residual = trial, left
+            else:
+                return None
+            nodes = trial
         return None
 
     def loaded(self, steps: int = 20) -> np.ndarray | None:
