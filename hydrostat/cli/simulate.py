@@ -35,6 +35,10 @@ def simulate(
     play: Annotated[
         Path | None, typer.Option(metavar="FILE.csv", help="Contractions in time: columns time_s, WINCH ... [mm].")
     ] = None,
+    within: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="Give up finding a pose after so long; it says what is in the way."),
+    ] = None,
     profile: Annotated[bool, typer.Option("--profile", help="Print where time went.")] = False,
 ) -> None:
     """Find where a robot rests when its winches take in cable, or with --dynamic how it moves.
@@ -47,6 +51,7 @@ def simulate(
     from hydrostat import __version__
     from hydrostat.plot import draw_pose, save_png
     from hydrostat.simulation import write_pose
+    from hydrostat.units import TIME
 
     require_folder(out)
     with profiled(profile, "reading"):
@@ -56,6 +61,9 @@ def simulate(
         raise InputError("--jacobian: a motion has none; leave out --dynamic")
     if not dynamic and (play is not None or duration is not None):
         raise InputError("--play and --duration go with --dynamic; add it")
+    if dynamic and within is not None:
+        raise InputError("--within: goes with a pose, not with --dynamic")
+    limit = asked("--within", within, TIME)
     with profiled(profile, "preparing"):
         simulation = prepared(loaded)
     if dynamic:
@@ -65,12 +73,15 @@ def simulate(
         return
     began = time.process_time()
     with profiled(profile, "finding the pose"):
-        pose = simulation.solve(given, strict=False)
+        pose = simulation.solve(given, strict=False, seconds=limit)
     seconds = time.process_time() - began
     files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
     files.append(save_png(draw_pose(loaded, pose), out / "pose.png"))
     _print_places(pose, loaded)
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
+    if not pose.result.converged:
+        for obstacle in simulation.in_the_way(pose):
+            print(f"in the way: {obstacle}")
     if pose.result.buckled:
         print("note: the body buckled on the way; it could as well have gone to another side")
     if pose.result.converged and not pose.result.stable:

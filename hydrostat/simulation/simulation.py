@@ -17,6 +17,7 @@ from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.loading_path import LoadingPath
 from hydrostat.simulation.motion import Motion
+from hydrostat.simulation.obstacles import obstacles
 from hydrostat.simulation.profile import Profile
 from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.solved_pose import SolvedPose
@@ -119,7 +120,7 @@ class Simulation:
 
         Raises:
             InputError: contractions that do not fit the robot, or a limit that is not above 0.
-            NotConvergedError: the solver stopped early; its text says why.
+            NotConvergedError: the solver stopped early; its text says why, and what stands in the way.
         """
         goal = self.contractions(contractions)
         self.check_start(start)
@@ -132,13 +133,19 @@ class Simulation:
         else:
             begin = None if start is None else (start.nodes, start.contractions, self.stiffness_of(start))
             result = solver.solve(goal, (self.robot.body.mesh.nodes, self.rest_stiffness), begin)
+        pose = self.posed(goal, result, history)
         if strict and not result.converged:
             raise NotConvergedError(
-                f"no equilibrium found after {result.iterations} iterations: {result.reason} "
-                f"(force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
+                f"no equilibrium found after {result.iterations} iterations: {result.reason} (force left over "
+                f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(self.in_the_way(pose))}",
                 result,
             )
-        return self.posed(goal, result, history)
+        return pose
+
+    def in_the_way(self, pose: SolvedPose) -> tuple[str, ...]:
+        """Tell what kept a solve from an equilibrium: the cable that pulls hardest, an element next to flat."""
+        forces = self.forces(pose.nodes, pose.contractions).reshape(pose.nodes.shape)
+        return obstacles(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
     def check_start(self, start: SolvedPose | None) -> None:
         """Check that a solve can begin from a pose.

@@ -102,7 +102,7 @@ class StaticSolver:
             result = self._in_steps((rest[0], np.zeros_like(goal), rest[1]), goal, with_load=True)
             spent += result.iterations
         if not result.converged:
-            result = min(self._judged(result, goal), direct, key=lambda found: found.residual)
+            result = min(self._judged(result, goal), direct, key=lambda found: found.energy)
             result = replace(result, reason=Reason.TIME_LIMIT) if self._late else result
         return replace(result, iterations=spent)
 
