@@ -82,3 +82,14 @@ def test_a_solve_that_does_not_converge_ends_with_code_1(
     assert code == 1
     assert "iteration limit" in out
     assert "iteration limit" in (tmp_path / "pose.json").read_text()
+
+
+@pytest.mark.slow
+def test_a_pose_that_is_not_found_in_time_tells_what_is_in_the_way(run: Run, starfish: Path, tmp_path: Path) -> None:
+    code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--within", "0.001ms", "--out", tmp_path)
+    assert code == 1
+    assert "time limit reached" in out
+    assert "in the way: cable 'left" in out
+    code, _, err = run("simulate", starfish, "--dynamic", "--within", "1s", "--out", tmp_path)
+    assert code == 2
+    assert "--within" in err
