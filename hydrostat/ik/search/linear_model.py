@@ -155,7 +155,9 @@ class LinearModel:
         ends[joins] += (step + places.gaps)[joins]
         ends[leaves] += (step - places.beyond)[leaves]
         ends[stays] += step[stays]
-        return np.clip(ends, self.bounds.low, self.bounds.high)
+        low, high = self.bounds.low, self.bounds.high
+        hair = _ROUNDING * self.bounds.span  # what least squares leave of the way to a limit
+        return np.where(ends > high - hair, high, np.where(ends < low + hair, low, ends))
 
     def _squares(self, effort: Vector) -> tuple[np.ndarray, Vector]:
         """Slopes with respect to active channels, and values, of residual and effort."""
@@ -184,6 +186,7 @@ class LinearModel:
 _SHARES = (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0)  # of an excess that one step takes back: the first possible
 _FLAT = 1e-12  # least curvature of a model, as a share of the largest
 _HOLDS = 1e-9  # a limit holds when less than this share of what the channels' ranges could use of it is left
+_ROUNDING = 1e-12  # a step that ends within this share of the range of a channel from its limit ends on it
 Matrix = Float[np.ndarray, "rows size"]
 
 
