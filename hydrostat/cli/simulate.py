@@ -79,13 +79,7 @@ def simulate(
     files.append(save_png(draw_pose(loaded, pose), out / "pose.png"))
     _print_places(pose, loaded)
     print(f"{pose.result.reason} after {pose.result.iterations} iterations, {1e3 * seconds:.0f} ms")
-    if not pose.result.converged:
-        for obstacle in simulation.in_the_way(pose):
-            print(f"in the way: {obstacle}")
-    if pose.result.buckled:
-        print("note: the body buckled on the way; it could as well have gone to another side")
-    if pose.result.converged and not pose.result.stable:
-        print("note: the body is at rest on a saddle; the least push would make it leave")
+    _print_notes(simulation, pose)
     print("Wrote " + ", ".join(str(file) for file in files))
     if not pose.result.converged:
         raise typer.Exit(1)
@@ -97,6 +91,17 @@ def _print_places(found: "SolvedPose | Motion", robot: "Robot") -> None:
         print(f"{name:<16} {', '.join(f'{1e3 * value:8.2f}' for value in place)} mm")
     for index, tension in enumerate(found.tensions):
         print(f"cable {index + 1:<10} {tension:8.3f} N  {robot.cables[index].winch}")
+
+
+def _print_notes(simulation: "Simulation", pose: "SolvedPose") -> None:
+    """Print what is in the way of a pose that was not found, and where else the body could have gone."""
+    if not pose.result.converged:
+        for obstacle in simulation.in_the_way(pose):
+            print(f"in the way: {obstacle}")
+    if pose.result.buckled:
+        print("note: the body buckled on the way; it could as well have gone to another side")
+    if pose.result.converged and not pose.result.stable:
+        print("note: the body is at rest on a saddle; the least push would make it leave")
 
 
 def _move(

@@ -91,7 +91,7 @@ class NeoHookean(Energy):
             native.hessian(nodes - self._rest, *self._groups, self.mu, self.lame, share, *places)
 
     def least_volume(self, nodes: Nodes) -> float:
-        return 1.0 + _least_change(nodes - self._rest, self.stencils, self._padded, self._axes)
+        return _least_volume(nodes, self.stencils, self._padded, self._axes)
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         works = {"mu": self._work(nodes, field, 1.0, 0.0)}
@@ -160,12 +160,31 @@ def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
 
 @njit(**KERNEL)
 @no_type_check
-def _least_change(displacements, stencils, gradients, axes):
-    """J - 1 of the element that is squeezed most; 0 if none is."""
-    G = np.empty((3, 3))
-    least = 0.0
+def _least_volume(nodes, stencils, gradients, axes):
+    """J of the element that is squeezed most, by the spans of its corners; 1 if none is."""
+    least = 1.0
     for element in range(stencils.shape[0]):
-        least = min(least, _displacement_gradient(displacements, stencils[element], gradients[element], axes, G))
+        corners, rest = stencils[element], gradients[element]
+        o, p, q = corners[0], corners[1], corners[2]
+        ax, ay, bx, by = (
+            nodes[p, 0] - nodes[o, 0],
+            nodes[p, 1] - nodes[o, 1],
+            nodes[q, 0] - nodes[o, 0],
+            nodes[q, 1] - nodes[o, 1],
+        )
+        if len(axes) == 2:
+            scale = rest[1, 0] * rest[2, 1] - rest[1, 1] * rest[2, 0]
+            least = min(least, (ax * by - ay * bx) * scale)
+            continue
+        r = corners[3]
+        az, bz = nodes[p, 2] - nodes[o, 2], nodes[q, 2] - nodes[o, 2]
+        cx, cy, cz = nodes[r, 0] - nodes[o, 0], nodes[r, 1] - nodes[o, 1], nodes[r, 2] - nodes[o, 2]
+        scale = (
+            rest[1, 0] * (rest[2, 1] * rest[3, 2] - rest[2, 2] * rest[3, 1])
+            - rest[1, 1] * (rest[2, 0] * rest[3, 2] - rest[2, 2] * rest[3, 0])
+            + rest[1, 2] * (rest[2, 0] * rest[3, 1] - rest[2, 1] * rest[3, 0])
+        )
+        least = min(least, (ax * (by * cz - bz * cy) - ay * (bx * cz - bz * cx) + az * (bx * cy - by * cx)) * scale)
     return least
 
 

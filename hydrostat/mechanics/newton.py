@@ -139,6 +139,7 @@ class _Trial(NamedTuple):
     assembly: Assembly
     nodes: Nodes
     energy: float
+    least_volume: float
     share: float
 
 
@@ -178,7 +179,7 @@ class _EnergyDescent:
         if not np.isfinite(energy):
             place = _Iterate(assembly, start, energy, np.full(start.size, np.inf))
             return self._result(place, Reason.BAD_START, 0.0, 0)
-        place = self._arrive(assembly, start, energy)
+        place = self._arrive(assembly, start, energy, assembly.least_volume(start))
         for iteration in count():
             self.whole = self.options.whole and iteration == 0
             scale = place.assembly.largest_force(place.nodes, self.controls)
@@ -198,9 +199,8 @@ class _EnergyDescent:
             place = found
         raise AssertionError("count() never ends")
 
-    def _arrive(self, assembly: Assembly, nodes: Nodes, energy: float) -> _Iterate:
-        gradient = assembly.gradient(nodes, self.controls)
-        return _Iterate(assembly, nodes, energy, gradient, assembly.least_volume(nodes))
+    def _arrive(self, assembly: Assembly, nodes: Nodes, energy: float, least_volume: float) -> _Iterate:
+        return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
 
     def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> _Trial:
         """Where a step leads, as far as all energies admit it; of infinite energy where it crushes an element."""
@@ -210,9 +210,8 @@ class _EnergyDescent:
             nodes = place.nodes + share * (nodes - place.nodes)
         assembly = place.assembly.near(nodes)
         energy = assembly.value(nodes, self.controls)
-        if np.isfinite(energy) and assembly.least_volume(nodes) < _CRUSHED * place.least_volume:
-            energy = np.inf
-        return _Trial(assembly, nodes, energy, share)
+        least = assembly.least_volume(nodes) if np.isfinite(energy) else 0.0
+        return _Trial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None, near: bool) -> _Iterate | None:
         """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones."""
@@ -277,9 +276,9 @@ class _EnergyDescent:
                 if trial.energy <= place.energy - 1e-4 * gain:
                     if self.share > 0.0 and length * trial.share == 1.0:
                         trial = self._stride(place, step, trial)
-                    return self._arrive(*trial[:3])
+                    return self._arrive(*trial[:4])
             elif trial.energy <= place.energy + 10 * self.noise.energy:
-                found = self._arrive(*trial[:3])
+                found = self._arrive(*trial[:4])
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
                     return found
             if self.whole:
@@ -297,7 +296,7 @@ class _EnergyDescent:
         trial = self._try(place, -last.solve(place.gradient))
         if not trial.energy <= place.energy + 10 * self.noise.energy:
             return None
-        found = self._arrive(*trial[:3])
+        found = self._arrive(*trial[:4])
         return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
     def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
@@ -340,7 +339,7 @@ class _EnergyDescent:
             return None
         self.saddles += 1
         self.last = None
-        return self._arrive(*lowest[:3])
+        return self._arrive(*lowest[:4])
 
     def _stiffness(self, place: _Iterate) -> Stiffness:
         """The Hessian at the end."""
