@@ -17,13 +17,13 @@ class ElementGroups(NamedTuple):
         stencils: nodes, (groups, corners, 8).
         gradients: of the shape functions [1/m], (groups, corners, dim, 8).
         volumes: [m^3], (groups, 8).
-        count: how many elements there are.
+        terms: how many elements there are.
     """
 
     stencils: np.ndarray
     gradients: np.ndarray
     volumes: np.ndarray
-    count: int
+    terms: int
 
 
 def element_groups(

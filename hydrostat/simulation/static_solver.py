@@ -93,7 +93,8 @@ class StaticSolver:
             start: nodes, contractions and the Hessian, if it is known, of a pose to begin from.
         """
         begin, _, known = start or (rest[0], None, rest[1])
-        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS, whole=True)
+        pulled = bool(goal.any())  # dead loads alone pull evenly: there a step cut short does no harm
+        direct = result = self.relax(begin, goal, known, iterations=_DIRECT_ITERATIONS, whole=pulled)
         spent = result.iterations
         if _goes_on(result) and start and (start[1] != goal).any():
             result = self._in_steps(start, goal)

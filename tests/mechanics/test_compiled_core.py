@@ -1,0 +1,112 @@
+"""The compiled core beside numba's kernels, which are its oracle: the same to 1e-10 in the plane and in space."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from builders import box_mesh, strip_mesh
+
+from hydrostat import kernel
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.mechanics import Assembly, NeoHookean, PinEnergy, Warp, neo_hookean, supernodal, warp
+
+pytestmark = pytest.mark.skipif(kernel.native is None, reason="installed without the compiled core")
+
+MESHES = {"flat": strip_mesh(7, 3), "space": box_mesh((4, 2, 3))}
+
+
+@pytest.fixture(params=MESHES, ids=str)
+def mesh(request: pytest.FixtureRequest) -> Mesh:
+    return MESHES[request.param]
+
+
+@pytest.fixture
+def both(monkeypatch: pytest.MonkeyPatch) -> Callable:
+    """What a function gives by the core and by numba."""
+
+    def run(function: Callable) -> tuple:
+        by_core = function()
+        for room in (neo_hookean, warp, supernodal):
+            monkeypatch.setattr(room, "native", None)
+        by_numba = function()
+        monkeypatch.undo()
+        return by_core, by_numba
+
+    return run
+
+
+def moved(mesh: Mesh, size: float) -> np.ndarray:
+    """Nodes moved at random by a share of an edge."""
+    edge = np.ptp(mesh.nodes, axis=0).min() / 4
+    return mesh.nodes + size * edge * np.random.default_rng(0).uniform(-1, 1, mesh.nodes.shape)
+
+
+def assembly_of(mesh: Mesh) -> Assembly:
+    elastic = NeoHookean(mesh.nodes, mesh.elements, mu=3e4, lame=1e5)
+    held = np.arange(4)[:, None]
+    pins = PinEnergy(stencils=held, weights=np.ones((4, 1)), targets=mesh.nodes[:4], stiffness=np.full(4, 1e4))
+    return Assembly([elastic, pins], rest=mesh.nodes, control_count=0)
+
+
+def assert_same(one: np.ndarray | float, other: np.ndarray | float) -> None:
+    assert np.abs(np.asarray(one) - other).max() <= 1e-10 * np.abs(other).max()
+
+
+@pytest.mark.parametrize("size", [0.02, 0.2])
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_energy_forces_and_hessian(mesh: Mesh, both: Callable, size: float, share: float) -> None:
+    assembly, nodes, none = assembly_of(mesh), moved(mesh, size), np.zeros(0)
+    for core, numba in zip(
+        *both(
+            lambda: (
+                assembly.value(nodes, none),
+                assembly.gradient(nodes, none),
+                assembly.hessian(nodes, none, projection=share).data,
+            )
+        ),
+        strict=True,
+    ):
+        assert np.isfinite(numba).all()
+        assert_same(core, numba)
+
+
+def test_an_inverted_element_has_no_energy(mesh: Mesh, both: Callable) -> None:
+    nodes = mesh.nodes.copy()
+    nodes[mesh.elements[0, 0]] += 10.0
+    assert both(lambda: assembly_of(mesh).value(nodes, np.zeros(0))) == (np.inf, np.inf)
+
+
+@pytest.mark.parametrize("size", [1e-4, 0.3, 20.0])
+def test_steps_along_arcs(mesh: Mesh, both: Callable, size: float) -> None:
+    """The largest step turns elements by more than one radian, where series give way to sine and cosine."""
+    elastic = NeoHookean(mesh.nodes, mesh.elements, mu=1.0, lame=1.0)
+    bend = Warp(
+        stencils=elastic.stencils,
+        shape_gradients=elastic.shape_gradients,
+        volumes=elastic.volumes,
+        rest=mesh.nodes,
+        held=mesh.elements[:2],
+        holds=np.full((2, mesh.dim + 1), 1 / (mesh.dim + 1)),
+    )
+    step = moved(mesh, size) - mesh.nodes
+    assert_same(*both(lambda: bend(mesh.nodes, step)))
+
+
+@pytest.mark.parametrize("shift", [0.05, -0.3])
+@pytest.mark.parametrize("sides", [0, 1, 3, 8, 20])
+def test_factors(mesh: Mesh, both: Callable, shift: float, sides: int) -> None:
+    """Definite and indefinite, for a vector (0) and for several right-hand sides."""
+    assembly = assembly_of(mesh)
+    data = assembly.hessian(mesh.nodes, np.zeros(0)).data
+    data[assembly.pattern.diagonal] += shift * np.median(data[assembly.pattern.diagonal])
+    shape = (assembly.size, sides) if sides else (assembly.size,)
+    right = np.random.default_rng(1).standard_normal(shape)
+
+    def solved() -> tuple[int, np.ndarray]:
+        factors = assembly.pattern.analysis.factorise(data)
+        return factors.negative, factors.solve(right)
+
+    core, numba = both(solved)
+    assert core[0] == numba[0]
+    assert (numba[0] > 0) == (shift < 0)
+    assert np.abs(core[1] - numba[1]).max() <= 1e-9 * np.abs(numba[1]).max()
