@@ -219,7 +219,7 @@ def main() -> None:
     programs: dict[str, Any] = {}
     if not given.profile:
         programs = {"trial, f32": Trial(given.trial, True), "trial, f64": Trial(given.trial, False)}
-    programs |= {"exact": exact, "to 1 um": Hydrostat(given.trial, 1e-6)}
+    programs |= {"exact": exact}
     print(f"\n{machine()}\n")
     print("| poses | program | median ms | mean | max | median / first | mean / first | iterations, most | error um |")
     print("|---|---|---|---|---|---|---|---|---|")

@@ -1,6 +1,8 @@
 """Projected Newton with a line search: the statics solver."""
 
 import time
+from dataclasses import dataclass, field
+from enum import StrEnum
 from itertools import count
 from typing import NamedTuple
 
@@ -9,9 +11,84 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.falling_mode import falling_mode
-from hydrostat.mechanics.newton_records import NewtonOptions, NewtonResult, Reason, RoundOff, furthest
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.warp import Warp
+
+
+class Reason(StrEnum):
+    """Why a solve ended."""
+
+    CONVERGED = "converged"
+    ITERATION_LIMIT = "iteration limit reached"
+    TIME_LIMIT = "time limit reached"
+    NO_DESCENT = "no step lowers the energy"
+    BAD_START = "the start has an inverted element"
+    NO_BALANCE = "friction and the tensions of cables found no balance"
+
+
+@dataclass(frozen=True, kw_only=True)
+class NewtonOptions:
+    """How far and how long Newton goes (M4).
+
+    Attributes:
+        tolerance: largest nodal force left over, as a fraction of the largest applied force.
+        iterations: most iterations.
+        halvings: most halvings of one step.
+        whole: whether to give up at once, at no cost, where the first step cannot be taken whole.
+        deadline: when it stops at the latest [s], as `time.monotonic` counts.
+    """
+
+    tolerance: float = 1e-10
+    iterations: int = 200
+    halvings: int = 50
+    whole: bool = False
+    deadline: float = np.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoundOff:
+    """What is lost in the rounding errors of a body whose modulus x volume is some energy.
+
+    Attributes:
+        force: [N].
+        energy: [J].
+    """
+
+    force: float
+    energy: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NewtonResult:
+    """Where Newton stopped.
+
+    Attributes:
+        nodes: the best positions found [m]; every element has J > 0.
+        reason: why it stopped.
+        residual: largest component of a nodal force [N].
+        allowed: residual [N] at which it counts as converged.
+        energy: total energy [J].
+        iterations: steps taken.
+        stable: whether the full Hessian there is positive definite: a minimum, no saddle.
+        buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
+        stiffness: the Hessian there, factorised, or where the last step began, if that was with less than 1e-5 of the
+            applied force left over.
+    """
+
+    nodes: Nodes
+    reason: Reason
+    residual: float
+    allowed: float
+    energy: float
+    iterations: int
+    stable: bool
+    buckled: bool
+    stiffness: Stiffness | None = field(repr=False)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the residual is as small as allowed."""
+        return self.reason is Reason.CONVERGED
 
 
 def minimise(
@@ -75,9 +152,6 @@ class _EnergyDescent:
         saddles: how many have been left.
         last: the Hessian of the last step, if nothing was taken out of it.
         sharp: whether that step began near enough to the end for `last` to stand for the Hessian there.
-        moved: how far the last step moved a node [m].
-        fresh: whether `last` was made on the way, and not brought along.
-        error: about how far a node is from equilibrium [m], if that has been found small enough.
     """
 
     def __init__(
@@ -97,7 +171,6 @@ class _EnergyDescent:
         self.saddles = 0
         self.last: Stiffness | None = None
         self.sharp = False
-        self.moved, self.error, self.fresh = np.inf, 0.0, False
 
     def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
         """Newton from `start` to a reason to stop."""
@@ -118,8 +191,6 @@ class _EnergyDescent:
                 found, reason = None, Reason.ITERATION_LIMIT
             elif time.monotonic() >= self.options.deadline:
                 found, reason = None, Reason.TIME_LIMIT
-            elif self._close_enough(place):
-                found, reason = None, Reason.CONVERGED
             else:
                 found, reason = self._advance(place, known, residual < _NEAR * scale), Reason.NO_DESCENT
             known = None
@@ -144,20 +215,16 @@ class _EnergyDescent:
 
     def _advance(self, place: _Iterate, known: Stiffness | None, near: bool) -> _Iterate | None:
         """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones."""
-        if self.last is not None and (near or (self.options.accuracy is not None and self.fresh)):
+        if self.last is not None and near:
             found = self._chord(place, self.last)
             if found is not None:
                 return found
         reused = self._reuse(place, known)
         stiffness = reused or self._definite(place)
-        self.fresh = reused is None
         self.last, self.sharp = (
             (stiffness, near and (reused is None or self.exact)) if self.share == 0.0 else (None, False)
         )
-        found = None if stiffness is None else self._search(place, stiffness)
-        if found is not None:
-            self.moved = furthest(found.nodes - place.nodes)
-        return found
+        return None if stiffness is None else self._search(place, stiffness)
 
     def _reuse(self, place: _Iterate, known: Stiffness | None) -> Stiffness | None:
         """What is known of the Hessian, with the springs as they are now; None if that is not definite."""
@@ -224,32 +291,13 @@ class _EnergyDescent:
         straight = step.reshape(nodes.shape)
         return nodes + straight if self.warp is None else self.warp(nodes, straight)
 
-    def _close_enough(self, place: _Iterate) -> bool:
-        """Tell whether a step with old factors would move no node by half of the accuracy, and half as far as the last.
-
-        Steps with the same factors shrink by equal shares, so all that would follow go no further than twice this one.
-        """
-        if self.options.accuracy is None or self.last is None:
-            return False
-        self.last = self._reuse(place, self.last)
-        if self.last is None:
-            return False
-        move = furthest(self.last.solve(place.gradient).reshape(place.nodes.shape))
-        enough = 2 * move <= min(self.options.accuracy, self.moved)
-        self.error = 2 * move if enough else 0.0
-        return enough
-
     def _chord(self, place: _Iterate, last: Stiffness) -> _Iterate | None:
         """One more step with the factors of the last one; None if it does not pay."""
         trial = self._try(place, -last.solve(place.gradient))
         if not trial.energy <= place.energy + 10 * self.noise.energy:
             return None
         found = self._arrive(*trial[:4])
-        pays = _PAYS if self.options.accuracy is None else _PAYS_ROUGHLY
-        if not np.abs(found.gradient).max() < pays * np.abs(place.gradient).max():
-            return None
-        self.moved = furthest(found.nodes - place.nodes)
-        return found
+        return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
     def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
         """Newton's step; where the body alone is stable it knows that a cable can go slack on the way, or taut."""
@@ -295,13 +343,13 @@ class _EnergyDescent:
 
     def _stiffness(self, place: _Iterate) -> Stiffness:
         """The Hessian at the end."""
-        if self.last is None or not (self.sharp or self.error):
+        if self.last is None or not self.sharp:
             self.last, self.sharp = place.assembly.stiffness(place.nodes, self.controls), True
         return self.last
 
     def _result(self, place: _Iterate, reason: Reason, allowed: float, iterations: int) -> NewtonResult:
         if reason is not Reason.CONVERGED:
-            self.last, self.error = None, 0.0
+            self.last = None
         late = reason in (Reason.BAD_START, Reason.TIME_LIMIT)
         blank = late or (reason is Reason.NO_DESCENT and self.whole)
         stiffness = None if blank else self._stiffness(place)
@@ -315,7 +363,6 @@ class _EnergyDescent:
             stable=stiffness is not None and stiffness.definite,
             buckled=self.saddles > 0,
             stiffness=stiffness,
-            error=self.error,
         )
 
 
@@ -330,9 +377,6 @@ An element near J = 0 pushes back so hard, and so far from linearly, that Newton
 
 _PAYS = 0.1
 """A step with old factors has to bring the residual down this far, or new ones are made."""
-
-_PAYS_ROUGHLY = 0.3
-"""The same where an accuracy is asked for, and a few digits are enough."""
 
 _LEAST_SHARE = 1 / 32
 """Below this share of what is negative, try the full Hessian."""

@@ -70,10 +70,6 @@ class StaticSolver:
             return self
         return replace(self, options=replace(self.options, deadline=time.monotonic() + seconds))
 
-    def roughly(self, accuracy: float | None) -> "StaticSolver":
-        """Give a solver to within an accuracy [m]; itself if that is None."""
-        return self if accuracy is None else replace(self, options=replace(self.options, accuracy=accuracy))
-
     def allowed(self, nodes: Nodes, controls: Vector) -> float:
         """Nodal force left over [N] at which nodes count as at rest."""
         return max(
