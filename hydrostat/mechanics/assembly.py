@@ -9,8 +9,7 @@ from scipy.sparse import csc_array
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.mechanics.energy import Coupling, Energy
-from hydrostat.mechanics.scatter import Places
+from hydrostat.mechanics.energy import Coupling, Energy, Places
 from hydrostat.mechanics.sparsity import SparsityPattern
 from hydrostat.mechanics.stiffness import Stiffness
 

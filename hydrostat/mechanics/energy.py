@@ -3,13 +3,14 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol, Self, runtime_checkable
+from typing import ClassVar, NamedTuple, Protocol, Self, no_type_check, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
+from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics.scatter import Places, add_blocks, add_vectors
+from hydrostat.kernel import KERNEL
 
 Stencils = Int[np.ndarray, "terms corners"]
 Blocks = Float[np.ndarray, "terms corners dim"]
@@ -64,6 +65,20 @@ class Coupling:
     law: Law | None = None
 
 
+class Places(NamedTuple):
+    """Where the Hessian blocks of one energy are added.
+
+    Attributes:
+        slots: first place of the block of each pair of corners of each term, (terms, corners, corners).
+        strides: distance of two columns of each node, (nodes,).
+        data: values of the sparse matrix, column by column, both triangles.
+    """
+
+    slots: np.ndarray
+    strides: np.ndarray
+    data: np.ndarray
+
+
 class Energy(ABC):
     """A sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
@@ -108,7 +123,7 @@ class Energy(ABC):
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
         """Add dE/dx to the forces of all nodes [N]; to be told anew only where that is faster than by `gradient`."""
-        add_vectors(self.stencils, self.gradient(nodes, controls), total)
+        _add_vectors(self.stencils, self.gradient(nodes, controls), total)
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
         """Add d2E/dx2, with a share of what is negative taken out, to the values of a sparse matrix; as above."""
@@ -116,7 +131,7 @@ class Energy(ABC):
             blocks = self.projected_hessian(nodes, controls, share)
         else:
             blocks = self.hessian(nodes, controls)
-        add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
+        _add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
     def coupling(self, nodes: Nodes, controls: Vector) -> Coupling | None:
         """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""
@@ -183,6 +198,36 @@ class Energy(ABC):
         return self
 
 
+class ElementGroups(NamedTuple):
+    """Elements eight at a time, the last group filled up with elements of no volume.
+
+    Attributes:
+        stencils: nodes, (groups, corners, 8).
+        gradients: of the shape functions [1/m], (groups, corners, dim, 8).
+        volumes: [m^3], (groups, 8).
+        terms: how many elements there are.
+    """
+
+    stencils: np.ndarray
+    gradients: np.ndarray
+    volumes: np.ndarray
+    terms: int
+
+
+def element_groups(
+    stencils: Stencils, gradients: Float[np.ndarray, "terms corners dim"], volumes: Float[np.ndarray, " terms"]
+) -> ElementGroups:
+    """Elements with their shape gradients [1/m] and volumes [m^3] in groups."""
+    count, missing = len(stencils), -len(stencils) % 8
+
+    def grouped(array: np.ndarray, kind: type) -> np.ndarray:
+        filled = np.concatenate([array, np.zeros((missing, *array.shape[1:]))])
+        groups = filled.reshape(-1, 8, *array.shape[1:])
+        return np.ascontiguousarray(np.moveaxis(groups, 1, -1), dtype=kind)
+
+    return ElementGroups(grouped(stencils, np.int32), grouped(gradients, float), grouped(volumes, float), count)
+
+
 def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
     """Projection on semidefinite matrices: symmetric blocks with their negative eigenvalues set to zero."""
     values, vectors = np.linalg.eigh(blocks)
@@ -193,3 +238,30 @@ def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
     kept = np.maximum(values[bad], 0.0)
     repaired[bad] = (vectors[bad] * kept[:, None, :]) @ np.swapaxes(vectors[bad], 1, 2)
     return repaired
+
+
+@njit(**KERNEL)
+@no_type_check
+def _add_vectors(stencils, vectors, total):
+    """Add the vector of every corner of every term to its node."""
+    for term in range(stencils.shape[0]):
+        for corner in range(stencils.shape[1]):
+            node = stencils[term, corner]
+            for axis in range(total.shape[1]):
+                total[node, axis] += vectors[term, corner, axis]
+
+
+@njit(**KERNEL)
+@no_type_check
+def _add_blocks(stencils, slots, strides, blocks, data):
+    """Add every dim x dim block of symmetric blocks to the values of the sparse matrix."""
+    corners = stencils.shape[1]
+    dim = blocks.shape[1] // corners
+    for term in range(stencils.shape[0]):
+        for b in range(corners):
+            stride = strides[stencils[term, b]]
+            for a in range(corners):
+                start = slots[term, a, b]
+                for j in range(dim):
+                    for i in range(dim):
+                        data[start + j * stride + i] += blocks[term, b * dim + j, a * dim + i]

@@ -11,9 +11,7 @@ from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.kernel import INNER, KERNEL, native
-from hydrostat.mechanics.element_groups import ElementGroups, element_groups
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
-from hydrostat.mechanics.scatter import Places
+from hydrostat.mechanics.energy import Blocks, ElementGroups, Energy, HessianBlocks, Places, element_groups
 
 
 class NeoHookean(Energy):

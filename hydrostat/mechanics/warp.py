@@ -9,8 +9,7 @@ from numba import njit
 
 from hydrostat.arrays import Nodes
 from hydrostat.kernel import INNER, KERNEL, native
-from hydrostat.mechanics.element_groups import element_groups
-from hydrostat.mechanics.energy import Stencils
+from hydrostat.mechanics.energy import Stencils, element_groups
 from hydrostat.mechanics.factorisation import Analysis
 
 
