@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import reduce
 from itertools import chain
 
 import numpy as np
@@ -111,10 +110,11 @@ def _in_boxes(mesh: Mesh, points: Points) -> tuple[Int[np.ndarray, " pairs"], In
     asked = np.repeat(np.arange(len(points)), found)
     first = np.cumsum(found) - found
     elements = members[np.arange(len(asked)) + np.repeat(starts[cell] - first, found)]
-    near = points[asked]
-    within = (near >= low[elements]) & (near <= high[elements])
-    inside = reduce(np.logical_and, within.T)
-    return asked[inside], elements[inside]
+    for axis in range(mesh.dim):  # one after the other, as each leaves few
+        place = points[asked, axis]
+        within = (place >= low[elements, axis]) & (place <= high[elements, axis])
+        asked, elements = asked[within], elements[within]
+    return asked, elements
 
 
 def _nearest(
