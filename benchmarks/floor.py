@@ -1,6 +1,6 @@
 """How far one equilibrium is from the floor: beside a C++ trial of the same body and poses, at equal accuracy.
 
-    python benchmarks/floor.py TRIAL [--rounds 3] [--poses 30] [--steps 60] [--profile]
+    python benchmarks/floor.py TRIAL [--rounds 3] [--poses 30] [--steps 60] [--profile] [--parts]
 
 TRIAL is a folder with the built trial: `hand.npz`, `sim.py` and `libcore.so`; its Python packages (pymetis, cvxopt) are
 found with --packages. Both solve in turn, on one thread, the same poses: 30 from rest, and random walks of the
@@ -51,7 +51,7 @@ class Row:
 class Hydrostat:
     """The body of the trial as a robot of ours."""
 
-    def __init__(self, folder: Path, accuracy: float | None) -> None:
+    def __init__(self, folder: Path) -> None:
         data = np.load(folder / "hand.npz")
         mesh = Mesh(data["X"], data["T"])
         mu, lame = 35.7e3, 143e3
@@ -82,11 +82,10 @@ class Hydrostat:
         self.simulation = hs.Simulation(robot)
         self.exact = hs.Simulation(robot, options=NewtonOptions(tolerance=1e-12), body=self.simulation.body)
         self.lengths = self.simulation.cables.rest_lengths
-        self.options: dict[str, Any] = {} if accuracy is None else {"accuracy": accuracy}
 
     def solve(self, shares: np.ndarray, start: Any) -> tuple[Any, int]:
         """Pose at contractions that are shares of the cables' lengths, and its iterations."""
-        pose = self.simulation.solve(self.lengths * shares, start=start, **self.options)
+        pose = self.simulation.solve(self.lengths * shares, start=start)
         return pose, pose.result.iterations
 
     def wrong(self, pose: Any, shares: np.ndarray) -> float:
@@ -203,6 +202,32 @@ def compare(title: str, poses: list[np.ndarray], programs: dict[str, Any], round
         )
 
 
+def print_parts(program: Hydrostat) -> None:
+    """Print what each part of an iteration of ours takes, mean of 30 calls in a row."""
+    simulation, taken = program.simulation, np.full(program.count, 0.01)
+    assembly, nodes = simulation.assembly, simulation.solve(taken).nodes
+    data = assembly.hessian(nodes, taken).data
+    factors = assembly.pattern.analysis.factorise(data)
+    sides = np.random.default_rng(0).random((assembly.size, program.count))
+    parts: dict[str, Callable[[], Any]] = {
+        "energy": lambda: assembly.value(nodes, taken),
+        "gradient": lambda: assembly.gradient(nodes, taken),
+        "Hessian": lambda: assembly.hessian(nodes, taken),
+        "Hessian, projected": lambda: assembly.hessian(nodes, taken, projection=1.0),
+        "factorisation": lambda: assembly.pattern.analysis.factorise(data),
+        "one right-hand side": lambda: factors.solve(sides[:, 0]),
+        f"{program.count} right-hand sides": lambda: factors.solve(sides),
+        "step along arcs": lambda: simulation.body.warp(nodes, 1e-3 * sides[:, 0].reshape(nodes.shape)),
+    }
+    print("| part | us |\n|---|---|")
+    for name, part in parts.items():
+        part()
+        began = time.process_time()
+        for _ in range(30):
+            part()
+        print(f"| {name} | {1e6 * (time.process_time() - began) / 30:.0f} |")
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -211,11 +236,16 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--poses", type=int, default=30)
     parser.add_argument("--steps", type=int, default=60)
-    parser.add_argument("--profile", action="store_true", help="profile ours instead, without the trial")
+    parser.add_argument("--profile", action="store_true", help="ours alone, without the trial")
+    parser.add_argument("--parts", action="store_true", help="print what the parts of an iteration of ours take")
     given = parser.parse_args()
     if given.packages:
         sys.path.append(str(given.packages))
-    exact = Hydrostat(given.trial, None)
+    exact = Hydrostat(given.trial)
+    if given.parts:
+        print(f"\n{machine()}\n")
+        print_parts(exact)
+        return
     programs: dict[str, Any] = {}
     if not given.profile:
         programs = {"trial, f32": Trial(given.trial, True), "trial, f64": Trial(given.trial, False)}
