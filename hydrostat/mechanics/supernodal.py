@@ -507,7 +507,7 @@ class SupernodalFactors:
         """Solution for one or several right-hand sides."""
         analysis = self._analysis
         if native is not None:
-            return self._by_core(right, 0)
+            return self._by_core(right)
         values = np.empty(right.shape)
         values[analysis.place] = right
         if right.ndim == 1:
@@ -517,11 +517,11 @@ class SupernodalFactors:
             solve_matrix(analysis.fronts, self._lower, self._signs, values, work, analysis.workspace.call)
         return values[analysis.place]
 
-    def _by_core(self, right: np.ndarray, way: int) -> np.ndarray:
-        """Solve by the compiled core: 0 for all of it, 1 for L^-1, 2 for L^-T S."""
+    def _by_core(self, right: np.ndarray) -> np.ndarray:
+        """Solve by the compiled core."""
         analysis, fronts = self._analysis, self._analysis.fronts
         given = np.ascontiguousarray(right, dtype=float).reshape(len(right), -1)
         found = np.empty(given.shape)
         places = fronts.table, fronts.rows, analysis.place
-        native.solve(*places, self._lower, self._signs, given, found, way, analysis.height)
+        native.solve(*places, self._lower, self._signs, given, found, analysis.height)
         return found.reshape(right.shape)
