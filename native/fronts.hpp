@@ -3,10 +3,15 @@
 // Panels are column by column, their columns as high as the front. Vectors read past the end of a column, never past
 // the end of an array, which must have 8 numbers to spare; what they write ends where the column does.
 #pragma once
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
 #include "kernels.hpp"
 #include "vectors.hpp"
 
 namespace {
+
+#define UNROLL _Pragma("GCC unroll 8")
 
 enum { COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES, WIDTH };
 
@@ -25,26 +30,37 @@ INLINE Wide wide(double value) {
     return found;
 }
 
+// The first `rows` numbers of a vector, all if there are as many.
+INLINE void store_rows(double* at, Wide value, int rows) {
+    if (rows >= LANES) return store<Wide>(at, value);
+#if defined(__AVX512F__)
+    _mm512_mask_storeu_pd(at, (__mmask8)((1 << rows) - 1), (__m512d)value);
+#else
+        for (int lane = 0; lane < rows; lane++) at[lane] = value[lane];
+#endif
+}
+
 // C -= A B^T for a tile of `high` vectors x `count` columns; B is packed, BLOCK numbers for each step of the depth.
 template <int HIGH, int COUNT>
 INLINE void tile(double* c, int64_t ldc, const double* a, int64_t lda, const double* b, int64_t depth, int rows) {
     Wide sums[COUNT][HIGH];
+UNROLL
     for (int j = 0; j < COUNT; j++)
+UNROLL
         for (int i = 0; i < HIGH; i++) sums[j][i] = load<Wide>(c + j * ldc + i * LANES);
     for (int64_t k = 0; k < depth; k++, a += lda, b += BLOCK) {
         Wide left[HIGH];
+UNROLL
         for (int i = 0; i < HIGH; i++) left[i] = load<Wide>(a + i * LANES);
-        for (int j = 0; j < COUNT; j++)
-            for (int i = 0; i < HIGH; i++) sums[j][i] -= left[i] * b[j];
-    }
+    UNROLL
     for (int j = 0; j < COUNT; j++)
-        for (int i = 0; i < HIGH; i++) {
-            double* at = c + j * ldc + i * LANES;
-            int left = rows - i * LANES;
-            if (left >= LANES) store<Wide>(at, sums[j][i]);
-            else
-                for (int lane = 0; lane < left; lane++) at[lane] = sums[j][i][lane];
-        }
+    UNROLL
+        for (int i = 0; i < HIGH; i++) sums[j][i] -= left[i] * b[j];
+    }
+UNROLL
+    for (int j = 0; j < COUNT; j++)
+UNROLL
+        for (int i = 0; i < HIGH; i++) store_rows(c + j * ldc + i * LANES, sums[j][i], rows - i * LANES);
 }
 
 template <int COUNT>
@@ -73,49 +89,74 @@ INLINE void any_strip(int count, double* c, int64_t ldc, const double* a, int64_
     }
 }
 
+// Rows of S P^T, BLOCK numbers for each step of the depth.
+INLINE void pack(double* packed, const double* panel, int64_t height, const double* sign, int64_t depth, int count) {
+    if (count == BLOCK)
+        for (int64_t k = 0; k < depth; k++) store<V8>(packed + k * BLOCK, sign[k] * load<V8>(panel + k * height));
+    else
+        for (int64_t k = 0; k < depth; k++)
+            for (int j = 0; j < count; j++) packed[k * BLOCK + j] = sign[k] * panel[k * height + j];
+}
+
 // C -= P S P^T below the diagonal, for `wide` columns of C; P begins at the row of C's first column.
 INLINE void subtract(double* c, int64_t ldc, const double* panel, int64_t height, int64_t depth, const double* sign,
                      int64_t columns, int64_t rows, double* packed) {
     for (int64_t column = 0; column < columns; column += BLOCK) {
         int count = columns - column < BLOCK ? (int)(columns - column) : BLOCK;
-        for (int64_t k = 0; k < depth; k++)
-            for (int j = 0; j < count; j++) packed[k * BLOCK + j] = sign[k] * panel[k * height + column + j];
+        pack(packed, panel + column, height, sign, depth, count);
         any_strip(count, c + column * ldc + column, ldc, panel + column, height, packed, depth, rows - column);
     }
 }
 
+// Divide `MANY` vectors of rows by the triangle that COUNT columns make; `factors` is S L, row by row.
+template <int COUNT, int MANY>
+INLINE void divide(double* panel, int64_t height, const double* factors, const double* scale, int rows) {
+    Wide own[COUNT][MANY];
+UNROLL
+    for (int j = 0; j < COUNT; j++) {
+UNROLL
+        for (int v = 0; v < MANY; v++) own[j][v] = load<Wide>(panel + j * height + v * LANES);
+UNROLL
+        for (int k = 0; k < j; k++)
+    UNROLL
+        for (int v = 0; v < MANY; v++) own[j][v] -= own[k][v] * factors[j * COUNT + k];
+UNROLL
+        for (int v = 0; v < MANY; v++) own[j][v] *= scale[j];
+    }
+UNROLL
+    for (int j = 0; j < COUNT; j++)
+UNROLL
+        for (int v = 0; v < MANY; v++) store_rows(panel + j * height + v * LANES, own[j][v], rows - v * LANES);
+}
+
 // Eliminate COUNT columns of a panel, `rows` high from the first pivot on; how many pivots are negative, -1: too small.
 template <int COUNT> int eliminate(double* panel, int64_t height, int64_t rows, double* sign, double least) {
-    double L[COUNT][COUNT], scale[COUNT];
+    double L[COUNT][COUNT], scale[COUNT], factors[COUNT * COUNT];
     int negative = 0;
+UNROLL
     for (int j = 0; j < COUNT; j++)
+UNROLL
         for (int i = j; i < COUNT; i++) L[i][j] = panel[j * height + i];
+UNROLL
     for (int j = 0; j < COUNT; j++) {
+UNROLL
         for (int k = 0; k < j; k++)
-            for (int i = j; i < COUNT; i++) L[i][j] -= L[i][k] * (sign[k] * L[j][k]);
+    UNROLL
+        for (int i = j; i < COUNT; i++) L[i][j] -= L[i][k] * factors[j * COUNT + k];
         double pivot = L[j][j], size = pivot < 0 ? -pivot : pivot;
         if (!(size > least && size < __builtin_inf())) return -1;
         sign[j] = pivot > 0 ? 1.0 : -1.0;
         negative += pivot < 0;
         L[j][j] = __builtin_sqrt(size);
         scale[j] = sign[j] / L[j][j];
-        for (int i = j + 1; i < COUNT; i++) L[i][j] *= scale[j];
+UNROLL
+        for (int i = j + 1; i < COUNT; i++) L[i][j] *= scale[j], factors[i * COUNT + j] = sign[j] * L[i][j];
     }
-    for (int64_t row = COUNT; row < rows; row += LANES) {
-        Wide own[COUNT];
-        int left = rows - row < LANES ? (int)(rows - row) : LANES;
-        for (int j = 0; j < COUNT; j++) {
-            Wide value = load<Wide>(panel + j * height + row);
-            for (int k = 0; k < j; k++) value -= own[k] * (sign[k] * L[j][k]);
-            own[j] = value * scale[j];
-        }
-        for (int j = 0; j < COUNT; j++) {
-            double* at = panel + j * height + row;
-            if (left == LANES) store<Wide>(at, own[j]);
-            else
-                for (int lane = 0; lane < left; lane++) at[lane] = own[j][lane];
-        }
-    }
+    int64_t row = COUNT;
+    for (; row + 2 * LANES <= rows; row += 2 * LANES)
+        divide<COUNT, 2>(panel + row, height, factors, scale, 2 * LANES);
+    for (; row < rows; row += LANES)
+        divide<COUNT, 1>(panel + row, height, factors, scale, (int)(rows - row));
     for (int j = 0; j < COUNT; j++)
         for (int i = j; i < COUNT; i++) panel[j * height + i] = L[i][j];
     return negative;
@@ -134,7 +175,27 @@ INLINE int any_eliminate(int count, double* panel, int64_t height, int64_t rows,
     }
 }
 
-// Add what a child hands up to its parent's front, lower triangle only.
+// C += A for blocks of HIGH rows.
+template <int HIGH>
+INLINE void add_rows(double* __restrict to, int64_t ldt, const double* __restrict from, int64_t ldf, int64_t columns) {
+    for (; columns > 0; columns--, to += ldt, from += ldf)
+        for (int i = 0; i < HIGH; i++) to[i] += from[i];
+}
+
+INLINE void add_block(double* to, int64_t ldt, const double* from, int64_t ldf, int64_t columns, int64_t rows) {
+    for (; rows >= 8; rows -= 8, to += 8, from += 8) add_rows<8>(to, ldt, from, ldf, columns);
+    switch (rows) {
+        case 1: return add_rows<1>(to, ldt, from, ldf, columns);
+        case 2: return add_rows<2>(to, ldt, from, ldf, columns);
+        case 3: return add_rows<3>(to, ldt, from, ldf, columns);
+        case 4: return add_rows<4>(to, ldt, from, ldf, columns);
+        case 5: return add_rows<5>(to, ldt, from, ldf, columns);
+        case 6: return add_rows<6>(to, ldt, from, ldf, columns);
+        case 7: return add_rows<7>(to, ldt, from, ldf, columns);
+    }
+}
+
+// Add what a child hands up to its parent's front, lower triangle only: block by block of rows that lie together.
 INLINE void extend_add(const Fronts& fronts, int64_t child, const double* stack, double* panel, int64_t columns,
                        int64_t height, double* update, int64_t below) {
     const int64_t* row = fronts.table + child * WIDTH;
@@ -142,19 +203,14 @@ INLINE void extend_add(const Fronts& fronts, int64_t child, const double* stack,
     const double* given = stack + row[OFFSET];
     for (int64_t run = row[RUNS]; run < high; run++) {
         const int64_t* piece = fronts.runs + run * 3;
-        for (int64_t step = 0; step < piece[2]; step++) {
-            const double* source = given + (piece[0] + step) * size;
-            int64_t column = piece[1] + step, start = step, shift = column < columns ? 0 : columns;
-            double* target = column < columns ? panel + column * height : update + (column - columns) * below;
-            for (int64_t other = run; other < high; other++, start = 0) {
-                const int64_t* part = fronts.runs + other * 3;
-                const double* from = source + part[0] + start;
-                double* to = target + part[1] + start - shift;
-                int64_t length = part[2] - start, place = 0;
-                for (; place + 4 <= length; place += 4) store<V4>(to + place, load<V4>(to + place) + load<V4>(from + place));
-                for (; place < length; place++) to[place] += from[place];
-            }
-        }
+        const bool own = piece[1] < columns;  // no run lies half in the parent's own columns
+        const int64_t shift = own ? 0 : columns, lead = own ? height : below;
+        double* target = (own ? panel : update) + (piece[1] - shift) * lead - shift;
+        const double* source = given + piece[0] * size;
+        for (int64_t step = 0; step < piece[2]; step++)
+            for (int64_t i = step; i < piece[2]; i++) target[step * lead + piece[1] + i] += source[step * size + piece[0] + i];
+        for (const int64_t* other = piece + 3; other < fronts.runs + high * 3; other += 3)
+            add_block(target + other[1], lead, source + other[0], size, piece[2], other[2]);
     }
 }
 
@@ -188,8 +244,7 @@ int64_t factorise(const Fronts& fronts, const double* data, double* lower, doubl
             int count = columns - low < BLOCK ? (int)(columns - low) : BLOCK;
             double* corner = panel + low * height + low;
             if (low) {
-                for (int64_t k = 0; k < low; k++)
-                    for (int j = 0; j < count; j++) spare[k * BLOCK + j] = sign[k] * panel[k * height + low + j];
+                pack(spare, panel + low, height, sign, low, count);
                 any_strip(count, corner, height, panel + low, height, spare, low, height - low);
             }
             int found = any_eliminate(count, corner, height, height - low, sign + low, tiny * largest);

@@ -102,9 +102,10 @@ int64_t factorise(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, A
                              spare.data(), tiny);
 }
 
-// Solve A x = b by L S L^T; `place` is where each degree of freedom stands in the order of elimination.
+// Solve for all or half of A = L S L^T: `way` 0 is A^-1, 1 is L^-1 (in the order of elimination), 2 is L^-T S.
+// `place` is where each degree of freedom stands in the order of elimination.
 void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<const int64_t, 1> place,
-           Reals<1> lower, Reals<1> signs, Reals<2> right, Array<double, 2> found, int64_t height) {
+           Reals<1> lower, Reals<1> signs, Reals<2> right, Array<double, 2> found, int way, int64_t height) {
     int64_t dofs = (int64_t)place.shape(0), sides = (int64_t)right.shape(1), count = (int64_t)table.shape(0) - 1;
     demand((int64_t)right.shape(0) == dofs && (int64_t)found.shape(0) == dofs && (int64_t)found.shape(1) == sides &&
                (int64_t)signs.shape(0) == dofs && table.shape(1) == 11, "shapes of the right-hand sides");
@@ -119,15 +120,21 @@ void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<co
         int some = (int)(sides - low < 16 ? sides - low : 16), width = some == 1 ? 1 : some <= 4 ? 4 : some <= 8 ? 8 : 16;
         values.assign(dofs * width + 8, 0.0);
         work.resize(height * width + 8);
-        for (int64_t dof = 0; dof < dofs; dof++)
-            for (int side = 0; side < some; side++) values[at[dof] * width + side] = given[dof * sides + low + side];
-        kernels.forward(fronts, lower.data(), values.data(), width, work.data());
-        for (int64_t dof = 0; dof < dofs; dof++)
-            if (sign[dof] < 0)
-                for (int side = 0; side < some; side++) values[dof * width + side] *= -1.0;
-        kernels.backward(fronts, lower.data(), values.data(), width, work.data());
-        for (int64_t dof = 0; dof < dofs; dof++)
-            for (int side = 0; side < some; side++) out[dof * sides + low + side] = values[at[dof] * width + side];
+        for (int64_t dof = 0; dof < dofs; dof++) {
+            double* to = values.data() + (way == 2 ? dof : at[dof]) * width;
+            double factor = way == 2 ? sign[dof] : 1.0;
+            for (int side = 0; side < some; side++) to[side] = factor * given[dof * sides + low + side];
+        }
+        if (way != 2) kernels.forward(fronts, lower.data(), values.data(), width, work.data());
+        if (way == 0)
+            for (int64_t dof = 0; dof < dofs; dof++)
+                if (sign[dof] < 0)
+                    for (int side = 0; side < some; side++) values[dof * width + side] *= -1.0;
+        if (way != 1) kernels.backward(fronts, lower.data(), values.data(), width, work.data());
+        for (int64_t dof = 0; dof < dofs; dof++) {
+            const double* from = values.data() + (way == 1 ? dof : at[dof]) * width;
+            for (int side = 0; side < some; side++) out[dof * sides + low + side] = from[side];
+        }
     }
 }
 

@@ -58,6 +58,18 @@ class Factors(Protocol):
         """Solution for one or several right-hand sides."""
         ...
 
+    def reduce(self, right: np.ndarray) -> np.ndarray:
+        """Forward half of a solve."""
+        ...
+
+    def inner(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """a^T A^-1 b from the forward halves of a and b."""
+        ...
+
+    def expand(self, reduced: np.ndarray) -> np.ndarray:
+        """Solution from its forward half, or from a sum of such."""
+        ...
+
 
 class Analysis:
     """What the factorisations of all matrices with one pattern have in common.
@@ -135,6 +147,18 @@ class Factorisation:
         """Solution of matrix @ x = right, for one or several right-hand sides."""
         return self._factors.solve(right)
 
+    def reduce(self, right: Float[np.ndarray, "dofs *columns"]) -> np.ndarray:
+        """Forward half of a solve, (dofs, columns), in an order and scale of its own; it is linear in `right`."""
+        return self._factors.reduce(right)
+
+    def inner(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """a^T matrix^-1 b from the forward halves of a and b."""
+        return self._factors.inner(one, other)
+
+    def expand(self, reduced: np.ndarray) -> Float[np.ndarray, "dofs *columns"]:
+        """Solution of matrix @ x = right from the forward half of `right`, or from a sum of such."""
+        return self._factors.expand(reduced)
+
 
 def factorise(matrix: csc_array) -> Factorisation:
     """Factorise one symmetric matrix whose pattern will not come again."""
@@ -168,6 +192,18 @@ class SuperLUFactors:
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution for one or several right-hand sides."""
         return self._lu.solve(np.ascontiguousarray(right))
+
+    def reduce(self, right: np.ndarray) -> np.ndarray:
+        """The right-hand sides themselves: SuperLU solves no half that is symmetric."""
+        return right
+
+    def inner(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """a^T A^-1 b."""
+        return one.T @ self.solve(other)
+
+    def expand(self, reduced: np.ndarray) -> np.ndarray:
+        """Solution for what was given to `reduce`."""
+        return self.solve(reduced)
 
 
 def _cheapest_tree(

@@ -305,11 +305,9 @@ class _EnergyDescent:
             springs = stiffness.coupling
             if springs.law is not None and springs.elongations is not None:
                 pulled = stiffness.columns @ springs.law.tension(springs.elongations)
-                free = -stiffness.solve_body(place.gradient - pulled)
-                elongations = springs.elongations + stiffness.columns.T @ free
-                tensions = springs.law.balance(elongations, stiffness.compliance)
-                if tensions is not None:
-                    return free - stiffness.moves @ tensions
+                step = stiffness.move(pulled - place.gradient, springs)
+                if step is not None:
+                    return step
         return -stiffness.solve(place.gradient)
 
     def _stride(self, place: _Iterate, step: Vector, trial: _Trial) -> _Trial:

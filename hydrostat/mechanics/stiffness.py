@@ -1,6 +1,7 @@
 """`Stiffness`: the Hessian (tangent stiffness matrix) of the energy, factorised, with its part of low rank."""
 
 from copy import copy
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -24,7 +25,6 @@ class Stiffness:
         columns: G.
         weights: D.
         token: what the assembly is known by that it is the Hessian of; factors serve no other one.
-        moves: Z [m/N]: how the nodes move when a cable pulls by 1 N more.
         compliance: M [m/N].
     """
 
@@ -33,8 +33,8 @@ class Stiffness:
         self.factors, self.token, self.coupling = factors, token, coupling
         self.columns = columns = coupling.columns
         if not factors.singular:
-            self.moves = factors.solve(columns) if columns.size else columns
-            self.compliance = columns.T @ self.moves
+            self._reduced = factors.reduce(columns) if columns.size else columns
+            self.compliance = factors.inner(self._reduced, self._reduced)
         self._weigh(coupling.weights)
 
     def with_coupling(self, coupling: Coupling) -> "Stiffness":
@@ -68,6 +68,11 @@ class Stiffness:
         self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
         self.definite = not self.singular and self.factors.negative == int((signs < 0).sum())
 
+    @cached_property
+    def moves(self) -> Columns:
+        """Z [m/N]: how the nodes move when a cable pulls by 1 N more."""
+        return self.factors.expand(self._reduced) if self.columns.size else self.columns
+
     def compliance_of(self, columns: slice) -> Compliance:
         """How the body gives way to some of the springs."""
         return Compliance(self.moves[:, columns], self.compliance[columns, columns])
@@ -82,17 +87,26 @@ class Stiffness:
         inner = np.eye(len(weights)) + weights @ self.compliance
         return -self.moves @ np.linalg.solve(inner, weights)
 
-    def solve_body(self, right: Float[np.ndarray, " dofs"]) -> Float[np.ndarray, " dofs"]:
-        """Solution of K x = right."""
-        return self.factors.solve(right)
+    def move(self, forces: Float[np.ndarray, " dofs"], coupling: Coupling) -> Float[np.ndarray, " dofs"] | None:
+        """How x moves under forces [N] and springs that may go slack or taut on the way; None if that is not found.
+
+        Args:
+            forces: on the body, those of the springs left out.
+            coupling: the springs, with their law and their elongations as they are.
+        """
+        assert coupling.law is not None
+        free = self.factors.reduce(forces)
+        elongations = coupling.elongations + self.factors.inner(self._reduced, free)
+        tensions = coupling.law.balance(elongations, self.compliance)
+        return None if tensions is None else self.factors.expand(free - self._reduced @ tensions)
 
     def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
         """Solution of H x = right, for one or several right-hand sides."""
-        first = self.factors.solve(right)
         if self._root is None:
-            return first
-        pulls = self._root.T @ (self.columns.T @ first)
-        return first - self.moves @ (self._root @ (self._inverse @ pulls))
+            return self.factors.solve(right)
+        free = self.factors.reduce(right)
+        pulls = self._root.T @ self.factors.inner(self._reduced, free)
+        return self.factors.expand(free - self._reduced @ (self._root @ (self._inverse @ pulls)))
 
 
 def _square_root(weights: Small) -> Small:

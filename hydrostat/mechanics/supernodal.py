@@ -37,6 +37,9 @@ BLOCK = 24
 SPARE = 8
 """Numbers behind the end of an array that the compiled core may read."""
 
+WHOLE, LOWER, UPPER = range(3)
+"""What of A^-1 is applied: all of it, L^-1, or L^-T S."""
+
 IDLE = 3
 """So many arrays of factors are kept by a thread for those to come; fresh pages take half as long as factors."""
 
@@ -326,19 +329,20 @@ def _subtract_signed(panel, height, low, high, begin, end, sign, spare, call, ta
 
 @njit(fastmath=FINE, **KERNEL)
 @no_type_check
-def solve_vector(fronts, lower, signs, values, work):
-    """Solve L S L^T x = b in place, in the order of elimination; `work` holds the rows of a front."""
+def solve_vector(fronts, lower, signs, values, work, way):
+    """Solve L S L^T x = b in place, in the order of elimination, or half of it; `work` holds the rows of a front."""
     table, rows = fronts.table, fronts.rows
-    for which in range(len(table) - 1):
+    for which in range(len(table) - 1 if way != UPPER else 0):
         columns, below = table[which, COLUMNS], table[which, BELOW]
         panel = lower[table[which, PANEL] : table[which + 1, PANEL]]
         first, start = table[which, FIRST], table[which, STARTS]
         _forward(panel, columns, columns + below, values[first : first + columns], work)
         for row in range(below):
             values[rows[start + row]] -= work[columns + row]
-    for row in range(len(values)):
-        values[row] *= signs[row]
-    for which in range(len(table) - 2, -1, -1):
+    if way != LOWER:
+        for row in range(len(values)):
+            values[row] *= signs[row]
+    for which in range(len(table) - 2 if way != LOWER else -1, -1, -1):
         columns, below = table[which, COLUMNS], table[which, BELOW]
         panel = lower[table[which, PANEL] : table[which + 1, PANEL]]
         first, start = table[which, FIRST], table[which, STARTS]
@@ -422,13 +426,13 @@ def _backward(panel, columns, height, own, work):
 
 @njit(fastmath=FINE, **KERNEL)
 @no_type_check
-def solve_matrix(fronts, lower, signs, values, work, call):
+def solve_matrix(fronts, lower, signs, values, work, call, way):
     """Solve for several right-hand sides, (dofs, sides) row by row: transposed, they are Fortran's."""
     table, rows = fronts.table, fronts.rows
     sides = values.shape[1]
     at, other, panels = np.int64(values.ctypes.data), np.int64(work.ctypes.data), np.int64(lower.ctypes.data)
     yes = np.int64(1)
-    for which in range(len(table) - 1):
+    for which in range(len(table) - 1 if way != UPPER else 0):
         columns, below = table[which, COLUMNS], table[which, BELOW]
         place = panels + 8 * table[which, PANEL]
         first, start, height = table[which, FIRST], table[which, STARTS], columns + below
@@ -442,10 +446,11 @@ def solve_matrix(fronts, lower, signs, values, work, call):
             for row in range(below):
                 for side in range(sides):
                     values[rows[start + row], side] += work[row, side]
-    for row in range(len(values)):
-        for side in range(sides):
-            values[row, side] *= signs[row]
-    for which in range(len(table) - 2, -1, -1):
+    if way != LOWER:
+        for row in range(len(values)):
+            for side in range(sides):
+                values[row, side] *= signs[row]
+    for which in range(len(table) - 2 if way != LOWER else -1, -1, -1):
         columns, below = table[which, COLUMNS], table[which, BELOW]
         place = panels + 8 * table[which, PANEL]
         first, start, height = table[which, FIRST], table[which, STARTS], columns + below
@@ -517,23 +522,35 @@ class SupernodalFactors:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution for one or several right-hand sides."""
+        return self._apply(right, WHOLE)
+
+    def reduce(self, right: np.ndarray) -> np.ndarray:
+        """Forward half of a solve: L^-1 right, in the order of elimination."""
+        return self._apply(right, LOWER)
+
+    def inner(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """a^T A^-1 b from the forward halves of a and b."""
+        if self.negative == 0:
+            return one.T @ other
+        return (one.T * self._signs) @ other
+
+    def expand(self, reduced: np.ndarray) -> np.ndarray:
+        """Solution from its forward half, or from a sum of such: L^-T S reduced."""
+        return self._apply(reduced, UPPER)
+
+    def _apply(self, right: np.ndarray, way: int) -> np.ndarray:
         analysis = self._analysis
         if native is not None:
-            return self._by_core(right)
+            given = np.ascontiguousarray(right, dtype=float).reshape(len(right), -1)
+            found = np.empty(given.shape)
+            places = analysis.fronts.table, analysis.fronts.rows, analysis.place
+            native.solve(*places, self._lower, self._signs, given, found, way, analysis.height)
+            return found.reshape(right.shape)
         values = np.empty(right.shape)
-        values[analysis.place] = right
+        values[... if way == UPPER else analysis.place] = right
         if right.ndim == 1:
-            solve_vector(analysis.fronts, self._lower, self._signs, values, np.empty(analysis.height))
+            solve_vector(analysis.fronts, self._lower, self._signs, values, np.empty(analysis.height), way)
         elif right.shape[1] > 0:
             work = np.empty((analysis.height, right.shape[1]))
-            solve_matrix(analysis.fronts, self._lower, self._signs, values, work, analysis.workspace.call)
-        return values[analysis.place]
-
-    def _by_core(self, right: np.ndarray) -> np.ndarray:
-        """Solve by the compiled core."""
-        analysis, fronts = self._analysis, self._analysis.fronts
-        given = np.ascontiguousarray(right, dtype=float).reshape(len(right), -1)
-        found = np.empty(given.shape)
-        places = fronts.table, fronts.rows, analysis.place
-        native.solve(*places, self._lower, self._signs, given, found, analysis.height)
-        return found.reshape(right.shape)
+            solve_matrix(analysis.fronts, self._lower, self._signs, values, work, analysis.workspace.call, way)
+        return values if way == LOWER else values[analysis.place]
