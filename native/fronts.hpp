@@ -11,8 +11,6 @@
 
 namespace {
 
-#define UNROLL _Pragma("GCC unroll 8")
-
 enum { COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES, WIDTH };
 
 #if defined(__AVX512F__)

@@ -9,6 +9,7 @@ typedef int64_t I8 __attribute__((vector_size(64)));
 typedef double V4 __attribute__((vector_size(32)));
 
 #define INLINE inline __attribute__((always_inline))
+#define UNROLL _Pragma("GCC unroll 16")  // loops over arrays of vectors, which else stay in memory
 
 template <class V> INLINE V load(const double* at) {  // from any place, aligned or not
     V value;

@@ -149,6 +149,7 @@ class _EnergyDescent:
     Attributes:
         share: of what is negative in the Hessian that the last step took out.
         whole: whether the step has to be taken whole or not at all.
+        fast: whether the last step brought the residual down by much.
         saddles: how many have been left.
         last: the Hessian of the last step, if nothing was taken out of it.
         sharp: whether that step began near enough to the end for `last` to stand for the Hessian there.
@@ -167,7 +168,7 @@ class _EnergyDescent:
         self.assembly, self.controls = assembly, controls
         self.noise, self.options, self.warp = round_off, options, warp
         self.share = 0.0
-        self.whole = False
+        self.whole = self.fast = False
         self.saddles = 0
         self.last: Stiffness | None = None
         self.sharp = False
@@ -180,11 +181,13 @@ class _EnergyDescent:
             place = _Iterate(assembly, start, energy, np.full(start.size, np.inf))
             return self._result(place, Reason.BAD_START, 0.0, 0)
         place = self._arrive(assembly, start, energy, assembly.least_volume(start))
+        residual = np.inf
         for iteration in count():
             self.whole = self.options.whole and iteration == 0
             scale = place.assembly.largest_force(place.nodes, self.controls)
             allowed = max(self.options.tolerance * scale, self.noise.force)
-            residual = float(np.abs(place.gradient).max())
+            before, residual = residual, float(np.abs(place.gradient).max())
+            self.fast = residual < _FAST * before
             if residual <= allowed:
                 found, reason = self._leave_saddle(place), Reason.CONVERGED
             elif iteration == self.options.iterations:
@@ -244,7 +247,7 @@ class _EnergyDescent:
         negative is taken out; the share falls from step to step as long as it suffices. None where nothing helps: the
         Hessian is not finite, or 0.
         """
-        self.share = self.share / 16 if self.share > _LEAST_SHARE else 0.0
+        self.share = self.share / 16 if self.share > _LEAST_SHARE and not self.fast else 0.0
         while True:
             stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=self.share)
             if stiffness.definite:
@@ -378,6 +381,9 @@ _PAYS = 0.1
 
 _LEAST_SHARE = 1 / 32
 """Below this share of what is negative, try the full Hessian."""
+
+_FAST = 0.1
+"""After a step that leaves less than this share of the residual the full Hessian is tried at once."""
 
 _SHIFTS = tuple(np.logspace(-10, 1, 12))
 """What is added to the diagonal of the projected Hessian, if even that is singular: fractions of its largest entry."""
