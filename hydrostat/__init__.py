@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from hydrostat.robot import Cable, Marker, Material, Pin, Pose, Robot, Winch, load_robot, save_robot
     from hydrostat.simulation import (
         Branch,
+        ManyPoses,
         Motion,
         PathDependence,
         Profile,
@@ -70,6 +71,7 @@ __all__ = [
     "Kit",
     "KitOptions",
     "Limits",
+    "ManyPoses",
     "Marker",
     "MarkerGoal",
     "Material",
@@ -132,6 +134,7 @@ _HOMES = {
     "Marker": "robot",
     "MarkerGoal": "ik",
     "Material": "robot",
+    "ManyPoses": "simulation",
     "Motion": "simulation",
     "Moves": "ik",
     "Network": "design",

@@ -22,5 +22,8 @@ if os.environ.get("HYDROSTAT_NATIVE", "1") != "0" and find_spec("hydrostat._nati
 KERNEL: dict[str, Any] = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 """Options of `numba.njit` for a function that Python calls."""
 
+LONG: dict[str, Any] = KERNEL | {"nogil": True}
+"""The same for one that goes over a whole body: it lets other threads run, which short ones do not repay."""
+
 INNER: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
 """Options of `numba.njit` for a function that only compiled code calls."""

@@ -1,4 +1,4 @@
-// `hydrostat._native`: the compiled core for Python. Each function checks shapes, and lets other threads run.
+// `hydrostat._native`: the compiled core for Python. Functions check shapes; those that take long let other threads run.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
@@ -25,6 +25,19 @@ const Kernels& chosen() {
 
 const Kernels& kernels = chosen();
 
+// Lets other threads run while a call goes on for longer than handing over takes, some tens of microseconds.
+struct Free {
+    explicit Free(double nanoseconds) {
+        if (nanoseconds > 3e4) state = PyEval_SaveThread();
+    }
+    ~Free() {
+        if (state) PyEval_RestoreThread(state);
+    }
+    Free(const Free&) = delete;
+    Free& operator=(const Free&) = delete;
+    PyThreadState* state = nullptr;
+};
+
 void demand(bool right, const char* what) {
     if (!right) throw std::invalid_argument(what);
 }
@@ -49,7 +62,7 @@ double value(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<con
              Reals<2> volumes, int64_t terms, double mu, double lame) {
     Packed packed(stencils, gradients, volumes, terms, mu, lame);
     demand((int)displacements.shape(1) == packed.all.dim, "dim of the displacements");
-    nb::gil_scoped_release free;
+    Free free(9.0 * terms);
     return kernels.value(packed.all, displacements.data());
 }
 
@@ -58,7 +71,7 @@ void gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<co
     Packed packed(stencils, gradients, volumes, terms, mu, lame);
     demand((int)displacements.shape(1) == packed.all.dim && total.shape(0) == displacements.shape(0) &&
                total.shape(1) == displacements.shape(1), "shape of the total");
-    nb::gil_scoped_release free;
+    Free free(15.0 * terms);
     kernels.gradient(packed.all, displacements.data(), total.data());
 }
 
@@ -68,7 +81,7 @@ void hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<con
     Packed packed(stencils, gradients, volumes, terms, mu, lame);
     demand((int)displacements.shape(1) == packed.all.dim && (int64_t)slots.shape(0) == terms &&
                strides.shape(0) == displacements.shape(0), "shapes of displacements, slots and strides");
-    nb::gil_scoped_release free;
+    Free free(120.0 * terms);
     kernels.hessian(packed.all, displacements.data(), share, slots.data(), strides.data(), data.data());
 }
 
@@ -78,7 +91,7 @@ void turn(Reals<2> nodes, Reals<2> step, Array<const int32_t, 3> stencils, Array
     demand((int)nodes.shape(1) == packed.all.dim && step.shape(0) == nodes.shape(0) &&
                step.shape(1) == nodes.shape(1) && right.shape(0) == nodes.shape(0) &&
                right.shape(1) == nodes.shape(1), "shapes of nodes, step and right");
-    nb::gil_scoped_release free;
+    Free free(25.0 * terms);
     kernels.turn(packed.all, nodes.data(), step.data(), right.data());
 }
 
@@ -97,7 +110,7 @@ int64_t factorise(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, A
                   Array<double, 1> spare, double tiny) {
     Fronts fronts = plan(table, rows, runs, entries, diagonal);
     demand(signs.shape(0) == diagonal.shape(0), "as many signs as degrees of freedom");
-    nb::gil_scoped_release free;
+    Free free(0.3 * (double)lower.shape(0));
     return kernels.factorise(fronts, data.data(), lower.data(), signs.data(), first.data(), second.data(),
                              spare.data(), tiny);
 }
@@ -114,7 +127,7 @@ void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<co
     const double* given = right.data();
     const double* sign = signs.data();
     double* out = found.data();
-    nb::gil_scoped_release free;
+    Free free(0.2 * (double)lower.shape(0) * (double)(sides + 1));
     static thread_local std::vector<double> values, work;
     for (int64_t low = 0; low < sides; low += 16) {
         int some = (int)(sides - low < 16 ? sides - low : 16), width = some == 1 ? 1 : some <= 4 ? 4 : some <= 8 ? 8 : 16;

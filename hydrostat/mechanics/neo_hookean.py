@@ -10,7 +10,7 @@ from jaxtyping import Float
 from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
-from hydrostat.kernel import INNER, KERNEL, native
+from hydrostat.kernel import INNER, LONG, native
 from hydrostat.mechanics.energy import Blocks, ElementGroups, Energy, HessianBlocks, Places, element_groups
 
 
@@ -137,7 +137,7 @@ def _displacement_gradient(displacements, stencil, gradients, axes, G):
     return G[0, 0] + G[1, 1] + G[2, 2] + minors + determinant
 
 
-@njit(**KERNEL)
+@njit(**LONG)
 @no_type_check
 def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
     G = np.empty((3, 3))
@@ -156,7 +156,7 @@ def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
     return total
 
 
-@njit(**KERNEL)
+@njit(**LONG)
 @no_type_check
 def _least_volume(nodes, stencils, gradients, axes):
     """J of the element that is squeezed most, by the spans of its corners; 1 if none is."""
@@ -209,7 +209,7 @@ def _spatial_gradients(G, J, gradients, spatial):
         spatial[corner, 2] = c20 * x + c21 * y + c22 * z
 
 
-@njit(**KERNEL)
+@njit(**LONG)
 @no_type_check
 def _gradient(blocks, displacements, stencils, gradients, volumes, mu, lame, axes):
     """P grad N of each element, with P = mu (F - F^-T) + lambda ln J F^-T = mu (G + (I - F^-T)) + ..."""
@@ -232,7 +232,7 @@ def _gradient(blocks, displacements, stencils, gradients, volumes, mu, lame, axe
                 blocks[element, corner, i] = volumes[element] * force
 
 
-@njit(**KERNEL)
+@njit(**LONG)
 @no_type_check
 def _hessian(blocks, share, displacements, stencils, gradients, volumes, mu, lame, axes):
     G, V, stretches, vectors = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))

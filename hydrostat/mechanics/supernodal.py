@@ -20,7 +20,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.kernel import INNER, KERNEL, native
+from hydrostat.kernel import INNER, KERNEL, LONG, native
 from hydrostat.mechanics.blas import (
     Scratch,
     divide_right,
@@ -172,7 +172,7 @@ def _entries(table, rows, indptr, indices, place, undo, local, entries, diagonal
         table[which + 1, ENTRIES] = filled
 
 
-@njit(fastmath=FINE, **KERNEL)
+@njit(fastmath=FINE, **LONG)
 @no_type_check
 def factorise_fronts(fronts, data, lower, signs, first_stack, second_stack, spare, call, tiny):
     """Fill L and S; the number of negative pivots, or -1 where a pivot is not above `tiny` x the largest diagonal."""
@@ -327,7 +327,7 @@ def _subtract_signed(panel, height, low, high, begin, end, sign, spare, call, ta
         )
 
 
-@njit(fastmath=FINE, **KERNEL)
+@njit(fastmath=FINE, **LONG)
 @no_type_check
 def solve_vector(fronts, lower, signs, values, work, way):
     """Solve L S L^T x = b in place, in the order of elimination, or half of it; `work` holds the rows of a front."""
@@ -424,7 +424,7 @@ def _backward(panel, columns, height, own, work):
             work[inner] = own[inner]
 
 
-@njit(fastmath=FINE, **KERNEL)
+@njit(fastmath=FINE, **LONG)
 @no_type_check
 def solve_matrix(fronts, lower, signs, values, work, call, way):
     """Solve for several right-hand sides, (dofs, sides) row by row: transposed, they are Fortran's."""

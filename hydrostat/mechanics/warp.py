@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from numba import njit
 
 from hydrostat.arrays import Nodes
-from hydrostat.kernel import INNER, KERNEL, native
+from hydrostat.kernel import INNER, LONG, native
 from hydrostat.mechanics.energy import Stencils, element_groups
 from hydrostat.mechanics.factorisation import Analysis
 
@@ -63,7 +63,7 @@ def _entries(stencils: Stencils, blocks: np.ndarray, count: int) -> tuple[np.nda
     return keys.ravel(), blocks.ravel()
 
 
-@njit(**KERNEL)
+@njit(**LONG)
 @no_type_check
 def _turn(nodes, step, stencils, gradients, volumes, axes, right):
     """Sum of volume x (exp(W) (I + S) F - F - dF) grad N over the elements, where dF F^-1 = S + W.

@@ -5,6 +5,7 @@ from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
+from hydrostat.simulation.many_poses import ManyPoses
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
@@ -25,6 +26,7 @@ __all__ = [
     "CriticalPoint",
     "Dynamics",
     "FoundPose",
+    "ManyPoses",
     "Motion",
     "MotionTable",
     "PathDependence",

@@ -16,11 +16,13 @@ from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.loading_path import LoadingPath
+from hydrostat.simulation.many_poses import LONG_ENOUGH, ManyPoses, PoseRow, in_threads, many_poses, pose_row
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.obstacles import obstacles
 from hydrostat.simulation.profile import Profile
+from hydrostat.simulation.response import response
 from hydrostat.simulation.route_points import RoutePoints, route_points
-from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.simulation.solved_pose import SolvedPose, check_pose
 from hydrostat.simulation.static_solver import StaticSolver
 
 Contractions = Mapping[str, float] | Vector
@@ -86,11 +88,9 @@ class Simulation:
         if isinstance(given, Mapping):
             for name in given:
                 self.robot.winch(name)
-            wanted = [given.get(winch.name, 0.0) for winch in winches]
-        else:
-            wanted = given
+            given = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
         try:
-            values = np.array(wanted, dtype=float)
+            values = np.array(given, dtype=float)
         except (TypeError, ValueError):
             raise InputError(f"contractions must be numbers [m], not {given!r}") from None
         if values.shape != (len(winches),):
@@ -124,8 +124,6 @@ class Simulation:
         """
         goal = self.contractions(contractions)
         self.check_start(start)
-        if seconds is not None and not seconds > 0:
-            raise InputError(f"seconds must be above 0, not {seconds:g}")
         history, solver = np.zeros(0), self.solver.within(seconds)
         if self.assembly.has_history:
             path = self._path if seconds is None else LoadingPath(self.robot, solver)
@@ -142,6 +140,44 @@ class Simulation:
             )
         return pose
 
+    def solve_many(
+        self,
+        contractions: Sequence[Contractions] | Float[np.ndarray, "poses winches"],
+        *,
+        jacobians: bool = True,
+        nodes: bool = False,
+        threads: int = 2,
+        start: SolvedPose | None = None,
+        seconds: float | None = None,
+    ) -> ManyPoses:
+        """Equilibria at many contractions, each found by itself: the same bytes for any number of threads.
+
+        A pose that is not found leaves NaN and its reason in its row. Ctrl-C ends it after the poses under way.
+
+        Args:
+            contractions: cable taken in [m], (poses, winches), or each as in `solve`.
+            jacobians: whether to find slopes of the markers too.
+            nodes: whether to keep all nodes.
+            threads: that solve at the same time, one for each core; for small bodies, where two are slower, one works.
+            start: a pose to begin each from; the rest pose if left out.
+            seconds: after which one pose is given up; no limit if left out.
+
+        Raises:
+            InputError: as for `solve`; or no number of threads.
+        """
+        goals = np.array([self.contractions(given) for given in contractions]).reshape(-1, len(self.robot.winches))
+        self.check_start(start)
+        _ = self.solver.within(seconds), self.rest_stiffness  # checked and made before threads ask for them
+        pays = self.assembly.pattern.analysis.tree.seconds >= LONG_ENOUGH
+        slopes = self.jacobian if jacobians else None
+
+        def row(number: int) -> PoseRow:
+            pose = self.solve(goals[number], start=start, strict=False, seconds=seconds)
+            return pose_row(pose, self.marker_anchors, keep=nodes, slopes=slopes, in_the_way=self.in_the_way)
+
+        rows = in_threads(row, len(goals), threads, pays=pays)
+        return many_poses(self.robot, goals, rows, jacobians=jacobians, nodes=nodes)
+
     def in_the_way(self, pose: SolvedPose) -> tuple[str, ...]:
         """Tell what kept a solve from an equilibrium: the cable that pulls hardest, an element next to flat."""
         forces = self.forces(pose.nodes, pose.contractions).reshape(pose.nodes.shape)
@@ -153,22 +189,9 @@ class Simulation:
         Raises:
             InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
         """
-        if start is None:
-            return
-        if not isinstance(start, SolvedPose):
-            kind = type(start).__name__
-            raise InputError(f"start must be a solved pose, from `simulation.solve` or a result's `.pose`, not {kind}")
-        shape = self.robot.body.mesh.nodes.shape
-        if not (start.nodes.shape == shape and np.isfinite(start.nodes).all()):
-            raise InputError(f"start must be a pose of this robot with finite nodes, {shape}, not {start.nodes.shape}")
-        given, winches = len(start.contractions), len(self.robot.winches)
-        if given != winches:
-            raise InputError(f"start has {given} contractions, the robot {winches} winches")
-        if self.assembly.has_history and len(start.history) != len(self.assembly.history):
-            raise InputError(
-                "start must be a pose of these physics, which remember the way, such as slips of cables with friction: "
-                f"{len(self.assembly.history)} numbers, not {len(start.history)}"
-            )
+        if start is not None:
+            history = self.assembly.history if self.assembly.has_history else None
+            check_pose(start, self.robot.body.mesh.nodes.shape, len(self.robot.winches), history)
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
         """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).
@@ -184,9 +207,7 @@ class Simulation:
             return self.response(pose, right).reshape(*pose.nodes.shape, -1)
         if self.friction is None or not self._plain:
             raise InputError("physics that remember the way have a derivative only for cables with friction alone")
-        stiffness = self.stiffness(pose)
-        if stiffness.singular:
-            raise NotConvergedError("the pose has no derivative: its Hessian is singular", pose.result)
+        stiffness = self._regular(pose)
         cables = self.friction.resumed(pose.history, pose.nodes, pose.contractions)
         compliance = stiffness.compliance_of(slice(0, len(pose.history)))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
@@ -232,24 +253,8 @@ class Simulation:
                 "a pose with friction has no adjoint, as it depends on the way there; set friction = 0 and leave out "
                 "other energies that remember the way"
             )
-        stiffness = self.stiffness(pose)
-        if stiffness.singular:
-            raise NotConvergedError(
-                "the pose has no derivative: its Hessian is singular, it is about to snap", pose.result
-            )
-        assembly = self.assembly.near(pose.nodes)
-        body = assembly.hessian(pose.nodes, pose.contractions)
-        springs = assembly.coupling(pose.nodes, pose.contractions)
-        allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
-        rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
-        moves = stiffness.solve(forces)
-        for _ in range(_REFINEMENTS):  # the factors may be those of a state close by
-            missing = forces - body @ moves - springs.columns @ (springs.weights @ (springs.columns.T @ moves))
-            hidden = rounding * np.abs(moves).max(axis=0, initial=0.0)
-            if (np.abs(missing).max(axis=0, initial=0.0) <= allowed + hidden).all():
-                return moves
-            moves += stiffness.solve(missing)
-        return assembly.stiffness(pose.nodes, pose.contractions).solve(forces)
+        stiffness = self._regular(pose)
+        return response(self.assembly.near(pose.nodes), stiffness, (pose.nodes, pose.contractions), forces)
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
@@ -340,6 +345,12 @@ class Simulation:
             return self._path.resumed(pose).stiffness(pose.nodes, pose.contractions)
         return self.stiffness_of(pose) or self.assembly.near(pose.nodes).stiffness(pose.nodes, pose.contractions)
 
+    def _regular(self, pose: SolvedPose) -> Stiffness:
+        stiffness = self.stiffness(pose)
+        if not stiffness.singular:
+            return stiffness
+        raise NotConvergedError("no derivative: the Hessian is singular, the pose is about to snap", pose.result)
+
     def stiffness_of(self, pose: SolvedPose) -> Stiffness | None:
         """The Hessian that a pose of this simulation brings along; None if it brings none, or its nodes were moved."""
         known, unmoved = pose.result.stiffness, pose.nodes is pose.result.nodes
@@ -387,7 +398,3 @@ class Simulation:
             result=result,
             history=np.zeros(0) if history is None else history,
         )
-
-
-_REFINEMENTS = 4
-"""Most steps of iterative refinement with factors of a state close by."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult
 
 
@@ -40,3 +41,30 @@ class SolvedPose:
 def largest_distance(one: Nodes, other: Nodes) -> float:
     """Largest distance of a node between two poses [m]."""
     return float(np.linalg.norm(one - other, axis=1).max())
+
+
+def check_pose(pose: object, shape: tuple[int, ...], winches: int, history: Vector | None) -> None:
+    """Check that a solve can begin from a pose.
+
+    Args:
+        pose: what was given.
+        shape: of the robot's nodes.
+        winches: their number.
+        history: of physics that remember the way there; None if none do.
+
+    Raises:
+        InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
+    """
+    if not isinstance(pose, SolvedPose):
+        kind = type(pose).__name__
+        raise InputError(f"start must be a solved pose, from `simulation.solve` or a result's `.pose`, not {kind}")
+    if not (pose.nodes.shape == shape and np.isfinite(pose.nodes).all()):
+        raise InputError(f"start must be a pose of this robot with finite nodes, {shape}, not {pose.nodes.shape}")
+    given = len(pose.contractions)
+    if given != winches:
+        raise InputError(f"start has {given} contractions, the robot {winches} winches")
+    if history is not None and len(pose.history) != len(history):
+        raise InputError(
+            "start must be a pose of these physics, which remember the way, such as slips of cables with friction: "
+            f"{len(history)} numbers, not {len(pose.history)}"
+        )

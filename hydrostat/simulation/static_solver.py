@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
 from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, RoundOff, Stiffness, Warp, minimise
 
 
@@ -65,9 +66,15 @@ class StaticSolver:
         )
 
     def within(self, seconds: float | None) -> "StaticSolver":
-        """The same that stops after so many seconds, counted from now; itself if that is None."""
+        """The same that stops after so many seconds, counted from now; itself if that is None.
+
+        Raises:
+            InputError: a limit that is not above 0.
+        """
         if seconds is None:
             return self
+        if not seconds > 0:
+            raise InputError(f"seconds must be above 0, not {seconds:g}")
         return replace(self, options=replace(self.options, deadline=time.monotonic() + seconds))
 
     def allowed(self, nodes: Nodes, controls: Vector) -> float:

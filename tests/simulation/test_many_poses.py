@@ -1,0 +1,196 @@
+"""Many poses at once. Oracles: one solve after the other, to the byte; finite differences; errors put in on purpose."""
+
+import _thread
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from builders import box_robot, strip_robot
+
+from hydrostat.errors import InputError
+from hydrostat.mechanics import NewtonOptions, Reason
+from hydrostat.simulation import ManyPoses, Simulation, SolvedPose
+from hydrostat.simulation import simulation as room
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+ROBOTS = {"flat": lambda: strip_robot(columns=10, rows=2), "space": box_robot}
+
+
+@pytest.fixture(scope="module", params=ROBOTS)
+def simulation(request: pytest.FixtureRequest) -> Simulation:
+    return Simulation(ROBOTS[request.param]())
+
+
+@pytest.fixture(autouse=True)
+def threads_always_pay(monkeypatch: pytest.MonkeyPatch) -> None:
+    """These bodies are so small that one thread would do all."""
+    monkeypatch.setattr(room, "LONG_ENOUGH", 0.0)
+
+
+def goals_of(simulation: Simulation, size: int) -> np.ndarray:
+    return np.random.default_rng(3).uniform(0.0, 0.01, (size, len(simulation.robot.winches)))
+
+
+def all_bytes(found: ManyPoses) -> bytes:
+    assert found.jacobians is not None
+    assert found.nodes is not None
+    parts = (found.contractions, found.markers, found.tensions, found.jacobians, found.nodes, found.stable)
+    return b"".join(part.tobytes() for part in parts)
+
+
+def test_any_number_of_threads_finds_the_bytes_of_one_solve_after_the_other(simulation: Simulation) -> None:
+    goals = goals_of(simulation, 12)
+    found = simulation.solve_many(goals, nodes=True, threads=1)
+    assert found.converged.all()
+    assert found.stable.all()
+    for number, goal in enumerate(goals):
+        pose = simulation.solve(goal)
+        assert found.nodes is not None
+        assert found.jacobians is not None
+        assert found.nodes[number].tobytes() == pose.nodes.tobytes()
+        assert found.markers[number].tobytes() == np.array(list(pose.markers.values())).tobytes()
+        assert found.tensions[number].tobytes() == pose.tensions.tobytes()
+        slopes = np.einsum("mn,ndw->mdw", weights(simulation), simulation.jacobian(pose))
+        assert np.abs(found.jacobians[number] - slopes).max() <= 1e-14 * np.abs(slopes).max()
+    for threads in (2, 3, 8):
+        assert all_bytes(simulation.solve_many(goals, nodes=True, threads=threads)) == all_bytes(found)
+
+
+def weights(simulation: Simulation) -> np.ndarray:
+    return simulation.marker_anchors.matrix(len(simulation.robot.body.mesh.nodes)).toarray()
+
+
+def test_jacobians_are_the_slopes_of_the_markers(simulation: Simulation) -> None:
+    """Central differences of step h err by h^2: halved steps leave a quarter."""
+    goal = goals_of(simulation, 1)[0]
+    slopes = simulation.solve_many([goal]).jacobians
+    assert slopes is not None
+    errors = []
+    for step in (1e-4, 5e-5):
+        moves = step * np.eye(len(goal))
+        sides = simulation.solve_many(np.concatenate([goal + moves, goal - moves]), jacobians=False)
+        assert sides.jacobians is None
+        ahead, behind = np.split(sides.markers, 2)
+        differences = np.moveaxis((ahead - behind) / (2 * step), 0, -1)
+        errors.append(np.abs(differences - slopes[0]).max() / np.abs(slopes).max())
+    assert errors[0] < 5e-3
+    assert errors[1] < 0.3 * errors[0]
+
+
+def test_a_pose_that_is_not_found_leaves_nan_and_its_reason(simulation: Simulation) -> None:
+    goals = np.concatenate([goals_of(simulation, 2), goals_of(simulation, 3)[2:] + 1.0])  # a metre is too much
+    hasty = Simulation(simulation.robot, options=NewtonOptions(iterations=12), body=simulation.body)
+    found = hasty.solve_many(goals, nodes=True)
+    assert found.converged.tolist() == [True, True, False]
+    assert found.reasons[2] not in (None, Reason.CONVERGED)
+    assert found.troubles[:2] == ("", "")
+    assert found.troubles[2].startswith(str(found.reasons[2]))
+    assert found.jacobians is not None
+    assert found.nodes is not None
+    for part in (found.markers, found.tensions, found.jacobians, found.nodes):
+        assert np.isnan(part[2]).all()
+        assert np.isfinite(part[:2]).all()
+
+
+def test_an_error_in_one_pose_does_not_lose_the_others(simulation: Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+    goals, solve = goals_of(simulation, 5), simulation.solve
+
+    def fragile(goal: np.ndarray, **options: Any) -> SolvedPose:
+        if (goal == goals[1]).all():
+            raise ZeroDivisionError("put in on purpose")
+        return solve(goal, **options)
+
+    monkeypatch.setattr(simulation, "solve", fragile)
+    found = simulation.solve_many(goals)
+    assert found.converged.tolist() == [True, False, True, True, True]
+    assert found.reasons[1] is None
+    assert found.troubles[1] == "ZeroDivisionError: put in on purpose"
+    assert np.isnan(found.markers[1]).all()
+
+
+def test_it_begins_from_a_pose(simulation: Simulation) -> None:
+    """From the pose that is asked for there is nothing left to do."""
+    goal = goals_of(simulation, 1)[0]
+    pose = simulation.solve(goal)
+    found = simulation.solve_many([goal, goal], nodes=True, start=pose)
+    assert found.nodes is not None
+    assert np.abs(found.nodes - pose.nodes).max() <= 1e-9 * simulation.robot.body.mesh.size
+
+
+def test_names_of_winches_will_do(simulation: Simulation) -> None:
+    winch = simulation.robot.winches[0].name
+    found = simulation.solve_many([{winch: 0.004}, {}])
+    assert found.contractions[0, 0] == 0.004
+    assert not found.contractions[:, 1:].any()
+    assert len(found) == 2
+
+
+@pytest.mark.parametrize(("least", "several"), [(0.0, True), (1.0, False)])
+def test_one_thread_solves_small_bodies(
+    simulation: Simulation, monkeypatch: pytest.MonkeyPatch, least: float, several: bool
+) -> None:
+    """Two would mostly wait for Python's lock."""
+    names, solve = set(), simulation.solve
+
+    def told(goal: np.ndarray, **options: Any) -> SolvedPose:
+        names.add(threading.current_thread().name)
+        time.sleep(0.01)
+        return solve(goal, **options)
+
+    monkeypatch.setattr(simulation, "solve", told)
+    monkeypatch.setattr(room, "LONG_ENOUGH", least)
+    simulation.solve_many(goals_of(simulation, 6), threads=2)
+    assert len(names) == (2 if several else 1)
+
+
+def test_no_pose_and_no_marker(simulation: Simulation) -> None:
+    bare = Simulation(replace(simulation.robot, markers=()), body=simulation.body)
+    winches = len(simulation.robot.winches)
+    assert bare.solve_many(np.zeros((0, winches))).markers.shape == (0, 0, simulation.robot.body.mesh.dim)
+    assert bare.solve_many(goals_of(bare, 2)).markers.shape == (2, 0, simulation.robot.body.mesh.dim)
+
+
+@pytest.mark.parametrize("wrong", [0, -1, 1.5, True])
+def test_threads_are_counted_from_one(simulation: Simulation, wrong: object) -> None:
+    with pytest.raises(InputError, match="threads must be a whole number"):
+        simulation.solve_many(goals_of(simulation, 2), threads=wrong)  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda goals: goals[:, :1], "1 contractions given for"),
+        (lambda goals: np.where(goals > 0.005, np.nan, goals), "not a finite number"),
+    ],
+)
+def test_wrong_contractions_are_refused_at_once(simulation: Simulation, change: Callable, text: str) -> None:
+    with pytest.raises(InputError, match=text):
+        simulation.solve_many(change(goals_of(simulation, 20)))
+
+
+def test_a_wrong_limit_is_refused_at_once(simulation: Simulation) -> None:
+    with pytest.raises(InputError, match="seconds must be above 0"):
+        simulation.solve_many(goals_of(simulation, 2), seconds=0.0)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_an_interrupt_ends_it(simulation: Simulation, monkeypatch: pytest.MonkeyPatch, threads: int) -> None:
+    """Of ten thousand poses that take a hundredth of a second each only the first few are solved."""
+    solved, solve = [], simulation.solve
+
+    def slow(goal: np.ndarray, **options: Any) -> SolvedPose:
+        solved.append(goal)
+        time.sleep(0.01)
+        if len(solved) == 10:
+            threading.Timer(0.0, _thread.interrupt_main).start()
+        return solve(goal, **options)
+
+    monkeypatch.setattr(simulation, "solve", slow)
+    with pytest.raises(KeyboardInterrupt):
+        simulation.solve_many(np.zeros((10_000, len(simulation.robot.winches))), threads=threads)
+    assert len(solved) < 1000
