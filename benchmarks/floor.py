@@ -29,6 +29,9 @@ from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Body, Cable, Material, Pin, Robot, Winch
 from hydrostat.robot.body import Source
 
+TOLERANCE = 1e-8
+"""Norm of the forces [N] at which the trial stops: its tips are then as exact as ours, to a tenth of a nanometre."""
+
 STEPS = (0.002, 0.01, 0.03)
 """Sizes of the steps of the walks, as shares of the length of each cable."""
 
@@ -51,7 +54,8 @@ class Row:
 class Hydrostat:
     """The body of the trial as a robot of ours."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, accuracy: float | None = None) -> None:
+        self.accuracy = accuracy
         data = np.load(folder / "hand.npz")
         mesh = Mesh(data["X"], data["T"])
         mu, lame = 35.7e3, 143e3
@@ -85,7 +89,7 @@ class Hydrostat:
 
     def solve(self, shares: np.ndarray, start: Any) -> tuple[Any, int]:
         """Pose at contractions that are shares of the cables' lengths, and its iterations."""
-        pose = self.simulation.solve(self.lengths * shares, start=start)
+        pose = self.simulation.solve(self.lengths * shares, start=start, accuracy=self.accuracy)
         return pose, pose.result.iterations
 
     def wrong(self, pose: Any, shares: np.ndarray) -> float:
@@ -120,7 +124,7 @@ class Trial:
             self.sim.rest(self.model.L0 * (1 - shares))
         else:
             nodes = self._predicted(*start, shares)
-        found = self.sim.newton(nodes, tol=1e-4, maxit=600, f32=self.single, mode=6, warp=1, sticky=1)
+        found = self.sim.newton(nodes, tol=TOLERANCE, maxit=600, f32=self.single, mode=6, warp=1, sticky=1)
         if not found.ok:
             raise RuntimeError("the trial did not converge")
         return (nodes, shares.copy()), found.it
@@ -236,6 +240,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--poses", type=int, default=30)
     parser.add_argument("--steps", type=int, default=60)
+    parser.add_argument("--accuracies", type=float, nargs="*", default=[1e-4, 1e-5], help="of rough solves [m]")
     parser.add_argument("--profile", action="store_true", help="ours alone, without the trial")
     parser.add_argument("--parts", action="store_true", help="print what the parts of an iteration of ours take")
     given = parser.parse_args()
@@ -250,6 +255,8 @@ def main() -> None:
     if not given.profile:
         programs = {"trial, f32": Trial(given.trial, True), "trial, f64": Trial(given.trial, False)}
     programs |= {"exact": exact}
+    for accuracy in given.accuracies:
+        programs[f"within {1e6 * accuracy:g} um"] = Hydrostat(given.trial, accuracy)
     print(f"\n{machine()}\n")
     print("| poses | program | median ms | mean | max | median / first | mean / first | iterations, most | error um |")
     print("|---|---|---|---|---|---|---|---|---|")

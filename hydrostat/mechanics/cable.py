@@ -10,7 +10,7 @@ from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.kernel import INNER, KERNEL
-from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Stencils
+from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Places, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 
 
@@ -100,6 +100,11 @@ class CableEnergy(Energy):
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.bends(nodes, self.tensions(nodes, controls))
+
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
+        spans, lengths = self._spans(nodes)
+        pulls = self.tensions(nodes, controls)[self.cables] / lengths
+        _add_bends(spans, lengths, self.weights, pulls, self.stencils, *places)
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.ratios * self.law.tangent(self.elongations(nodes, controls)))
@@ -197,6 +202,28 @@ def _bends(spans, lengths, weights, tensions, blocks):
                 for a in range(corners):
                     for b in range(corners):
                         blocks[term, a * dim + i, b * dim + j] = weights[term, a] * weights[term, b] * across
+
+
+@njit(**KERNEL)
+@no_type_check
+def _add_bends(spans, lengths, weights, pulls, stencils, slots, strides, data):
+    """Add T (I - u u^T) / length of every taut segment, spread to its nodes by the weights, to a sparse matrix."""
+    corners, dim = weights.shape[1], spans.shape[1]
+    across = np.empty((dim, dim))
+    for term in range(spans.shape[0]):
+        if pulls[term] == 0.0:
+            continue
+        square = lengths[term] * lengths[term]
+        for i in range(dim):
+            for j in range(dim):
+                across[i, j] = pulls[term] * ((1.0 if i == j else 0.0) - spans[term, i] * spans[term, j] / square)
+        for b in range(corners):
+            stride = strides[stencils[term, b]]
+            for a in range(corners):
+                weight, start = weights[term, a] * weights[term, b], slots[term, a, b]
+                for j in range(dim):
+                    for i in range(dim):
+                        data[start + j * stride + i] += weight * across[j, i]
 
 
 @njit(**KERNEL)

@@ -1,8 +1,6 @@
 """Projected Newton with a line search: the statics solver."""
 
 import time
-from dataclasses import dataclass, field
-from enum import StrEnum
 from itertools import count
 from typing import NamedTuple
 
@@ -11,84 +9,9 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.falling_mode import falling_mode
+from hydrostat.mechanics.newton_records import NewtonOptions, NewtonResult, Reason, RoundOff, furthest
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.warp import Warp
-
-
-class Reason(StrEnum):
-    """Why a solve ended."""
-
-    CONVERGED = "converged"
-    ITERATION_LIMIT = "iteration limit reached"
-    TIME_LIMIT = "time limit reached"
-    NO_DESCENT = "no step lowers the energy"
-    BAD_START = "the start has an inverted element"
-    NO_BALANCE = "friction and the tensions of cables found no balance"
-
-
-@dataclass(frozen=True, kw_only=True)
-class NewtonOptions:
-    """How far and how long Newton goes (M4).
-
-    Attributes:
-        tolerance: largest nodal force left over, as a fraction of the largest applied force.
-        iterations: most iterations.
-        halvings: most halvings of one step.
-        whole: whether to give up at once, at no cost, where the first step cannot be taken whole.
-        deadline: when it stops at the latest [s], as `time.monotonic` counts.
-    """
-
-    tolerance: float = 1e-10
-    iterations: int = 200
-    halvings: int = 50
-    whole: bool = False
-    deadline: float = np.inf
-
-
-@dataclass(frozen=True, kw_only=True)
-class RoundOff:
-    """What is lost in the rounding errors of a body whose modulus x volume is some energy.
-
-    Attributes:
-        force: [N].
-        energy: [J].
-    """
-
-    force: float
-    energy: float
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class NewtonResult:
-    """Where Newton stopped.
-
-    Attributes:
-        nodes: the best positions found [m]; every element has J > 0.
-        reason: why it stopped.
-        residual: largest component of a nodal force [N].
-        allowed: residual [N] at which it counts as converged.
-        energy: total energy [J].
-        iterations: steps taken.
-        stable: whether the full Hessian there is positive definite: a minimum, no saddle.
-        buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
-        stiffness: the Hessian there, factorised, or where the last step began, if that was with less than 1e-5 of the
-            applied force left over.
-    """
-
-    nodes: Nodes
-    reason: Reason
-    residual: float
-    allowed: float
-    energy: float
-    iterations: int
-    stable: bool
-    buckled: bool
-    stiffness: Stiffness | None = field(repr=False)
-
-    @property
-    def converged(self) -> bool:
-        """Whether the residual is as small as allowed."""
-        return self.reason is Reason.CONVERGED
 
 
 def minimise(
@@ -149,10 +72,12 @@ class _EnergyDescent:
     Attributes:
         share: of what is negative in the Hessian that the last step took out.
         whole: whether the step has to be taken whole or not at all.
+        left: residual as a share of the largest applied force.
         fast: whether the last step brought the residual down by much.
         saddles: how many have been left.
         last: the Hessian of the last step, if nothing was taken out of it.
         sharp: whether that step began near enough to the end for `last` to stand for the Hessian there.
+        error: about how far the last place was from equilibrium [m].
     """
 
     def __init__(
@@ -169,9 +94,11 @@ class _EnergyDescent:
         self.noise, self.options, self.warp = round_off, options, warp
         self.share = 0.0
         self.whole = self.fast = False
+        self.left = np.inf
         self.saddles = 0
         self.last: Stiffness | None = None
         self.sharp = False
+        self.error = np.inf
 
     def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
         """Newton from `start` to a reason to stop."""
@@ -189,14 +116,17 @@ class _EnergyDescent:
             before, residual = residual, float(np.abs(place.gradient).max())
             self.fast = residual < _FAST * before
             if residual <= allowed:
-                found, reason = self._leave_saddle(place), Reason.CONVERGED
+                found, reason, self.error = self._leave_saddle(place), Reason.CONVERGED, 0.0
             elif iteration == self.options.iterations:
                 found, reason = None, Reason.ITERATION_LIMIT
             elif time.monotonic() >= self.options.deadline:
                 found, reason = None, Reason.TIME_LIMIT
             else:
-                found, reason = self._advance(place, known, residual < _NEAR * scale), Reason.NO_DESCENT
+                self.left = residual / scale if scale else np.inf
+                found, reason = self._advance(place, known), Reason.NO_DESCENT
             known = None
+            if found is place:
+                return self._result(place, Reason.CONVERGED, allowed, iteration)
             if found is None:
                 return self._result(place, reason, allowed, iteration)
             place = found
@@ -216,18 +146,34 @@ class _EnergyDescent:
         least = assembly.least_volume(nodes) if np.isfinite(energy) else 0.0
         return _Trial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
 
-    def _advance(self, place: _Iterate, known: Stiffness | None, near: bool) -> _Iterate | None:
-        """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones."""
-        if self.last is not None and near:
+    def _advance(self, place: _Iterate, known: Stiffness | None) -> _Iterate | None:
+        """One step on: with the factors of the last one if that pays, else with what is `known`, else with new ones.
+
+        None if there is none; the place itself if it is as near to equilibrium as was asked.
+        """
+        if self.last is not None and self.sharp:
             found = self._chord(place, self.last)
             if found is not None:
                 return found
         reused = self._reuse(place, known)
         stiffness = reused or self._definite(place)
         self.last, self.sharp = (
-            (stiffness, near and (reused is None or self.exact)) if self.share == 0.0 else (None, False)
+            (stiffness, self.left < _NEAR and (reused is None or self.exact)) if self.share == 0.0 else (None, False)
         )
-        return None if stiffness is None else self._search(place, stiffness)
+        if stiffness is None:
+            return None
+        step = self._step(place, stiffness)
+        if reused is None and self.share == 0.0 and self._within_accuracy(place, step):
+            return place
+        return self._search(place, step)
+
+    def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
+        """Whether a step with the very Hessian of a place tells that it lies as near to equilibrium as was asked."""
+        if self.options.accuracy is None or not self.left < _LINEAR:
+            return False
+        self.error = furthest(step.reshape(place.nodes.shape))
+        self.sharp = self.sharp or self.error <= self.options.accuracy
+        return self.error <= self.options.accuracy
 
     def _reuse(self, place: _Iterate, known: Stiffness | None) -> Stiffness | None:
         """What is known of the Hessian, with the springs as they are now; None if that is not definite."""
@@ -261,12 +207,11 @@ class _EnergyDescent:
                 return stiffness
         return None
 
-    def _search(self, place: _Iterate, stiffness: Stiffness) -> _Iterate | None:
+    def _search(self, place: _Iterate, step: Vector) -> _Iterate | None:
         """The next place; None if no length of the step lowers the energy.
 
         Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
         """
-        step = self._step(place, stiffness)
         slope = float(place.gradient @ step)
         length = 1.0
         for _ in range(self.options.halvings):
@@ -364,11 +309,15 @@ class _EnergyDescent:
             stable=stiffness is not None and stiffness.definite,
             buckled=self.saddles > 0,
             stiffness=stiffness,
+            error=self.error,
         )
 
 
 _NEAR = 1e-5
 """With less than this share of the largest applied force left over, the factors of the last step may serve again."""
+
+_LINEAR = 1e-2
+"""With less than this share of the largest applied force left over, Newton's step tells how far equilibrium is."""
 
 _CRUSHED = 0.2
 """No step leaves less than this share of the volume of the element that was squeezed most before it.

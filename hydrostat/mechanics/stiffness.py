@@ -50,23 +50,24 @@ class Stiffness:
         return other
 
     def _weigh(self, weights: Small) -> None:
-        self.weights = weights
-        self._root = None
+        self.weights, self._pulling = weights, bool(weights.any())
+        self._inside = None
         self.singular, self.definite = self.factors.singular, self.factors.definite
-        if self.singular or not weights.any():
+        if self.singular or self.definite or not self._pulling:  # with K definite there are no signs to count
             return
-        self._root = _square_root(weights)
-        inner = np.eye(self._root.shape[1]) + self._root.T @ self.compliance @ self._root
-        inner = 0.5 * (inner + inner.T)
-        if self.definite:  # then inner is so too, and there are no signs to count
-            self._inverse = np.linalg.inv(inner)
-            return
+        root, inner = self._inner()
         signs, axes = np.linalg.eigh(inner)
         with np.errstate(divide="ignore", invalid="ignore"):
-            self._inverse = axes * (1.0 / signs) @ axes.T
+            self._inside = root @ (axes * (1.0 / signs) @ axes.T) @ root.T
         size = np.abs(signs)
         self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
         self.definite = not self.singular and self.factors.negative == int((signs < 0).sum())
+
+    def _inner(self) -> tuple[Small, Small]:
+        """R, and I + R^T M R."""
+        root = _square_root(self.weights)
+        inner = np.eye(root.shape[1]) + root.T @ self.compliance @ root
+        return root, 0.5 * (inner + inner.T)
 
     @cached_property
     def moves(self) -> Columns:
@@ -102,11 +103,14 @@ class Stiffness:
 
     def solve(self, right: Float[np.ndarray, "dofs *columns"]) -> Float[np.ndarray, "dofs *columns"]:
         """Solution of H x = right, for one or several right-hand sides."""
-        if self._root is None:
+        if not self._pulling:
             return self.factors.solve(right)
+        if self._inside is None:
+            root, inner = self._inner()
+            self._inside = root @ np.linalg.solve(inner, root.T)
         free = self.factors.reduce(right)
-        pulls = self._root.T @ self.factors.inner(self._reduced, free)
-        return self.factors.expand(free - self._reduced @ (self._root @ (self._inverse @ pulls)))
+        pulls = self._inside @ self.factors.inner(self._reduced, free)
+        return self.factors.expand(free - self._reduced @ pulls)
 
 
 def _square_root(weights: Small) -> Small:

@@ -106,6 +106,7 @@ class Simulation:
         start: SolvedPose | None = None,
         strict: bool = True,
         seconds: float | None = None,
+        accuracy: float | None = None,
     ) -> SolvedPose:
         """Equilibrium at the given contractions.
 
@@ -117,16 +118,20 @@ class Simulation:
             start: a pose to begin from; the rest pose if left out.
             strict: raise when the solver does not converge, rather than return the best pose found.
             seconds: after which it stops, with what it has; no limit if left out.
+            accuracy: how far a node may be from equilibrium [m], for poses that are streamed, 1e-5 for instance; about
+                what is left is told as `pose.result.error`. Solved to rounding if left out, and always with friction.
 
         Raises:
-            InputError: contractions that do not fit the robot, or a limit that is not above 0.
+            InputError: contractions that do not fit the robot, or a limit or an accuracy that is not above 0.
             NotConvergedError: the solver stopped early; its text says why, and what stands in the way.
         """
         goal = self.contractions(contractions)
         self.check_start(start)
-        history, solver = np.zeros(0), self.solver.within(seconds)
+        if accuracy is not None and not accuracy > 0:
+            raise InputError(f"accuracy must be above 0 m, not {accuracy:g}")
+        history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy)
         if self.assembly.has_history:
-            path = self._path if seconds is None else LoadingPath(self.robot, solver)
+            path = self._path if seconds is None else LoadingPath(self.robot, self.solver.within(seconds))
             result, history = path.solve(goal, start)
         else:
             begin = None if start is None else (start.nodes, start.contractions, self.stiffness_of(start))

@@ -77,6 +77,10 @@ class StaticSolver:
             raise InputError(f"seconds must be above 0, not {seconds:g}")
         return replace(self, options=replace(self.options, deadline=time.monotonic() + seconds))
 
+    def roughly(self, accuracy: float | None) -> "StaticSolver":
+        """The same that stops where nodes are so near to equilibrium [m]; itself if that is None."""
+        return self if accuracy is None else replace(self, options=replace(self.options, accuracy=accuracy))
+
     def allowed(self, nodes: Nodes, controls: Vector) -> float:
         """Nodal force left over [N] at which nodes count as at rest."""
         return max(

@@ -7,6 +7,7 @@ from scipy.sparse import csc_array
 
 from hydrostat.mechanics import Analysis, Stiffness
 from hydrostat.mechanics.energy import Coupling
+from hydrostat.mechanics.tension_law import TensionLaw
 
 MESH = strip_mesh(5, 2)
 SIZE = MESH.nodes.size
@@ -57,8 +58,6 @@ def test_it_solves_and_knows_its_inertia(kind: str, shift: float, seed: int) -> 
     for given in (right, right[:, 0]):
         expected = np.linalg.solve(whole, given)
         assert found.solve(given) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
-    expected = np.linalg.solve(matrix, right[:, 0])
-    assert found.solve_body(right[:, 0]) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
     assert found.definite == bool(np.linalg.eigvalsh(whole)[0] > 0)
     assert found.body_definite == (shift > 0)
     assert not found.singular
@@ -109,6 +108,23 @@ def test_moves_and_compliance_are_what_they_say() -> None:
     expected = np.linalg.solve(matrix, columns)
     assert found.moves == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
     assert found.compliance == pytest.approx(columns.T @ expected, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_move_knows_that_cables_go_slack_and_taut(seed: int) -> None:
+    """Balance of forces at its end, by the law itself: K x + G T(s + G^T x) = f, some cables slack and some taut."""
+    random = np.random.default_rng(seed)
+    matrix, columns = body(0.5, seed), random.standard_normal((SIZE, RANK))
+    law = TensionLaw(stiffness=np.full(RANK, 50.0), smoothing=np.full(RANK, 1e-3))
+    springs = Coupling(
+        columns=columns, weights=np.zeros((RANK, RANK)), elongations=np.array([-2.0, -0.1, 1.0]), law=law
+    )
+    forces = random.standard_normal(SIZE)
+    moved = made(matrix, columns, np.eye(RANK)).move(forces, springs)
+    assert moved is not None
+    tensions = law.tension(springs.elongations + columns.T @ moved)
+    assert matrix @ moved + columns @ tensions == pytest.approx(forces, abs=1e-8)
+    assert 0 < np.count_nonzero(tensions) < RANK
 
 
 def test_a_singular_body_is_named() -> None:
