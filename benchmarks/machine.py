@@ -4,7 +4,7 @@ import os
 import platform
 from pathlib import Path
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "HYDROSTAT_THREADS"):
     os.environ[_name] = "1"
 
 

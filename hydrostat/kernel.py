@@ -13,11 +13,27 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
+from hydrostat.errors import InputError
+
 native: Any = None
 """The compiled core; None where numba's kernels serve alone."""
 
 if os.environ.get("HYDROSTAT_NATIVE", "1") != "0" and find_spec("hydrostat._native"):
     native = import_module("hydrostat._native")
+
+
+def _threads() -> int:
+    """Number in HYDROSTAT_THREADS; without it the cores that this process may use."""
+    given = os.environ.get("HYDROSTAT_THREADS", "")
+    if not given:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if not given.isdecimal() or int(given) < 1:
+        raise InputError(f"HYDROSTAT_THREADS must be a whole number from 1 on, not {given!r}")
+    return int(given)
+
+
+THREADS: int = _threads()
+"""So many threads share one factorisation of a large body; its bytes do not depend on them."""
 
 KERNEL: dict[str, Any] = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 """Options of `numba.njit` for a function that Python calls."""

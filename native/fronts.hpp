@@ -212,8 +212,8 @@ INLINE void extend_add(const Fronts& fronts, int64_t child, const double* stack,
     }
 }
 
-int64_t factorise(const Fronts& fronts, const double* data, double* lower, double* signs, double* first,
-                  double* second, double* spare, double tiny) {
+// Largest entry of the diagonal; not finite if one of them is not.
+INLINE double largest_diagonal(const Fronts& fronts, const double* data) {
     double largest = 0.0;
     for (int64_t dof = 0; dof < fronts.dofs; dof++)
         if (fronts.diagonal[dof] >= 0) {
@@ -221,35 +221,51 @@ int64_t factorise(const Fronts& fronts, const double* data, double* lower, doubl
             size = size < 0 ? -size : size;
             if (!(size <= largest)) largest = size;
         }
+    return largest;
+}
+
+// Factorise one front, to whose stack `theirs` its children have handed up; how many pivots are negative, -1: too small.
+INLINE int64_t factorise_front(const Fronts& fronts, int64_t which, const double* data, double* lower, double* signs,
+                               const double* theirs, double* update, double* spare, double least) {
+    const int64_t* row = fronts.table + which * WIDTH;
+    const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
+    double* panel = lower + row[PANEL];
+    __builtin_memset(panel, 0, columns * height * sizeof(double));
+    for (int64_t entry = row[ENTRIES]; entry < row[WIDTH + ENTRIES]; entry++)
+        panel[fronts.entries[2 * entry + 1]] = data[fronts.entries[2 * entry]];
+    for (int64_t column = 0; column < below; column++)
+        __builtin_memset(update + column * (below + 1), 0, (below - column) * sizeof(double));
+    for (int64_t child = row[CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING])
+        extend_add(fronts, child, theirs, panel, columns, height, update, below);
+    double* sign = signs + row[FIRST];
+    int64_t negative = 0;
+    for (int64_t low = 0; low < columns; low += BLOCK) {
+        int count = columns - low < BLOCK ? (int)(columns - low) : BLOCK;
+        double* corner = panel + low * height + low;
+        if (low) {
+            pack(spare, panel + low, height, sign, low, count);
+            any_strip(count, corner, height, panel + low, height, spare, low, height - low);
+        }
+        int found = any_eliminate(count, corner, height, height - low, sign + low, least);
+        if (found < 0) return -1;
+        negative += found;
+    }
+    if (below) subtract(update, below, panel + columns, height, columns, sign, below, below, spare);
+    return negative;
+}
+
+int64_t factorise(const Fronts& fronts, const double* data, double* lower, double* signs, double* first,
+                  double* second, double* spare, double tiny) {
+    double largest = largest_diagonal(fronts, data);
     if (!(largest < __builtin_inf())) return -1;
     int64_t negative = 0;
     for (int64_t which = 0; which < fronts.count; which++) {
         const int64_t* row = fronts.table + which * WIDTH;
-        const int64_t columns = row[COLUMNS], below = row[BELOW], height = columns + below;
-        double* panel = lower + row[PANEL];
-        __builtin_memset(panel, 0, columns * height * sizeof(double));
-        for (int64_t entry = row[ENTRIES]; entry < row[WIDTH + ENTRIES]; entry++)
-            panel[fronts.entries[2 * entry + 1]] = data[fronts.entries[2 * entry]];
         double* mine = row[STACK] ? second : first;
         double* theirs = row[STACK] ? first : second;
-        double* update = mine + row[OFFSET];
-        for (int64_t column = 0; column < below; column++)
-            __builtin_memset(update + column * (below + 1), 0, (below - column) * sizeof(double));
-        for (int64_t child = row[CHILD]; child >= 0; child = fronts.table[child * WIDTH + SIBLING])
-            extend_add(fronts, child, theirs, panel, columns, height, update, below);
-        double* sign = signs + row[FIRST];
-        for (int64_t low = 0; low < columns; low += BLOCK) {
-            int count = columns - low < BLOCK ? (int)(columns - low) : BLOCK;
-            double* corner = panel + low * height + low;
-            if (low) {
-                pack(spare, panel + low, height, sign, low, count);
-                any_strip(count, corner, height, panel + low, height, spare, low, height - low);
-            }
-            int found = any_eliminate(count, corner, height, height - low, sign + low, tiny * largest);
-            if (found < 0) return -1;
-            negative += found;
-        }
-        if (below) subtract(update, below, panel + columns, height, columns, sign, below, below, spare);
+        int64_t found = factorise_front(fronts, which, data, lower, signs, theirs, mine + row[OFFSET], spare, tiny * largest);
+        if (found < 0) return -1;
+        negative += found;
     }
     return negative;
 }

@@ -1,6 +1,6 @@
 // One table of kernels for the instruction set that this file is compiled for; LEVEL names it.
 #include "elements.hpp"
-#include "fronts.hpp"
+#include "team.hpp"
 
 #define JOIN(a, b) a##b
 #define TABLE(level) JOIN(kernels_, level)
@@ -24,7 +24,9 @@ void any_turn(const Elements& all, const double* nodes, const double* step, doub
     all.dim == 2 ? turn<2>(all, nodes, step, right) : turn<3>(all, nodes, step, right);
 }
 
+double any_largest(const Fronts& fronts, const double* data) { return largest_diagonal(fronts, data); }
+
 }  // namespace
 
 extern const Kernels TABLE(LEVEL) = {NAME(LEVEL), any_value, any_gradient, any_hessian, any_turn,
-                                     factorise,   any_forward, any_backward};
+                                     factorise,   any_largest, join, any_forward, any_backward};

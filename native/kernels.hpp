@@ -23,6 +23,34 @@ struct Fronts {
     const int64_t* diagonal;
 };
 
+// Several threads at one factorisation. First each takes whole subtrees of fronts, the rest they do together.
+struct Team {
+    int size;
+    int64_t subtrees;
+    const int64_t* begins;   // first front of each subtree; the last is in `ends`
+    const int64_t* ends;
+    int64_t tops;            // fronts above the subtrees, children before parents
+    const int64_t* top;
+    double** updates;        // what each front hands up, of those that are the last of a subtree or above them
+    double* (*claim)(int64_t numbers);
+    void (*release)(double* numbers);
+    void (*yield)();
+    double least;            // no pivot is smaller
+    int64_t next[4];         // what to take next, step by step
+    int64_t waiting, round;  // at the barrier
+    int64_t negative, failed, short_of_memory;
+};
+
+// What one thread works in: stacks for its subtrees, packed parts of panels.
+struct Room {
+    int me;
+    double* first;
+    double* second;
+    double* spare;   // as in `factorise`
+    double* packed;  // PACKED numbers
+};
+constexpr int64_t PACKED = 256 * 256 + 256 * 8 + 16;
+
 struct Kernels {
     const char* name;
     double (*value)(const Elements&, const double* displacements);
@@ -32,6 +60,8 @@ struct Kernels {
     void (*turn)(const Elements&, const double* nodes, const double* step, double* right);
     int64_t (*factorise)(const Fronts&, const double* data, double* lower, double* signs, double* first,
                          double* second, double* spare, double tiny);
+    double (*largest)(const Fronts&, const double* data);
+    void (*join)(const Fronts&, Team&, const Room&, const double* data, double* lower, double* signs);
     void (*forward)(const Fronts&, const double* lower, double* values, int sides, double* work);
     void (*backward)(const Fronts&, const double* lower, double* values, int sides, double* work);
 };

@@ -2,7 +2,14 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <mutex>
+#include <new>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "kernels.hpp"
@@ -115,6 +122,143 @@ int64_t factorise(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, A
                              spare.data(), tiny);
 }
 
+// Which fronts threads take as whole subtrees, and which they do together: the largest subtree is cut up until each is
+// a small share of all work.
+struct Shares {
+    std::vector<int64_t> begins, ends, tops;
+    int64_t stacks[2] = {0, 0};
+
+    Shares(const Fronts& fronts, int threads) {
+        enum { COLUMNS, BELOW, CHILD = 5, SIBLING, STACK, OFFSET, WIDTH = 11 };
+        const int64_t* table = fronts.table;
+        std::vector<double> work(fronts.count);
+        std::vector<int64_t> begin(fronts.count);
+        std::vector<bool> under(fronts.count, false);
+        double whole = 0.0;
+        for (int64_t which = 0; which < fronts.count; which++) {
+            double columns = (double)table[which * WIDTH + COLUMNS], below = (double)table[which * WIDTH + BELOW];
+            work[which] = columns * (columns * columns / 3 + columns * below + below * below) + 1e3;
+            whole += work[which];
+            int64_t child = table[which * WIDTH + CHILD];
+            begin[which] = child >= 0 ? begin[child] : which;
+            for (; child >= 0; child = table[child * WIDTH + SIBLING]) work[which] += work[child], under[child] = true;
+        }
+        std::vector<std::pair<double, int64_t>> heap;
+        for (int64_t which = 0; which < fronts.count; which++)
+            if (!under[which]) heap.emplace_back(work[which], which);
+        std::make_heap(heap.begin(), heap.end());
+        while (!heap.empty() && heap.front().first > whole / (8 * threads) && heap.size() < 512) {
+            int64_t which = heap.front().second;
+            std::pop_heap(heap.begin(), heap.end());
+            heap.pop_back();
+            tops.push_back(which);
+            for (int64_t child = table[which * WIDTH + CHILD]; child >= 0; child = table[child * WIDTH + SIBLING]) {
+                heap.emplace_back(work[child], child);
+                std::push_heap(heap.begin(), heap.end());
+            }
+        }
+        std::sort(heap.rbegin(), heap.rend());
+        std::sort(tops.begin(), tops.end());
+        for (auto [_, which] : heap) {
+            begins.push_back(begin[which]), ends.push_back(which);
+            int64_t low[2] = {INT64_MAX, INT64_MAX}, high[2] = {0, 0};
+            for (int64_t at = begin[which]; at < which; at++) {
+                const int64_t* row = table + at * WIDTH;
+                int64_t stack = row[STACK], end = row[OFFSET] + row[BELOW] * row[BELOW];
+                if (row[OFFSET] < low[stack]) low[stack] = row[OFFSET];
+                if (end > high[stack]) high[stack] = end;
+            }
+            for (int stack = 0; stack < 2; stack++)
+                if (high[stack] > 0 && high[stack] - low[stack] > stacks[stack]) stacks[stack] = high[stack] - low[stack];
+        }
+    }
+};
+
+// Memory that factorisations by several threads use again: fresh pages cost about as much as what is done with them.
+class Pool {
+  public:
+    double* claim(int64_t numbers) {
+        {
+            std::lock_guard<std::mutex> guard(lock);
+            size_t best = idle.size();
+            for (size_t at = 0; at < idle.size(); at++)
+                if (size(idle[at]) >= numbers && size(idle[at]) <= 4 * numbers &&
+                    (best == idle.size() || size(idle[at]) < size(idle[best])))
+                    best = at;
+            if (best < idle.size()) {
+                double* found = idle[best];
+                idle.erase(idle.begin() + (long)best);
+                held -= size(found);
+                return found;
+            }
+        }
+        double* made = (double*)std::malloc((size_t)(numbers + HEAD) * sizeof(double));
+        if (!made) return nullptr;
+        *(int64_t*)made = numbers;
+        return made + HEAD;
+    }
+    void release(double* numbers) {
+        if (!numbers) return;
+        std::lock_guard<std::mutex> guard(lock);
+        idle.push_back(numbers);
+        held += size(numbers);
+    }
+    void trim(int64_t most) {
+        std::lock_guard<std::mutex> guard(lock);
+        for (; held > most; idle.pop_back()) held -= size(idle.back()), std::free(idle.back() - HEAD);
+    }
+
+  private:
+    static constexpr int64_t HEAD = 8;  // before the numbers stands how many there are
+    static int64_t size(double* numbers) { return *(int64_t*)(numbers - HEAD); }
+    std::mutex lock;
+    std::vector<double*> idle;
+    int64_t held = 0;
+};
+
+Pool pool;
+constexpr int64_t KEPT = 16'000'000;  // numbers that stay between factorisations (128 MB)
+
+double* claim(int64_t numbers) { return pool.claim(numbers); }
+void release(double* numbers) { pool.release(numbers); }
+void yield() { std::this_thread::yield(); }
+
+// The same as `factorise` by several threads, to the same bytes.
+int64_t factorise_together(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<const int64_t, 2> runs,
+                           Array<const int32_t, 2> entries, Array<const int64_t, 1> diagonal, Reals<1> data,
+                           Array<double, 1> lower, Array<double, 1> signs, int64_t widest, double tiny, int threads) {
+    Fronts fronts = plan(table, rows, runs, entries, diagonal);
+    demand(signs.shape(0) == diagonal.shape(0) && threads > 0, "as many signs as degrees of freedom, and threads");
+    nb::gil_scoped_release free;
+    double largest = kernels.largest(fronts, data.data());
+    if (!(largest < __builtin_inf())) return -1;
+    Shares shares(fronts, threads);
+    std::vector<double*> updates(fronts.count, nullptr);
+    Team team{threads, (int64_t)shares.begins.size(), shares.begins.data(), shares.ends.data(),
+              (int64_t)shares.tops.size(), shares.tops.data(), updates.data(), claim, release, yield,
+              tiny * largest, {0, 0, 0, 0}, 0, 0, 0, 0, 0};
+    auto work = [&](const Room& room) { kernels.join(fronts, team, room, data.data(), lower.data(), signs.data()); };
+    std::vector<Room> rooms;
+    bool enough = true;
+    for (int me = 0; me < threads; me++) {
+        rooms.push_back({me, claim(shares.stacks[0] + 8), claim(shares.stacks[1] + 8), claim(widest + 8), claim(PACKED)});
+        const Room& room = rooms.back();
+        enough = enough && room.first && room.second && room.spare && room.packed;
+    }
+    if (enough) {
+        std::vector<std::thread> others;
+        for (int me = 1; me < threads; me++) others.emplace_back(work, std::cref(rooms[me]));
+        work(rooms[0]);
+        for (std::thread& other : others) other.join();
+    }
+    for (double* update : updates) release(update);
+    for (const Room& room : rooms)
+        for (double* part : {room.first, room.second, room.spare, room.packed}) release(part);
+    pool.trim(KEPT);
+    if (!enough || team.short_of_memory) throw std::bad_alloc();
+    return team.failed ? -1 : team.negative;
+}
+
 // Solve for all or half of A = L S L^T: `way` 0 is A^-1, 1 is L^-1 (in the order of elimination), 2 is L^-T S.
 // `place` is where each degree of freedom stands in the order of elimination.
 void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<const int64_t, 1> place,
@@ -161,5 +305,6 @@ NB_MODULE(_native, module) {
     module.def("hessian", &hessian);
     module.def("turn", &turn);
     module.def("factorise", &factorise);
+    module.def("factorise_together", &factorise_together);
     module.def("solve", &solve);
 }

@@ -20,7 +20,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.kernel import INNER, KERNEL, LONG, native
+from hydrostat.kernel import INNER, KERNEL, LONG, THREADS, native
 from hydrostat.mechanics.blas import (
     Scratch,
     divide_right,
@@ -43,8 +43,11 @@ WHOLE, LOWER, UPPER = range(3)
 IDLE = 3
 """So many arrays of factors are kept by a thread for those to come; fresh pages take half as long as factors."""
 
-IDLE_SIZE = 4_000_000
-"""Numbers in the largest array that is kept so (32 MB)."""
+IDLE_SIZE = 32_000_000
+"""Numbers in all arrays that are kept so (256 MB)."""
+
+LARGE = 0.2
+"""Modelled time of a factorisation [s] from which on several threads share it."""
 
 FINE = {"contract", "reassoc", "nsz"}
 """What the compiler may do with sums; NaN and infinity stay what they are."""
@@ -483,6 +486,7 @@ class SupernodalAnalysis:
     def __init__(self, tree: EliminationTree, indptr: np.ndarray, indices: np.ndarray, dim: int) -> None:
         """Fronts of the elimination `tree` of a pattern."""
         self.fronts, self.place, sizes = plan(tree, indptr, indices, dim)
+        self.seconds = tree.seconds
         table = self.fronts.table
         self.entries = int(table[-1, PANEL])
         self.height = int((table[:, COLUMNS] + table[:, BELOW]).max(initial=1))
@@ -494,7 +498,10 @@ class SupernodalAnalysis:
         signs = np.ones(len(self.place))
         work = self.workspace
         lower = work.idle.pop() if work.idle else np.empty(self.entries + SPARE)
-        if native is not None:
+        if native is not None and THREADS > 1 and self.seconds >= LARGE:
+            widest = len(work.spare)
+            negative = native.factorise_together(*self.fronts, data, lower, signs, widest, tiny, THREADS)
+        elif native is not None:
             negative = native.factorise(*self.fronts, data, lower, signs, *work.stacks, work.spare, tiny)
         else:
             negative = factorise_fronts(self.fronts, data, lower, signs, *work.stacks, work.spare, work.call, tiny)
@@ -517,7 +524,7 @@ class SupernodalFactors:
 
     def __del__(self) -> None:
         idle = self._analysis.workspace.idle
-        if len(idle) < IDLE and len(self._lower) <= IDLE_SIZE:
+        if len(idle) < IDLE and (len(idle) + 1) * len(self._lower) <= IDLE_SIZE:
             idle.append(self._lower)
 
     def solve(self, right: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ import pytest
 from builders import box_mesh, strip_mesh
 
 from hydrostat import kernel
+from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics import Assembly, NeoHookean, PinEnergy, Warp, neo_hookean, supernodal, warp
 
@@ -110,3 +111,58 @@ def test_factors(mesh: Mesh, both: Callable, shift: float, sides: int) -> None:
     assert core[0] == numba[0]
     assert (numba[0] > 0) == (shift < 0)
     assert np.abs(core[1] - numba[1]).max() <= 1e-9 * np.abs(numba[1]).max()
+
+
+LARGER = {"flat": strip_mesh(60, 12), "space": box_mesh((14, 8, 8))}
+"""Bodies with fronts of more columns than are eliminated together, and subtrees below them."""
+
+
+@pytest.mark.parametrize("name", LARGER)
+@pytest.mark.parametrize("shift", [0.05, -0.3])
+def test_threads_make_the_same_bytes(name: str, shift: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: one thread, which goes through other loops. Definite and indefinite."""
+    mesh = LARGER[name]
+    assembly = assembly_of(mesh)
+    data = assembly.hessian(mesh.nodes, np.zeros(0)).data
+    data[assembly.pattern.diagonal] += shift * np.median(data[assembly.pattern.diagonal])
+    right = np.random.default_rng(1).standard_normal((assembly.size, 3))
+    monkeypatch.setattr(supernodal, "LARGE", 0.0)
+    found = []
+    for threads in (1, 2, 3, 5):
+        monkeypatch.setattr(supernodal, "THREADS", threads)
+        factors = assembly.pattern.analysis.factorise(data)
+        found.append((factors.negative, factors.singular, factors.solve(right).tobytes()))
+    assert (found[0][0] > 0) == (shift < 0)
+    assert not found[0][1]
+    assert all(other == found[0] for other in found[1:])
+
+
+@pytest.mark.parametrize("wrong", [np.nan, 0.0])
+@pytest.mark.parametrize("place", [0.0, 0.5, 0.999])
+def test_threads_end_together_at_a_singular_matrix(wrong: float, place: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A row of zeros, or a diagonal that is no number, wherever it stands."""
+    mesh = LARGER["space"]
+    assembly = assembly_of(mesh)
+    matrix = assembly.hessian(mesh.nodes, np.zeros(0))
+    dof = int(place * assembly.size)
+    matrix.data[assembly.pattern.diagonal[dof]] = wrong
+    if wrong == 0.0:
+        matrix.data[matrix.indptr[dof] : matrix.indptr[dof + 1]] = 0.0
+        matrix.data[matrix.indices == dof] = 0.0
+    monkeypatch.setattr(supernodal, "LARGE", 0.0)
+    monkeypatch.setattr(supernodal, "THREADS", 3)
+    assert assembly.pattern.analysis.factorise(matrix.data).singular
+
+
+@pytest.mark.parametrize("given", ["0", "two", "-1", "1.5"])
+def test_threads_are_asked_for_by_a_whole_number(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HYDROSTAT_THREADS", given)
+    with pytest.raises(InputError, match="HYDROSTAT_THREADS must be a whole number"):
+        kernel._threads()
+
+
+def test_threads_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HYDROSTAT_THREADS", "3")
+    assert kernel._threads() == 3
+    monkeypatch.delenv("HYDROSTAT_THREADS")
+    assert kernel._threads() >= 1
