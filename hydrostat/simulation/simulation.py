@@ -1,6 +1,6 @@
 """`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
 
 import numpy as np
@@ -14,6 +14,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation.adjoint import Sensitivity, sensitivity
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
+from hydrostat.simulation.contractions import Contractions, contraction_values
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.loading_path import LoadingPath
 from hydrostat.simulation.many_poses import LONG_ENOUGH, ManyPoses, PoseRow, in_threads, many_poses, pose_row
@@ -24,9 +25,6 @@ from hydrostat.simulation.response import response
 from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.solved_pose import SolvedPose, check_pose
 from hydrostat.simulation.static_solver import StaticSolver
-
-Contractions = Mapping[str, float] | Vector
-"""Cable taken in [m]: by the name of a winch (others 0), or an array in winch order."""
 
 
 class Simulation:
@@ -84,20 +82,7 @@ class Simulation:
         Raises:
             InputError: an unknown winch, a wrong number of values, or a value that is not finite.
         """
-        winches = self.robot.winches
-        if isinstance(given, Mapping):
-            for name in given:
-                self.robot.winch(name)
-            given = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
-        try:
-            values = np.array(given, dtype=float)
-        except (TypeError, ValueError):
-            raise InputError(f"contractions must be numbers [m], not {given!r}") from None
-        if values.shape != (len(winches),):
-            raise InputError(f"{values.size} contractions given for {len(winches)} winches")
-        if not np.isfinite(values).all():
-            raise InputError("a contraction is not a finite number")
-        return values
+        return contraction_values(self.robot, given)
 
     def solve(
         self,
