@@ -5,10 +5,12 @@ kernels do the same, to rounding.
 
 Compiling is half of what a first run costs, so: no wrappers that nobody calls. `KERNEL` is for what Python calls and
 is kept on disk, `INNER` for what only other compiled code calls and thus lies in their files. What else is quick to
-compile: docs/decisions/0013-cold-start.md.
+compile: docs/decisions/0013-cold-start.md. `Kernel` is for what the core has under the same name: numba then compiles
+nothing (docs/decisions/0025-the-first-minute.md).
 """
 
 import os
+from collections.abc import Callable
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -43,3 +45,24 @@ LONG: dict[str, Any] = KERNEL | {"nogil": True}
 
 INNER: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
 """Options of `numba.njit` for a function that only compiled code calls."""
+
+
+class Kernel:
+    """A function that the compiled core has under the same name, less its underscore; numba's where there is no core.
+
+    Attributes:
+        by_numba: the function as numba compiles it.
+        by_core: that of the core, or None. It has the same arguments, and fills in none that is of another type.
+    """
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any] = KERNEL) -> None:
+        """Take the core's function where there is one; numba compiles only what is called, with these options."""
+        from numba import njit
+
+        self.by_numba = njit(**options)(function)
+        self.by_core = getattr(native, function.__name__.lstrip("_"), None)
+        self.__doc__ = function.__doc__
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call one or the other."""
+        return (self.by_core or self.by_numba)(*arguments)

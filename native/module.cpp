@@ -1,22 +1,15 @@
 // `hydrostat._native`: the compiled core for Python. Functions check shapes; those that take long let other threads run.
-#include <nanobind/nanobind.h>
-#include <nanobind/ndarray.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <new>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
 #include "kernels.hpp"
-
-namespace nb = nanobind;
-template <class T, int N> using Array = nb::ndarray<T, nb::ndim<N>, nb::c_contig, nb::device::cpu>;
-template <int N> using Reals = Array<const double, N>;
 
 namespace {
 
@@ -31,23 +24,6 @@ const Kernels& chosen() {
 }
 
 const Kernels& kernels = chosen();
-
-// Lets other threads run while a call goes on for longer than handing over takes, some tens of microseconds.
-struct Free {
-    explicit Free(double nanoseconds) {
-        if (nanoseconds > 3e4) state = PyEval_SaveThread();
-    }
-    ~Free() {
-        if (state) PyEval_RestoreThread(state);
-    }
-    Free(const Free&) = delete;
-    Free& operator=(const Free&) = delete;
-    PyThreadState* state = nullptr;
-};
-
-void demand(bool right, const char* what) {
-    if (!right) throw std::invalid_argument(what);
-}
 
 // Elements as they come from Python.
 struct Packed {
@@ -307,4 +283,8 @@ NB_MODULE(_native, module) {
     module.def("factorise", &factorise);
     module.def("factorise_together", &factorise_together);
     module.def("solve", &solve);
+    add_ordering(module);
+    add_symbolic(module);
+    add_cables(module);
+    add_improve(module);
 }

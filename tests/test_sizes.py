@@ -68,7 +68,7 @@ def parameters(function: Function) -> int:
 
 def is_kernel(function: Function) -> bool:
     """Tell whether numba compiles a function: its arrays come one by one, and calls within it take time to compile."""
-    return any("njit" in ast.unparse(decorator) for decorator in function.decorator_list)
+    return any(re.search("njit|Kernel", ast.unparse(decorator)) for decorator in function.decorator_list)
 
 
 def large_files(texts: dict[str, str]) -> dict[str, int]:

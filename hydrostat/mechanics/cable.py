@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, Kernel
 from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Places, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 
@@ -168,7 +168,7 @@ def _segment(term, nodes, stencils, weights, offsets, roundings, span):
     return math.sqrt(square)
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
     """Span and length of every segment."""
@@ -176,7 +176,7 @@ def _measure(nodes, stencils, weights, offsets, roundings, spans, lengths):
         lengths[term] = _segment(term, nodes, stencils, weights, offsets, roundings, spans[term])
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _lengths(nodes, stencils, weights, offsets, roundings, cables, lengths):
     """Add up the lengths of the segments of each cable."""
@@ -185,7 +185,7 @@ def _lengths(nodes, stencils, weights, offsets, roundings, cables, lengths):
         lengths[cables[term]] += _segment(term, nodes, stencils, weights, offsets, roundings, span)
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _bends(spans, lengths, weights, tensions, blocks):
     """T (I - u u^T) / length of every segment, spread to its nodes by the weights."""
@@ -204,7 +204,7 @@ def _bends(spans, lengths, weights, tensions, blocks):
                         blocks[term, a * dim + i, b * dim + j] = weights[term, a] * weights[term, b] * across
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _add_bends(spans, lengths, weights, pulls, stencils, slots, strides, data):
     """Add T (I - u u^T) / length of every taut segment, spread to its nodes by the weights, to a sparse matrix."""
@@ -226,7 +226,7 @@ def _add_bends(spans, lengths, weights, pulls, stencils, slots, strides, data):
                         data[start + j * stride + i] += weight * across[j, i]
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _spread(stencils, cables, gradients, columns):
     """Add up the gradients of the segments of each cable."""

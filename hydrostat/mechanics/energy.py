@@ -7,10 +7,9 @@ from typing import ClassVar, NamedTuple, Protocol, Self, no_type_check, runtime_
 
 import numpy as np
 from jaxtyping import Float, Int
-from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.kernel import KERNEL
+from hydrostat.kernel import Kernel
 
 Stencils = Int[np.ndarray, "terms corners"]
 Blocks = Float[np.ndarray, "terms corners dim"]
@@ -240,7 +239,7 @@ def nearest_semidefinite(blocks: HessianBlocks) -> HessianBlocks:
     return repaired
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _add_vectors(stencils, vectors, total):
     """Add the vector of every corner of every term to its node."""
@@ -251,7 +250,7 @@ def _add_vectors(stencils, vectors, total):
                 total[node, axis] += vectors[term, corner, axis]
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _add_blocks(stencils, slots, strides, blocks, data):
     """Add every dim x dim block of symmetric blocks to the values of the sparse matrix."""

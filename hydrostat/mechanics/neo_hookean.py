@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import ClassVar, no_type_check
 
 import numpy as np
@@ -10,7 +10,7 @@ from jaxtyping import Float
 from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
-from hydrostat.kernel import INNER, LONG, native
+from hydrostat.kernel import INNER, LONG, Kernel, native
 from hydrostat.mechanics.energy import Blocks, ElementGroups, Energy, HessianBlocks, Places, element_groups
 
 
@@ -156,7 +156,7 @@ def _value(displacements, stencils, gradients, volumes, mu, lame, axes):
     return total
 
 
-@njit(**LONG)
+@partial(Kernel, options=LONG)
 @no_type_check
 def _least_volume(nodes, stencils, gradients, axes):
     """J of the element that is squeezed most, by the spans of its corners; 1 if none is."""

@@ -16,7 +16,7 @@ from typing import no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, Kernel
 
 Graph = tuple[np.ndarray, np.ndarray]
 
@@ -32,7 +32,7 @@ def block_graph(indptr: np.ndarray, indices: np.ndarray, dim: int) -> Graph:
     return starts, neighbours[: starts[-1]].copy()
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _block_graph(indptr, indices, dim, starts, neighbours, seen):
     """Fill `starts` and `neighbours`; `seen` is -1 for every node."""
@@ -61,7 +61,7 @@ def graph_coordinates(starts: np.ndarray, neighbours: np.ndarray, count: int) ->
     return distances[:count].T
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _distances(starts, neighbours, root, distances, queue):
     """Edges between each node and `root`; left as they are, the number of nodes, where no path leads."""
@@ -98,7 +98,7 @@ def nested_dissection(
     return order
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _dissect(starts, neighbours, points, lines, leaf, shares, order, work, sides, todo, room):
     """Fill `order`. `lines` are the nodes sorted by each coordinate, at first all of them, in the end part by part.

@@ -20,7 +20,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.kernel import INNER, KERNEL, LONG, THREADS, native
+from hydrostat.kernel import INNER, LONG, THREADS, Kernel, native
 from hydrostat.mechanics.blas import (
     Scratch,
     divide_right,
@@ -106,7 +106,7 @@ def plan(
     return Fronts(table, rows, runs, entries, diagonal), place, sizes
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _stacks(table, parent, top, most):
     """On which stack what a front hands up will lie, where, and how much the stacks hold at most; `top` is 0."""
@@ -122,7 +122,7 @@ def _stacks(table, parent, top, most):
         most[which] = max(most[which], top[which])
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _runs(table, parent, rows, runs):
     """Pieces of the rows below each front that are contiguous in the parent's front; none crosses its own columns."""
@@ -150,7 +150,7 @@ def _runs(table, parent, rows, runs):
         table[which + 1, RUNS] = filled
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _entries(table, rows, indptr, indices, place, undo, local, entries, diagonal):
     """For each front the places of its entries of A in the data and in its panel, and the places of the diagonal."""

@@ -13,7 +13,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 from numba import njit
 
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, Kernel
 
 FRONT = 1.5e-6
 ENTRY = 0.6e-9
@@ -92,7 +92,7 @@ def _elimination(starts: np.ndarray, neighbours: np.ndarray, order: np.ndarray) 
     return parent
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _elimination_tree(starts, neighbours, order, place, parent, ancestor):
     """Fill `parent`; `ancestor` shortens the paths. Both are -1 before."""
@@ -115,7 +115,7 @@ def _postordered(parent: np.ndarray) -> np.ndarray:
     return result
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _postorder(parent, child, sibling, result, stack):
     """Fill `result`, and spoil `child`."""
@@ -137,7 +137,7 @@ def _postorder(parent, child, sibling, result, stack):
                 depth -= 1
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _column_counts(starts, neighbours, order, place, parent, count, seen):
     """Entries of each column of L, the diagonal included: a row of L is a subtree from the row's entries upwards.
@@ -173,7 +173,7 @@ def _merged(head: np.ndarray, parent: np.ndarray, count: np.ndarray, dim: int) -
     return into[head]
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _merge(child, sibling, columns, count, into, dim):
     """Fill in which supernode each is merged into, itself at first; `columns` are those of heads, 0 of other nodes."""
@@ -223,7 +223,7 @@ def _collected(
     return EliminationTree(order, first, up, begins, rows, float(seconds))
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _rows(starts, neighbours, order, place, first, child, sibling, begins, rows, seen):
     """Rows below each supernode: of its nodes' neighbours and of its children, those after its last node.

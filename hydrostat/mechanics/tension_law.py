@@ -8,7 +8,7 @@ from jaxtyping import Float
 from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, Kernel
 from hydrostat.mechanics.energy import Small
 
 
@@ -79,7 +79,7 @@ def spring(k, eps, elongation):
     return 0.5 * k * (elongation - eps) ** 2 + k * eps * eps / 6.0, k * (elongation - eps), k
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _evaluate(stiffness, smoothing, elongation, found):
     """Energy, tension and slope of every cable."""
@@ -123,7 +123,7 @@ def _eliminate(matrix, right):
     return True
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _balance(stiffness, smoothing, elongations, compliance, tensions):
     """Newton with a line search on T M T / 2 + U(elongations - M T); false if it does not arrive."""

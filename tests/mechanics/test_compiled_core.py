@@ -1,15 +1,25 @@
-"""The compiled core beside numba's kernels, which are its oracle: the same to 1e-10 in the plane and in space."""
+"""The compiled core beside numba's kernels, which are its oracle: the same to 1e-10 in the plane and in space.
 
+Loops that round as numba's do (`Kernel`) are the same to 1e-13, and those of whole numbers exactly.
+"""
+
+import sys
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
-from builders import box_mesh, strip_mesh
+from builders import box_mesh, strip_mesh, strip_robot
 
 from hydrostat import kernel
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.surface import Solid, Surface
+from hydrostat.geometry.tetrahedra.improve import ImproveStage, improve
+from hydrostat.kernel import Kernel
 from hydrostat.mechanics import Assembly, NeoHookean, PinEnergy, Warp, neo_hookean, supernodal, warp
+from hydrostat.mechanics.factorisation import Analysis
+from hydrostat.simulation import Simulation
 
 pytestmark = pytest.mark.skipif(kernel.native is None, reason="installed without the compiled core")
 
@@ -166,3 +176,62 @@ def test_threads_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     assert kernel._threads() == 3
     monkeypatch.delenv("HYDROSTAT_THREADS")
     assert kernel._threads() >= 1
+
+
+def kernels() -> dict[str, Kernel]:
+    """Every `Kernel` of the package that is imported, by its name."""
+    rooms = [module for name, module in sys.modules.items() if name.startswith("hydrostat.")]
+    found = {id(item): item for room in rooms for item in vars(room).values() if isinstance(item, Kernel)}
+    return {item.by_numba.__name__: item for item in found.values()}
+
+
+@pytest.fixture
+def twice(monkeypatch: pytest.MonkeyPatch) -> set[str]:
+    """The names of the kernels called so far, each by the core and by numba on copies, with the same outcome."""
+    called = set()
+
+    def call(self: Kernel, *arguments: Any) -> Any:
+        copies = [each.copy() if isinstance(each, np.ndarray) else each for each in arguments]
+        assert self.by_core is not None, self.by_numba.__name__
+        outcomes = self.by_core(*arguments), self.by_numba(*copies)
+        for core, numba in (outcomes, *zip(arguments, copies, strict=True)):
+            if isinstance(numba, np.ndarray) and numba.dtype.kind == "f":
+                np.testing.assert_allclose(core, numba, rtol=1e-13, atol=1e-13 * np.abs(numba).max(initial=0.0))
+            else:
+                np.testing.assert_array_equal(core, numba)
+        called.add(self.by_numba.__name__)
+        return outcomes[0]
+
+    monkeypatch.setattr(Kernel, "__call__", call)
+    return called
+
+
+@pytest.mark.slow
+def test_kernels(twice: set[str]) -> None:
+    """Flat and in space; more nodes than a part that is not cut, one row of numbers a node, and no places of nodes."""
+    simulation = Simulation(strip_robot(columns=40, rows=6))
+    pose = simulation.solve({winch.name: 0.01 for winch in simulation.robot.winches})
+    simulation.cables.bends(pose.nodes, np.ones(len(pose.tensions)))
+    box = box_mesh((6, 4, 4))
+    assembly = assembly_of(box)
+    data = assembly.hessian(box.nodes, np.zeros(0)).data
+    pattern = assembly.pattern
+    Analysis(pattern.indptr, pattern.indices, dim=3, points=None).factorise(data)
+    NeoHookean(box.nodes, box.elements, mu=1.0, lame=1.0).least_volume(moved(box, 0.2))
+    solid = Solid(Surface(box.nodes, box.boundary))
+    stage = ImproveStage(rounds=2, sweeps=2, power=3.0, pull=10.0)
+    improve(Mesh(moved(box, 0.1), box.elements), solid, element_size=0.02, stages=(stage,))
+    assert twice == kernels().keys()
+
+
+def test_what_the_core_cannot_fill_in_is_refused() -> None:
+    """A copy of another type would be filled in and lost."""
+    kernel_of_both = kernels()["_add_vectors"]
+    stencils, vectors = np.zeros((1, 1), int), np.ones((1, 1, 2))
+    total = np.zeros((1, 2))
+    kernel_of_both(stencils.astype(np.int32), vectors, total)
+    assert total.tolist() == [[1.0, 1.0]]
+    with pytest.raises(TypeError):
+        kernel_of_both(stencils, vectors, np.zeros((1, 2), np.float32))
+    with pytest.raises(ValueError, match="a vector for each corner"):
+        kernel_of_both(stencils, np.ones((2, 1, 2)), total)

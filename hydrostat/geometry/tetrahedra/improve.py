@@ -10,7 +10,7 @@ from numba import njit
 from hydrostat.arrays import Elements, Nodes
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Solid
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, Kernel
 
 _SAMPLES = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
 """Places of a facet that should lie on the surface, by their weights."""
@@ -184,7 +184,7 @@ def _derivatives(
     return total
 
 
-@njit(**KERNEL)
+@Kernel
 @no_type_check
 def _sweep(nodes, elements, start, star, facets, begin, ring, normals, offsets, samples, power, pull):
     """Each node in turn takes a step of Newton on what it alone can change, halved until that falls."""

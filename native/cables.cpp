@@ -1,0 +1,287 @@
+// Cables and what all energies share: the loops of mechanics/cable.py, tension_law.py, energy.py and of least volumes.
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+
+namespace {
+
+using Int = int64_t;
+
+// Segments of cables as they come from Python.
+struct Segments {
+    Int terms, corners, dim;
+    const double *nodes, *weights, *offsets, *roundings;
+    const Int* stencils;
+
+    Segments(const Reals<2>& nodes, const Counts<2>& stencils, const Reals<2>& weights, const Reals<2>& offsets,
+             const Reals<1>& roundings)
+        : terms((Int)stencils.shape(0)), corners((Int)stencils.shape(1)), dim((Int)nodes.shape(1)),
+          nodes(nodes.data()), weights(weights.data()), offsets(offsets.data()), roundings(roundings.data()),
+          stencils(stencils.data()) {
+        demand((Int)weights.shape(0) == terms && (Int)weights.shape(1) == corners && (Int)offsets.shape(0) == terms &&
+                   (Int)offsets.shape(1) == dim && (Int)roundings.shape(0) == terms, "as many segments of each");
+    }
+
+    double measure(Int term, double* span) const {
+        double square = roundings[term] * roundings[term];
+        for (Int axis = 0; axis < dim; axis++) {
+            span[axis] = offsets[term * dim + axis];
+            for (Int corner = 0; corner < corners; corner++)
+                span[axis] += weights[term * corners + corner] * nodes[stencils[term * corners + corner] * dim + axis];
+            square += span[axis] * span[axis];
+        }
+        return std::sqrt(square);
+    }
+};
+
+void measure(Reals<2> nodes, Counts<2> stencils, Reals<2> weights, Reals<2> offsets, Reals<1> roundings,
+             Array<double, 2> spans, Array<double, 1> lengths) {
+    Segments all(nodes, stencils, weights, offsets, roundings);
+    demand((Int)spans.shape(0) == all.terms && (Int)spans.shape(1) == all.dim && (Int)lengths.shape(0) == all.terms,
+           "as many spans as segments");
+    for (Int term = 0; term < all.terms; term++)
+        lengths.data()[term] = all.measure(term, spans.data() + term * all.dim);
+}
+
+void lengths(Reals<2> nodes, Counts<2> stencils, Reals<2> weights, Reals<2> offsets, Reals<1> roundings,
+             Counts<1> cables, Array<double, 1> total) {
+    Segments all(nodes, stencils, weights, offsets, roundings);
+    double span[3];
+    demand((Int)cables.shape(0) == all.terms && all.dim <= 3, "as many segments of each");
+    for (Int term = 0; term < all.terms; term++) total.data()[cables.data()[term]] += all.measure(term, span);
+}
+
+void bends(Reals<2> spans, Reals<1> lengths, Reals<2> weights, Reals<1> tensions, Array<double, 3> blocks) {
+    Int terms = (Int)spans.shape(0), dim = (Int)spans.shape(1), corners = (Int)weights.shape(1), size = corners * dim;
+    demand((Int)lengths.shape(0) == terms && (Int)weights.shape(0) == terms && (Int)tensions.shape(0) == terms &&
+               (Int)blocks.shape(0) == terms && (Int)blocks.shape(1) == size && (Int)blocks.shape(2) == size,
+           "as many segments of each");
+    for (Int term = 0; term < terms; term++) {
+        const double *span = spans.data() + term * dim, *share = weights.data() + term * corners;
+        double length = lengths.data()[term], scale = tensions.data()[term] / length, square = length * length;
+        double* block = blocks.data() + term * size * size;
+        for (Int i = 0; i < dim; i++)
+            for (Int j = 0; j < dim; j++) {
+                double across = -span[i] * span[j] / square;
+                if (i == j) across += 1.0;
+                across *= scale;
+                for (Int a = 0; a < corners; a++)
+                    for (Int b = 0; b < corners; b++)
+                        block[(a * dim + i) * size + b * dim + j] = share[a] * share[b] * across;
+            }
+    }
+}
+
+void add_bends(Reals<2> spans, Reals<1> lengths, Reals<2> weights, Reals<1> pulls, Counts<2> stencils,
+               Counts<3> slots, Counts<1> strides, Array<double, 1> data) {
+    Int terms = (Int)spans.shape(0), dim = (Int)spans.shape(1), corners = (Int)weights.shape(1);
+    demand((Int)lengths.shape(0) == terms && (Int)weights.shape(0) == terms && (Int)pulls.shape(0) == terms &&
+               (Int)stencils.shape(0) == terms && (Int)stencils.shape(1) == corners &&
+               (Int)slots.size() == terms * corners * corners && dim <= 3, "as many segments of each");
+    for (Int term = 0; term < terms; term++) {
+        const double *span = spans.data() + term * dim, *share = weights.data() + term * corners;
+        double pull = pulls.data()[term], square = lengths.data()[term] * lengths.data()[term], across[3][3];
+        if (pull == 0.0) continue;
+        for (Int i = 0; i < dim; i++)
+            for (Int j = 0; j < dim; j++) across[i][j] = pull * ((i == j ? 1.0 : 0.0) - span[i] * span[j] / square);
+        for (Int b = 0; b < corners; b++) {
+            Int stride = strides.data()[stencils.data()[term * corners + b]];
+            for (Int a = 0; a < corners; a++) {
+                double weight = share[a] * share[b];
+                double* block = data.data() + slots.data()[(term * corners + a) * corners + b];
+                for (Int j = 0; j < dim; j++)
+                    for (Int i = 0; i < dim; i++) block[j * stride + i] += weight * across[j][i];
+            }
+        }
+    }
+}
+
+void spread(Counts<2> stencils, Counts<1> cables, Reals<3> gradients, Array<double, 2> columns) {
+    Int terms = (Int)stencils.shape(0), corners = (Int)stencils.shape(1), dim = (Int)gradients.shape(2);
+    Int count = (Int)columns.shape(1);
+    demand((Int)cables.shape(0) == terms && (Int)gradients.shape(0) == terms && (Int)gradients.shape(1) == corners,
+           "as many segments of each");
+    for (Int term = 0; term < terms; term++)
+        for (Int corner = 0; corner < corners; corner++)
+            for (Int axis = 0; axis < dim; axis++) {
+                Int place = term * corners + corner;
+                columns.data()[(stencils.data()[place] * dim + axis) * count + cables.data()[term]] +=
+                    gradients.data()[place * dim + axis];
+            }
+}
+
+struct Spring {
+    double energy, tension, slope;
+};
+
+Spring spring(double k, double eps, double elongation) {
+    if (elongation <= 0.0) return {0.0, 0.0, 0.0};
+    if (elongation <= 2.0 * eps)
+        return {k * (elongation * (elongation * elongation)) / (12.0 * eps), k * elongation * elongation / (4.0 * eps),
+                k * elongation / (2.0 * eps)};
+    double beyond = elongation - eps;
+    return {0.5 * k * (beyond * beyond) + k * eps * eps / 6.0, k * beyond, k};
+}
+
+void evaluate(Reals<1> stiffness, Reals<1> smoothing, Reals<1> elongation, Array<double, 2> found) {
+    Int count = (Int)stiffness.shape(0);
+    demand((Int)smoothing.shape(0) == count && (Int)elongation.shape(0) == count && found.shape(0) == 3 &&
+               (Int)found.shape(1) == count, "a number for each cable");
+    double* out = found.data();
+    for (Int cable = 0; cable < count; cable++) {
+        Spring one = spring(stiffness.data()[cable], smoothing.data()[cable], elongation.data()[cable]);
+        out[cable] = one.energy;
+        out[count + cable] = one.tension;
+        out[2 * count + cable] = one.slope;
+    }
+}
+
+// Solve a small system in place, with pivoting; false if it is singular.
+bool eliminate(std::vector<double>& matrix, std::vector<double>& right) {
+    Int size = (Int)right.size();
+    for (Int column = 0; column < size; column++) {
+        Int pivot = column;
+        for (Int row = column + 1; row < size; row++)
+            if (std::fabs(matrix[row * size + column]) > std::fabs(matrix[pivot * size + column])) pivot = row;
+        if (!(std::fabs(matrix[pivot * size + column]) > 0.0)) return false;
+        if (pivot != column) {
+            for (Int other = column; other < size; other++)
+                std::swap(matrix[column * size + other], matrix[pivot * size + other]);
+            std::swap(right[column], right[pivot]);
+        }
+        for (Int row = column + 1; row < size; row++) {
+            double factor = matrix[row * size + column] / matrix[column * size + column];
+            if (factor == 0.0) continue;
+            for (Int other = column + 1; other < size; other++)
+                matrix[row * size + other] -= factor * matrix[column * size + other];
+            right[row] -= factor * right[column];
+        }
+    }
+    for (Int row = size - 1; row >= 0; row--) {
+        double total = right[row];
+        for (Int other = row + 1; other < size; other++) total -= matrix[row * size + other] * right[other];
+        right[row] = total / matrix[row * size + row];
+    }
+    return true;
+}
+
+// Newton with a line search on T M T / 2 + U(elongations - M T); false if it does not arrive.
+bool balance(Reals<1> stiffness, Reals<1> smoothing, Reals<1> elongations, Reals<2> compliance,
+             Array<double, 1> tensions) {
+    Int count = (Int)tensions.shape(0);
+    demand((Int)stiffness.shape(0) == count && (Int)smoothing.shape(0) == count &&
+               (Int)elongations.shape(0) == count && (Int)compliance.shape(0) == count &&
+               (Int)compliance.shape(1) == count, "a number for each cable");
+    const double *k = stiffness.data(), *eps = smoothing.data(), *given = elongations.data();
+    const double* gives = compliance.data();
+    double *tension = tensions.data(), value = 0.0;
+    std::vector<double> matrix(count * count), change(count), trial(count), slopes(count), rest(given, given + count);
+    for (Int cable = 0; cable < count; cable++) value += spring(k[cable], eps[cable], rest[cable]).energy;
+    for (int round = 0; round < 30; round++) {
+        double largest = 0.0, missing = 0.0, slope = 0.0, length = 1.0, reached = 0.0;
+        for (Int cable = 0; cable < count; cable++) {
+            Spring one = spring(k[cable], eps[cable], rest[cable]);
+            slopes[cable] = one.slope;
+            change[cable] = one.tension - tension[cable];
+            largest = one.tension > largest ? one.tension : largest;
+            missing = std::fabs(change[cable]) > missing ? std::fabs(change[cable]) : missing;
+        }
+        if (missing <= 1e-12 * largest) return true;
+        for (Int row = 0; row < count; row++) {
+            trial[row] = 0.0;
+            for (Int column = 0; column < count; column++) {
+                trial[row] += gives[row * count + column] * change[column];
+                matrix[row * count + column] = slopes[row] * gives[row * count + column] + (row == column ? 1.0 : 0.0);
+            }
+        }
+        if (!eliminate(matrix, change)) return false;
+        for (Int cable = 0; cable < count; cable++) slope -= trial[cable] * change[cable];
+        bool found = false;
+        for (int halving = 0; halving < 12 && !found; halving++) {
+            reached = 0.0;
+            for (Int row = 0; row < count; row++) trial[row] = tension[row] + length * change[row];
+            for (Int row = 0; row < count; row++) {
+                double yielded = 0.0;
+                for (Int column = 0; column < count; column++) yielded += gives[row * count + column] * trial[column];
+                rest[row] = given[row] - yielded;
+                reached += 0.5 * trial[row] * yielded + spring(k[row], eps[row], rest[row]).energy;
+            }
+            found = reached <= value + 1e-4 * length * slope + 1e-14 * std::fabs(value);
+            length *= 0.5;
+        }
+        if (!found) return false;
+        for (Int cable = 0; cable < count; cable++) tension[cable] = trial[cable];
+        value = reached;
+    }
+    return false;
+}
+
+void add_vectors(Counts<2> stencils, Reals<3> vectors, Array<double, 2> total) {
+    Int places = (Int)stencils.size(), dim = (Int)total.shape(1);
+    demand((Int)vectors.size() == places * dim, "a vector for each corner");
+    for (Int place = 0; place < places; place++)
+        for (Int axis = 0; axis < dim; axis++)
+            total.data()[stencils.data()[place] * dim + axis] += vectors.data()[place * dim + axis];
+}
+
+void add_blocks(Counts<2> stencils, Counts<3> slots, Counts<1> strides, Reals<3> blocks, Array<double, 1> data) {
+    Int terms = (Int)stencils.shape(0), corners = (Int)stencils.shape(1), size = (Int)blocks.shape(1);
+    demand((Int)blocks.shape(0) == terms && (Int)blocks.shape(2) == size && size % (corners > 0 ? corners : 1) == 0 &&
+               (Int)slots.shape(0) == terms && (Int)slots.shape(1) == corners && (Int)slots.shape(2) == corners,
+           "a block for each term");
+    Int dim = corners > 0 ? size / corners : 0;
+    for (Int term = 0; term < terms; term++)
+        for (Int b = 0; b < corners; b++) {
+            Int stride = strides.data()[stencils.data()[term * corners + b]];
+            for (Int a = 0; a < corners; a++) {
+                Int start = slots.data()[(term * corners + a) * corners + b];
+                for (Int j = 0; j < dim; j++)
+                    for (Int i = 0; i < dim; i++)
+                        data.data()[start + j * stride + i] +=
+                            blocks.data()[(term * size + b * dim + j) * size + a * dim + i];
+            }
+        }
+}
+
+// J of the element that is squeezed most, by the spans of its corners; 1 if none is. `gradients` have three columns.
+double least_volume(Reals<2> nodes, Counts<2> stencils, Reals<3> gradients, nb::tuple axes) {
+    Int terms = (Int)stencils.shape(0), corners = (Int)stencils.shape(1), dim = (Int)nodes.shape(1);
+    demand((dim == 2 || dim == 3) && dim == (Int)nb::len(axes) && corners == dim + 1 && (Int)gradients.shape(0) == terms &&
+               (Int)gradients.shape(1) == corners && gradients.shape(2) == 3, "elements must be simplices");
+    double least = 1.0;
+    Free others(10.0 * terms);
+    for (Int term = 0; term < terms; term++) {
+        const Int* corner = stencils.data() + term * corners;
+        const double *g = gradients.data() + term * corners * 3, *o = nodes.data() + corner[0] * dim;
+        const double *p = nodes.data() + corner[1] * dim, *q = nodes.data() + corner[2] * dim;
+        double ax = p[0] - o[0], ay = p[1] - o[1], bx = q[0] - o[0], by = q[1] - o[1], found;
+        if (dim == 2) {
+            found = (ax * by - ay * bx) * (g[3] * g[7] - g[4] * g[6]);
+        } else {
+            const double* r = nodes.data() + corner[3] * dim;
+            double az = p[2] - o[2], bz = q[2] - o[2], cx = r[0] - o[0], cy = r[1] - o[1], cz = r[2] - o[2];
+            double scale = g[3] * (g[7] * g[11] - g[8] * g[10]) - g[4] * (g[6] * g[11] - g[8] * g[9]) +
+                           g[5] * (g[6] * g[10] - g[7] * g[9]);
+            found = (ax * (by * cz - bz * cy) - ay * (bx * cz - bz * cx) + az * (bx * cy - by * cx)) * scale;
+        }
+        least = found < least ? found : least;
+    }
+    return least;
+}
+
+}  // namespace
+
+void add_cables(nb::module_& module) {
+    module.def("measure", &measure, given(), given(), given(), given(), given(), filled(), filled());
+    module.def("lengths", &lengths, given(), given(), given(), given(), given(), given(), filled());
+    module.def("bends", &bends, given(), given(), given(), given(), filled());
+    module.def("add_bends", &add_bends, given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("spread", &spread, given(), given(), given(), filled());
+    module.def("evaluate", &evaluate, given(), given(), given(), filled());
+    module.def("balance", &balance, given(), given(), given(), given(), filled());
+    module.def("add_vectors", &add_vectors, given(), given(), filled());
+    module.def("add_blocks", &add_blocks, given(), given(), given(), given(), filled());
+    module.def("least_volume", &least_volume, given(), given(), given(), given());
+}

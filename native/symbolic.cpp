@@ -1,0 +1,214 @@
+// What a factorisation will look like: the loops of mechanics/symbolic.py and of the plan in mechanics/supernodal.py.
+#include <algorithm>
+
+#include "arrays.hpp"
+
+namespace {
+
+using Int = int64_t;
+
+void elimination_tree(Counts<1> starts, Counts<1> neighbours, Counts<1> order, Counts<1> place, Array<Int, 1> parent,
+                      Array<Int, 1> ancestor) {
+    Int nodes = (Int)order.shape(0);
+    demand((Int)starts.shape(0) == nodes + 1 && (Int)place.shape(0) == nodes && (Int)parent.shape(0) == nodes &&
+               (Int)ancestor.shape(0) == nodes, "sizes of the graph");
+    const Int *begin = starts.data(), *other = neighbours.data(), *node = order.data(), *at = place.data();
+    Int *up = parent.data(), *highest = ancestor.data();
+    for (Int column = 0; column < nodes; column++)
+        for (Int entry = begin[node[column]]; entry < begin[node[column] + 1]; entry++) {
+            Int row = at[other[entry]];
+            while (row >= 0 && row < column) {
+                Int following = highest[row];
+                highest[row] = column;
+                if (following < 0) up[row] = column;
+                row = following;
+            }
+        }
+}
+
+void postorder(Counts<1> parent, Array<Int, 1> child, Counts<1> sibling, Array<Int, 1> result, Array<Int, 1> stack) {
+    Int count = (Int)parent.shape(0), written = 0;
+    demand((Int)child.shape(0) == count && (Int)sibling.shape(0) == count && (Int)result.shape(0) == count &&
+               (Int)stack.shape(0) == count, "sizes of the forest");
+    const Int *up = parent.data(), *next = sibling.data();
+    Int *first = child.data(), *out = result.data(), *waiting = stack.data();
+    for (Int root = 0; root < count; root++) {
+        if (up[root] >= 0) continue;
+        waiting[0] = root;
+        for (Int depth = 1; depth > 0;) {
+            Int vertex = waiting[depth - 1];
+            if (first[vertex] >= 0) {
+                waiting[depth++] = first[vertex];
+                first[vertex] = next[first[vertex]];
+            } else {
+                out[written++] = vertex;
+                depth--;
+            }
+        }
+    }
+}
+
+void column_counts(Counts<1> starts, Counts<1> neighbours, Counts<1> order, Counts<1> place, Counts<1> parent,
+                   Array<Int, 1> count, Array<Int, 1> seen) {
+    Int nodes = (Int)order.shape(0);
+    demand((Int)starts.shape(0) == nodes + 1 && (Int)place.shape(0) == nodes && (Int)parent.shape(0) == nodes &&
+               (Int)count.shape(0) == nodes && (Int)seen.shape(0) == nodes, "sizes of the graph");
+    const Int *begin = starts.data(), *other = neighbours.data(), *node = order.data(), *at = place.data();
+    const Int* up = parent.data();
+    Int *total = count.data(), *mark = seen.data();
+    for (Int row = 0; row < nodes; row++) {
+        mark[row] = row;
+        for (Int entry = begin[node[row]]; entry < begin[node[row] + 1]; entry++)
+            for (Int column = at[other[entry]]; column < row && mark[column] != row; column = up[column]) {
+                mark[column] = row;
+                total[column]++;
+            }
+    }
+}
+
+// The model of time of `front_seconds` in symbolic.py, where its numbers are explained.
+double front_seconds(double columns, double rows) {
+    double below = rows - columns;
+    double operations = columns * (columns * columns / 3.0 + columns * below + below * 1.0 * below);
+    double rate = 30e9 * columns / (columns + 12.0);
+    return 1.5e-6 + 0.6e-9 * columns * rows + 0.5 * 0.8e-9 * below * below + operations / rate;
+}
+
+void merge(Counts<1> child, Counts<1> sibling, Array<Int, 1> columns, Counts<1> count, Array<Int, 1> into, Int dim) {
+    Int nodes = (Int)into.shape(0);
+    demand((Int)child.shape(0) == nodes && (Int)sibling.shape(0) == nodes && (Int)columns.shape(0) == nodes &&
+               (Int)count.shape(0) == nodes, "sizes of the forest");
+    const Int *first = child.data(), *next = sibling.data(), *high = count.data();
+    Int *wide = columns.data(), *out = into.data();
+    for (Int top = 0; top < nodes; top++)
+        for (Int vertex = first[top]; vertex >= 0; vertex = next[vertex]) {
+            Int own = dim * (high[top] - 1), two = dim * wide[vertex], one = dim * wide[top];
+            double apart = front_seconds((double)two, (double)(two + dim * (high[vertex] - 1))) +
+                           front_seconds((double)one, (double)(one + own));
+            if (front_seconds((double)(one + two), (double)(one + two + own)) < apart) {
+                wide[top] += wide[vertex];
+                out[vertex] = top;
+            }
+        }
+    for (Int node = nodes - 1; node >= 0; node--) out[node] = out[out[node]];
+}
+
+void rows(Counts<1> starts, Counts<1> neighbours, Counts<1> order, Counts<1> place, Counts<1> first, Counts<1> child,
+          Counts<1> sibling, Counts<1> begins, Array<Int, 1> found, Array<Int, 1> seen) {
+    Int count = (Int)child.shape(0), nodes = (Int)order.shape(0);
+    demand((Int)starts.shape(0) == nodes + 1 && (Int)place.shape(0) == nodes && (Int)seen.shape(0) == nodes &&
+               (Int)first.shape(0) == count + 1 && (Int)begins.shape(0) == count + 1 &&
+               (Int)sibling.shape(0) == count && (Int)found.shape(0) == begins.data()[count], "sizes of the tree");
+    const Int *begin = starts.data(), *other = neighbours.data(), *node = order.data(), *at = place.data();
+    const Int *low = first.data(), *lists = begins.data(), *next = sibling.data();
+    Int *out = found.data(), *mark = seen.data();
+    for (Int which = 0; which < count; which++) {
+        Int end = low[which + 1], written = lists[which];
+        auto take = [&](Int row) {
+            if (row < end || mark[row] == which) return;
+            mark[row] = which;
+            out[written++] = row;
+        };
+        for (Int column = low[which]; column < end; column++)
+            for (Int entry = begin[node[column]]; entry < begin[node[column] + 1]; entry++) take(at[other[entry]]);
+        for (Int below = child.data()[which]; below >= 0; below = next[below])
+            for (Int position = lists[below]; position < lists[below + 1]; position++) take(out[position]);
+    }
+}
+
+// Columns of `Fronts.table`.
+enum { COLUMNS, BELOW, FIRST, PANEL, STARTS, CHILD, SIBLING, STACK, OFFSET, RUNS, ENTRIES, WIDTH };
+
+void stacks(Array<Int, 2> table, Counts<1> parent, Array<Int, 1> top, Array<Int, 1> most) {
+    Int count = (Int)parent.shape(0);
+    demand((Int)table.shape(0) == count + 1 && table.shape(1) == WIDTH && top.shape(0) == 2 && most.shape(0) == 2,
+           "shape of the table");
+    Int *fronts = table.data(), *height = top.data(), *highest = most.data();
+    const Int* up = parent.data();
+    for (Int vertex = count - 1; vertex >= 0; vertex--)
+        if (up[vertex] >= 0) fronts[vertex * WIDTH + STACK] = 1 - fronts[up[vertex] * WIDTH + STACK];
+    for (Int vertex = 0; vertex < count; vertex++) {
+        Int *front = fronts + vertex * WIDTH, which = front[STACK];
+        if (front[CHILD] >= 0) height[1 - which] = fronts[front[CHILD] * WIDTH + OFFSET];
+        front[OFFSET] = height[which];
+        height[which] += front[BELOW] * front[BELOW];
+        highest[which] = std::max(highest[which], height[which]);
+    }
+}
+
+void runs(Array<Int, 2> table, Counts<1> parent, Counts<1> below, Array<Int, 2> found) {
+    Int count = (Int)parent.shape(0), written = 0;
+    demand((Int)table.shape(0) == count + 1 && table.shape(1) == WIDTH && found.shape(1) == 3 &&
+               found.shape(0) == below.shape(0), "shape of the table");
+    Int *fronts = table.data(), *out = found.data();
+    const Int* lists = below.data();
+    for (Int which = 0; which < count; which++) {
+        Int up = parent.data()[which], *front = fronts + which * WIDTH;
+        if (up >= 0) {
+            const Int* higher = fronts + up * WIDTH;
+            Int columns = higher[COLUMNS], at = higher[STARTS], previous = -2;
+            for (Int position = front[STARTS]; position < front[WIDTH + STARTS]; position++) {
+                Int row = lists[position], local = row - higher[FIRST];
+                if (local >= columns) {
+                    while (lists[at] < row) at++;
+                    local = columns + at - higher[STARTS];
+                }
+                if (local == previous + 1 && local != columns) {
+                    out[3 * written - 1]++;
+                } else {
+                    out[3 * written] = position - front[STARTS];
+                    out[3 * written + 1] = local;
+                    out[3 * written + 2] = 1;
+                    written++;
+                }
+                previous = local;
+            }
+        }
+        front[WIDTH + RUNS] = written;
+    }
+}
+
+void entries(Array<Int, 2> table, Counts<1> below, Counts<1> indptr, Counts<1> indices, Counts<1> place,
+             Counts<1> undo, Array<Int, 1> local, Array<int32_t, 2> found, Array<Int, 1> diagonal) {
+    Int count = (Int)table.shape(0) - 1, dofs = (Int)place.shape(0), written = 0;
+    demand(table.shape(1) == WIDTH && (Int)indptr.shape(0) == dofs + 1 && (Int)undo.shape(0) == dofs &&
+               (Int)local.shape(0) == dofs && (Int)diagonal.shape(0) == dofs && found.shape(1) == 2 &&
+               2 * (Int)found.shape(0) >= (Int)indices.shape(0) + dofs, "sizes of the matrix");
+    Int *fronts = table.data(), *here = local.data(), *middle = diagonal.data();
+    const Int *lists = below.data(), *begin = indptr.data(), *cells = indices.data(), *at = place.data();
+    int32_t* out = found.data();
+    for (Int which = 0; which < count; which++) {
+        Int* front = fronts + which * WIDTH;
+        Int first = front[FIRST], columns = front[COLUMNS], height = columns + front[BELOW];
+        for (Int row = 0; row < columns; row++) here[first + row] = row;
+        for (Int position = 0; position < front[BELOW]; position++)
+            here[lists[front[STARTS] + position]] = columns + position;
+        for (Int column = 0; column < columns; column++) {
+            Int old = undo.data()[first + column];
+            for (Int entry = begin[old]; entry < begin[old + 1]; entry++) {
+                Int row = at[cells[entry]];
+                if (row == first + column) middle[old] = entry;
+                if (row < first + column) continue;
+                out[2 * written] = (int32_t)entry;
+                out[2 * written + 1] = (int32_t)(column * height + here[row]);
+                written++;
+            }
+        }
+        front[WIDTH + ENTRIES] = written;
+    }
+}
+
+}  // namespace
+
+void add_symbolic(nb::module_& module) {
+    module.def("elimination_tree", &elimination_tree, given(), given(), given(), given(), filled(), filled());
+    module.def("postorder", &postorder, given(), filled(), given(), filled(), filled());
+    module.def("column_counts", &column_counts, given(), given(), given(), given(), given(), filled(), filled());
+    module.def("merge", &merge, given(), given(), filled(), given(), filled(), given());
+    module.def("rows", &rows, given(), given(), given(), given(), given(), given(), given(), given(), filled(),
+               filled());
+    module.def("stacks", &stacks, filled(), given(), filled(), filled());
+    module.def("runs", &runs, filled(), given(), given(), filled());
+    module.def("entries", &entries, filled(), given(), given(), given(), given(), given(), filled(), filled(),
+               filled());
+}
