@@ -81,6 +81,7 @@ def test_reference_is_balanced() -> None:
     np.testing.assert_array_equal(nodes[body.held], body.nodes[body.held])
 
 
+@pytest.mark.slow
 def test_peer_that_cannot_be_had_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: pip, which looks into an empty folder only."""
     monkeypatch.setenv("PIP_NO_INDEX", "1")

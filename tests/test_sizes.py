@@ -43,6 +43,12 @@ def syntax(text: str) -> ast.Module:
     return ast.parse(text)
 
 
+@cache
+def lines_of(text: str) -> list[str]:
+    """Lines of a file."""
+    return text.splitlines()
+
+
 def functions(node: ast.AST, name: str = "") -> Iterator[tuple[str, Function]]:
     """Every function with its full name, also within classes and functions."""
     for child in ast.iter_child_nodes(node):
@@ -56,7 +62,7 @@ def code_lines(text: str, function: Function) -> int:
     """Lines of a function without its decorators, docstring, blank lines and comments."""
     docstring = function.body[0] if ast.get_docstring(function) is not None else None
     told = range(docstring.lineno, (docstring.end_lineno or 0) + 1) if docstring else ()
-    lines = enumerate(text.splitlines()[function.lineno - 1 : function.end_lineno], function.lineno)
+    lines = enumerate(lines_of(text)[function.lineno - 1 : function.end_lineno], function.lineno)
     return sum(number not in told and bool(line.strip()) and line.strip()[0] != "#" for number, line in lines)
 
 

@@ -14,6 +14,7 @@ Run = Callable[..., tuple[int, str, str]]
 pytestmark = pytest.mark.usefixtures("unchecked")
 
 
+@pytest.mark.slow
 def test_branches_writes_what_the_library_finds(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, out, _ = run("branches", starfish, "--contract", "left=20mm", "--starts", "4", "--out", tmp_path)
     assert code == 0

@@ -79,6 +79,7 @@ def test_simulate_writes_what_the_library_solves(run: Run, tmp_path: Path, starf
     assert (tmp_path / "pose.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_simulate_warns_beyond_travel(run: Run, tmp_path: Path, starfish: Path) -> None:
     assert "beyond it" in run("simulate", starfish, "--contract", "left=-30mm", "--out", tmp_path)[1]
 

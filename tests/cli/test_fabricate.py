@@ -66,6 +66,7 @@ def test_an_unknown_motor_is_refused(run: Run, tmp_path: Path, starfish: Path) -
     assert not (tmp_path / "kit").exists()
 
 
+@pytest.mark.slow
 def test_what_cannot_be_built_is_refused_with_every_reason(run: Run, tmp_path: Path) -> None:
     save_robot(near_the_edge(), tmp_path / "robot")
     code, out, err = run("fabricate", tmp_path / "robot", "--out", tmp_path / "kit")

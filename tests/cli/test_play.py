@@ -23,6 +23,7 @@ def wave(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_it_plays_in_real_time_and_says_that_it_is_simulated(run: Run, starfish: Path, wave: Path) -> None:
     began = time.monotonic()
     code, out, err = run("play", starfish, wave, "--loop", 2, "--speed", 0.5)
@@ -129,6 +130,7 @@ def test_one_clear_line(
     assert words in err
 
 
+@pytest.mark.slow
 def test_a_robot_without_winches_is_refused(run: Run, tmp_path: Path, wave: Path) -> None:
     drawing = tmp_path / "box.svg"
     drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path d="M0 0H60V40H0Z"/></svg>')

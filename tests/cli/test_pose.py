@@ -36,6 +36,7 @@ def drawing(starfish: Path, tmp_path: Path) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_a_drawing_leads_to_the_contractions_behind_it(run: Run, starfish: Path, drawing: Path, tmp_path: Path) -> None:
     code, out, _ = run("pose", starfish, "--drawing", drawing, "--out", tmp_path / "out")
     assert code == 0
@@ -55,6 +56,7 @@ def test_markers_and_a_drawing_together(run: Run, starfish: Path, drawing: Path,
     assert set(facts["errors"]) == {"outline", *hs.load_robot(starfish).poses["wave"].targets}
 
 
+@pytest.mark.slow
 def test_a_limit_on_the_tension_holds_and_is_told(run: Run, starfish: Path, tmp_path: Path) -> None:
     code, out, _ = run("pose", starfish, "--pose", "wave", "--tension", "8 N", "--out", tmp_path / "out")
     assert code == 0
@@ -67,6 +69,7 @@ def test_a_limit_on_the_tension_holds_and_is_told(run: Run, starfish: Path, tmp_
     assert facts["tension_limit"] == 8.0
 
 
+@pytest.mark.slow
 def test_equal_winches_take_in_the_same(run: Run, starfish: Path, tmp_path: Path) -> None:
     options = ("--pose", "wave", "--equal", "left,right", "--restarts", "0")
     assert run("pose", starfish, *options, "--out", tmp_path / "out")[0] == 0

@@ -45,6 +45,7 @@ def rest_error(robot: Robot, poses: tuple[Pose, ...]) -> float:
     return float(np.sqrt(np.mean(squares)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_design_has_what_was_asked_for(case: str, unchecked: None) -> None:
     poses, winches, cables, _ = CASES[case]
@@ -113,6 +114,7 @@ def test_the_same_twice(unchecked: None) -> None:
     assert again.rms_error == designed("two poses").rms_error
 
 
+@pytest.mark.slow
 def test_the_robots_own_network_does_not_matter(unchecked: None) -> None:
     poses, winches, cables, kind = CASES["one winch"]
     options = TreeOptions(fibres=kind, trials=12)

@@ -149,6 +149,7 @@ def test_the_error_told_is_what_its_user_finds(name: str, unchecked: None) -> No
         assert reached.rms_error == pytest.approx(fresh.rms_error, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["usual", "hole gap", "release", "no leads"])
 def test_more_cables_do_no_harm(name: str, unchecked: None) -> None:
     """Cables that spoil what there was are left out: by two cables the strip is brought within a few millimetres."""
@@ -196,6 +197,7 @@ def test_symmetric_designs_are_symmetric(name: str, unchecked: None) -> None:
     assert np.abs(np.sort(places[:, 1]) + np.sort(places[:, 1])[::-1]).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_improving_a_symmetric_network_keeps_it_symmetric(unchecked: None) -> None:
     start = designed("mirror, two winches")
     limits = replace(start.constraints, clearance=0.006)
@@ -263,6 +265,7 @@ def test_progress_comes_to_its_end(unchecked: None) -> None:
     assert counts[-1][0] == counts[-1][1]
 
 
+@pytest.mark.slow
 def test_a_design_with_all_shapes_checked() -> None:
     options = replace(SMALL, hops=5, polish=1, steps=1)
     network = design_cables(bare(), [UP], winches=1, cables=2, constraints=Constraints(slack=0.002), options=options)

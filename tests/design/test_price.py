@@ -261,6 +261,7 @@ def test_the_same_twice() -> None:
     assert [(path.nodes, path.lead, path.gain) for path in one] == [(path.nodes, path.lead, path.gain) for path in two]
 
 
+@pytest.mark.slow
 def test_two_cables_chosen_one_by_one_are_nearly_the_best_pair() -> None:
     """A small strip to be bent: against every pair of all short paths, each with a winch of its own (linear model)."""
     robot = replace(strip_robot(columns=8, rows=2), cables=(), winches=())

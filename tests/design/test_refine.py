@@ -64,6 +64,7 @@ def of_its_own() -> Layout:
     return start.at(numbers)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("made", [of_its_own, of_a_pair])
 def test_the_linear_model_agrees_with_finite_differences(made, unchecked: None) -> None:
     """All free numbers and all contractions: winches, via points, slack, ratios."""

@@ -108,6 +108,7 @@ def test_a_robot_that_cannot_be_built_is_refused_with_all_reasons(tmp_path):
     assert not (tmp_path / "kit").exists()
 
 
+@pytest.mark.slow
 def test_by_force_it_is_built_with_the_reasons_on_the_sheet():
     """Oracle: pypdf's text of the first page."""
     robot = plush_robot(drawn_body("M0 0H100V100H0Z"), TOO_NEAR)
@@ -124,6 +125,7 @@ def test_a_spool_too_small_for_the_shaft_is_refused():
         build_kit(thin)
 
 
+@pytest.mark.slow
 def test_letter_paper():
     """Oracle: pypdf, and 8.5 x 11 inch."""
     kit = build_kit(crossed(), options=KitOptions(paper=Paper.LETTER))
@@ -195,6 +197,7 @@ def test_step_without_its_extra_says_what_to_install():
         build_kit(crossed(), options=KitOptions(step=True))
 
 
+@pytest.mark.slow
 def test_stages_are_told():
     told = []
     build_kit(crossed(), progress=lambda stage, done, total: told.append((stage, done, total)))

@@ -102,6 +102,7 @@ def _heal(content: bytes, name: str) -> None:
     assert healing.lines()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", _SURFACES)
 def test_spoiled_surfaces(name: str) -> None:
     _heal(_SURFACES[name], name)

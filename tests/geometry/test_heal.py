@@ -164,6 +164,7 @@ def test_overlapping_spheres_are_united() -> None:
     assert healing.largest_distance < _FINE
 
 
+@pytest.mark.slow
 def test_self_intersections_are_found_and_mended() -> None:
     """A sphere with a dent pushed out through the other side runs through itself."""
     vertices = _BALL.vertices.copy()
@@ -207,6 +208,7 @@ def test_cavities_stay_if_they_are_clean() -> None:
     assert filled.removed[0].size == pytest.approx(0.02, rel=0.05)
 
 
+@pytest.mark.slow
 def test_cavities_stay_and_dirty_pockets_are_filled_when_a_body_is_made_anew() -> None:
     """Oracle: closed forms. The clean cavity is kept; one with a flipped triangle counts as dirt."""
     cavity = inside_out(sphere(0.01, (-0.012, 0.0, 0.0), 3))
@@ -246,6 +248,7 @@ def test_a_bump_that_crosses_the_body_is_no_speck() -> None:
     assert healing.surface.box[1, 0] == pytest.approx(0.032, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_all_at_once() -> None:
     """A scan-like ball: noise, holes large and small, flipped triangles, loose vertices, specks."""
     dirty = with_small_holes(with_noise(with_hole(sphere(divisions=4), _TOP, 0.01), 2e-4), 30)
@@ -256,6 +259,7 @@ def test_all_at_once() -> None:
     assert healing.largest_distance < _FINE
 
 
+@pytest.mark.slow
 def test_the_same_bytes_on_every_run() -> None:
     dirty = with_hole(with_noise(_BALL, 2e-4), _TOP, 0.01)
     one, two = (heal(dirty, resolution=_FINE) for _ in range(2))
@@ -273,6 +277,7 @@ def test_a_grid_that_would_be_too_fine_is_coarser_and_says_so() -> None:
         assert _says(heal(pair, resolution=0.001), "coarser than the 1 mm asked for")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dirty", [with_hole(_BALL, _TOP, 0.02), both(_BALL, sphere(0.02, (0.025, 0.0, 0.0), 3))])
 def test_settled_blocks_change_nothing(dirty: Surface) -> None:
     """Oracle: the same contour with the winding number summed at every grid point."""

@@ -1,4 +1,5 @@
 import io
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -13,32 +14,36 @@ from hydrostat.geometry.outline import Outline
 STAR = star()
 SIZE = 0.2
 
-DISCS = {
-    "dark on light": picture(canvas(disc("black"))),
-    "light on dark": picture(canvas(disc((240, 230, 200)), ground=(30, 40, 60))),
-    "of 1 bit": picture(canvas(disc("black"), fine=1).convert("1")),
-    "in a palette": picture(canvas(disc("green")).quantize(16)),
-    "of 16 bits": picture(
+DISCS: dict[str, Callable[[], bytes]] = {
+    "dark on light": lambda: picture(canvas(disc("black"))),
+    "light on dark": lambda: picture(canvas(disc((240, 230, 200)), ground=(30, 40, 60))),
+    "of 1 bit": lambda: picture(canvas(disc("black"), fine=1).convert("1")),
+    "in a palette": lambda: picture(canvas(disc("green")).quantize(16)),
+    "of 16 bits": lambda: picture(
         Image.fromarray(65535 - np.asarray(canvas(disc("white"), ground="black").convert("L"), np.uint16) * 200)
     ),
-    "of grey and opacity": picture(canvas(disc((9, 9, 9, 255)), ground=(0, 0, 0, 0)).convert("LA")),
-    "in CMYK": picture(canvas(disc("navy")).convert("CMYK"), "JPEG", quality=90),
-    "transparent ground": picture(canvas(disc((90, 80, 70, 255)), ground=(90, 80, 70, 0))),
-    "noise, fading light, JPEG 40": picture(noisy(lit(canvas(disc("orangered")), 0.3), 8), "JPEG", quality=40),
-    "pale, with dark eyes": picture(
+    "of grey and opacity": lambda: picture(canvas(disc((9, 9, 9, 255)), ground=(0, 0, 0, 0)).convert("LA")),
+    "in CMYK": lambda: picture(canvas(disc("navy")).convert("CMYK"), "JPEG", quality=90),
+    "transparent ground": lambda: picture(canvas(disc((90, 80, 70, 255)), ground=(90, 80, 70, 0))),
+    "noise, fading light, JPEG 40": lambda: picture(noisy(lit(canvas(disc("orangered")), 0.3), 8), "JPEG", quality=40),
+    "pale, with dark eyes": lambda: picture(
         noisy(canvas(disc((255, 220, 225)), disc("black", 20, (220, 220)), disc("black", 20, (380, 220))), 2)
     ),
-    "drawn with a line": picture(canvas(disc("black"), disc("white", 244))),
-    "drawn with a thin grey line": picture(noisy(canvas(disc("gray"), disc("white", 247)), 3), "JPEG", quality=70),
-    "photograph of 2400 pixels": picture(canvas(disc("navy")).resize((2400, 2400), Image.Resampling.BICUBIC), "JPEG"),
-    "gradient": picture(noisy(lit(canvas(disc((60, 60, 160))), 0.5), 3)),
+    "drawn with a line": lambda: picture(canvas(disc("black"), disc("white", 244))),
+    "drawn with a thin grey line": lambda: picture(
+        noisy(canvas(disc("gray"), disc("white", 247)), 3), "JPEG", quality=70
+    ),
+    "photograph of 2400 pixels": lambda: picture(
+        canvas(disc("navy")).resize((2400, 2400), Image.Resampling.BICUBIC), "JPEG"
+    ),
+    "gradient": lambda: picture(noisy(lit(canvas(disc((60, 60, 160))), 0.5), 3)),
 }
 
 
-@pytest.mark.parametrize("content", DISCS.values(), ids=DISCS.keys())
-def test_disc(content: bytes) -> None:
+@pytest.mark.parametrize("draw", DISCS.values(), ids=DISCS.keys())
+def test_disc(draw: Callable[[], bytes]) -> None:
     """Oracle: the disc's area, within 0.5 %, and its circle, within 1 % of its radius, in few corners."""
-    outline = read_outline(content, name="a.png", size=SIZE)
+    outline = read_outline(draw(), name="a.png", size=SIZE)
     assert outline.area == pytest.approx(np.pi * 0.01, rel=5e-3)
     assert np.abs(np.linalg.norm(outline.exterior, axis=1) - 0.1).max() < 1e-3
     assert outline.size == pytest.approx(SIZE, rel=1e-12)
@@ -65,6 +70,7 @@ def test_no_stairs(one_bit: bool) -> None:
     assert np.abs((turns + np.pi / 2) % np.pi - np.pi / 2).max() < 0.1
 
 
+@pytest.mark.slow
 def test_same_shape_in_every_kind_of_file() -> None:
     """Oracle: one star as SVG, DXF, PNG and JPG: two the same, the others within some pixels."""
     path = " ".join(f"{x:.9f},{y:.9f}" for x, y in STAR)
@@ -87,6 +93,7 @@ def test_same_shape_in_every_kind_of_file() -> None:
         assert found[name].polygon.symmetric_difference(drawn).area < 0.8 * pixel * drawn.length
 
 
+@pytest.mark.slow
 def test_line_drawing_is_filled() -> None:
     """Oracle: the ellipse of the fish to the outer side of its line; its eye and mouth are no holes; it says so."""
     for content in (
@@ -108,6 +115,7 @@ def test_holes(radius: float) -> None:
     assert drawing.notes == ("kept 1 hole",)
 
 
+@pytest.mark.slow
 def test_pale_parts_and_eyes_are_no_holes() -> None:
     """Oracle: the disc's area: rings of other colours are body; the white of an eye, which holds a pupil, is filled."""
     rings = canvas(disc("red"), disc((255, 235, 120), 200), disc("navy", 150), disc((255, 200, 60), 60))
@@ -143,6 +151,7 @@ def test_soft_shadow_is_left_out() -> None:
     assert "shadow" in drawing.notes[0]
 
 
+@pytest.mark.slow
 def test_upright_as_the_camera_says() -> None:
     """Oracle: the orientations of EXIF: the same picture turned in the file and turned back by its tag."""
     upright = canvas(shape(np.array([(100, 100), (500, 100), (500, 200), (200, 200), (200, 500), (100, 500)]), "black"))
@@ -164,6 +173,7 @@ def test_body_at_the_border() -> None:
     assert drawing.notes == ("the body reaches the border of the picture and is cut off there",)
 
 
+@pytest.mark.slow
 def test_corners_stay_few() -> None:
     """Oracle: the promise of at most 2000 corners, for a body with 600 teeth."""
     angle = np.linspace(0, 2 * np.pi, 1200, endpoint=False)
@@ -192,7 +202,7 @@ def padded() -> bytes:
     return stream.getvalue()
 
 
-GOOD = DISCS["dark on light"]
+GOOD = DISCS["dark on light"]()
 
 
 @pytest.mark.parametrize(
@@ -261,6 +271,7 @@ def test_notes_of_svg() -> None:
     assert read_drawing(svg, name="a.svg", size=SIZE).notes == ("left out 1 open line, the largest at (5, 5)",)
 
 
+@pytest.mark.slow
 def test_endings_in_capitals() -> None:
     """Oracle: the disc, whatever the case of its ending; the outline is that of the drawing."""
     for name in ("A.PNG", "b.Jpeg"):
@@ -268,8 +279,9 @@ def test_endings_in_capitals() -> None:
     assert read_drawing(GOOD, name="a.png", size=SIZE).notes == ()
 
 
+@pytest.mark.slow
 def test_same_picture_same_outline() -> None:
     """Oracle: the same bytes twice give the same corners, bit for bit."""
-    content = DISCS["noise, fading light, JPEG 40"]
+    content = DISCS["noise, fading light, JPEG 40"]()
     first, second = (read_outline(content, name="a.jpg", size=SIZE).exterior for _ in range(2))
     assert np.array_equal(first, second)

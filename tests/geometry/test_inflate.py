@@ -69,6 +69,7 @@ def test_ellipse_becomes_an_ellipsoid(up: float) -> None:
     assert np.log2(errors[0] / errors[-1]) / 2 > 1.4
 
 
+@pytest.mark.slow
 def test_torsion_of_an_ellipse() -> None:
     """Oracle: u = (1 - x^2/a^2 - y^2/b^2) / (2/a^2 + 2/b^2), with second order in the spacing."""
     errors = []
@@ -117,6 +118,7 @@ def test_arms_are_thinner_than_the_belly() -> None:
     assert arm == pytest.approx(25 * np.sqrt(20**2 / 8 / (50**2 / 4)), rel=0.06)
 
 
+@pytest.mark.slow
 def test_turned_outline_gives_turned_surface() -> None:
     """Oracle: the volume is that of the outline as it was; the same outline twice gives the same bytes."""
     polygon, element_size = SHAPES["star"]

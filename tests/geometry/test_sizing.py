@@ -22,6 +22,7 @@ SOLIDS: dict[str, tuple[Maker, int]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SOLIDS)
 def test_within_a_tenth_in_space(name: str) -> None:
     maker, nodes = SOLIDS[name]
@@ -31,6 +32,7 @@ def test_within_a_tenth_in_space(name: str) -> None:
     assert float(f"{1e3 * size:.3g}") == pytest.approx(1e3 * size, rel=1e-12)  # short in a file
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "nodes"), [("star", 250), ("letter s", 600), ("annulus", 80)])
 def test_within_a_tenth_in_the_plane(name: str, nodes: int) -> None:
     drawn = shapes.outline(shapes.SHAPES[name][0])
@@ -63,6 +65,7 @@ def test_numbers_out_of_range(nodes: int) -> None:
         size_for(nodes, lambda trial: _of_nodes(trial), content=1.0, dim=3)
 
 
+@pytest.mark.slow
 def test_too_few_for_the_shape_gives_what_comes_nearest() -> None:
     """A long thin rod needs more than 12 nodes: of all sizes that are tried the fewest."""
     body, counts = brick(0.3, 0.01, 0.01), []
@@ -116,6 +119,7 @@ def test_a_body_that_is_always_refused_says_why() -> None:
         size_for(500, make, content=1.0, dim=3)
 
 
+@pytest.mark.slow
 def test_a_square_in_the_plane_by_closed_form() -> None:
     """Triangles of side h have area sqrt(3)/4 h^2 and there are two for each node: h^2 = 2 / sqrt(3) A / n, about."""
     drawn = shapes.outline(box(0, 0, 100, 100))

@@ -71,6 +71,7 @@ def test_edges_are_as_long_as_asked_for(name: str) -> None:
     assert tetrahedralise(maker(), element_size).edge_lengths.mean() == pytest.approx(element_size, rel=0.15)
 
 
+@pytest.mark.slow
 def test_volume_area_and_distance_converge_with_order_two() -> None:
     """Closed forms of the ball; its 20,480 triangles are 0.04 % smaller than it, much less than the errors here."""
     body = ball(divisions=5)
@@ -133,6 +134,7 @@ def test_the_same_bytes_on_two_runs_and_in_a_fresh_process() -> None:
     assert done.stdout.decode().strip() == digest
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["box on the lattice", "ring"])
 def test_turned_shifted_and_mirrored_bodies_are_as_good(name: str) -> None:
     maker, element_size = BODIES[name]
@@ -160,6 +162,7 @@ def test_far_from_the_origin() -> None:
     assert_good(tetrahedralise(body, 0.02), body, 0.02)
 
 
+@pytest.mark.slow
 def test_tiny_triangles_do_not_matter() -> None:
     """A ball of 80,000 triangles beside one of 20,000: within what both are off the ball."""
     fine, coarse = (tetrahedralise(ball(divisions=divisions), 0.025) for divisions in (6, 5))
@@ -167,6 +170,7 @@ def test_tiny_triangles_do_not_matter() -> None:
     assert fine.volumes.sum() == pytest.approx(coarse.volumes.sum(), rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turned", [0.4, 1.3])
 @pytest.mark.parametrize("gap", [0.002, 0.005])
 def test_fingers_near_each_other_are_not_grown_together(gap: float, turned: float) -> None:
@@ -185,6 +189,7 @@ def test_random_bodies_are_good(seed: int) -> None:
     assert_good(tetrahedralise(body, 0.01), body, 0.01)
 
 
+@pytest.mark.slow
 def test_a_hollow_stays() -> None:
     """Closed form: the volume of the wall; the cavity is a second part of the boundary."""
     mesh = tetrahedralise(hollow(0.05, 0.03), 0.01)
@@ -193,6 +198,7 @@ def test_a_hollow_stays() -> None:
     assert np.linalg.norm(mesh.nodes, axis=1).min() == pytest.approx(0.03, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_gap_smaller_than_the_elements_stays_open() -> None:
     """Nothing of the mesh is in the gap, and elements are small only about it."""
     mesh = tetrahedralise(two_fingers(0.002), 0.01)
@@ -204,6 +210,7 @@ def test_a_gap_smaller_than_the_elements_stays_open() -> None:
     assert sizes[(np.abs(middles[:, 1] - 0.015) < 0.003) & ~far].mean() < 0.006
 
 
+@pytest.mark.slow
 def test_all_of_a_body_but_a_crumb_is_there_and_a_fin_too() -> None:
     """A ball with a fin a third as thick as the elements; its four long edges are blunted."""
     import trimesh

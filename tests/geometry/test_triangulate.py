@@ -40,6 +40,7 @@ def test_known_shapes(name: str) -> None:
     check(shape, triangulate(shape, 1e-3 * size), 1e-3 * size, least_angle=30)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10_000))
 @settings(max_examples=6, deadline=None, derandomize=True)
 def test_smooth_blobs(seed: int) -> None:

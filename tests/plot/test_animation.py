@@ -50,6 +50,7 @@ def test_a_gif_lasts_as_long_as_asked_and_moves_when_the_body_does(kind: str, tm
         assert image.size[0] == 320
 
 
+@pytest.mark.slow
 def test_the_same_frames_give_the_same_bytes(tmp_path: Path) -> None:
     robot, made = space_film()
     one = save_gif(robot, made.frames[:4], tmp_path / "one.gif", step=0.1, width=200).read_bytes()

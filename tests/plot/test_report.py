@@ -84,6 +84,7 @@ def test_numbers_of_the_report() -> None:
     assert f">{network.reached[0].pose.tensions[0]:.2f}</td>" in text
 
 
+@pytest.mark.slow
 def test_no_muscles_no_chapters_on_muscles() -> None:
     trace = replace(hostile_trace(), activations=(), candidates=(), trees=())
     text = report_text(replace(hostile_network(), trace=trace))
@@ -96,6 +97,7 @@ def test_a_design_without_poses_is_refused() -> None:
         report_text(replace(hostile_network(), reached=()))
 
 
+@pytest.mark.slow
 def test_a_title_that_is_no_valid_text(tmp_path: Path) -> None:
     path = write_report(hostile_network(), tmp_path / "report.html", title="caf\udce9")
     assert "caf?" in path.read_text(encoding="utf-8")

@@ -61,6 +61,7 @@ def test_the_report_tells_how_it_grew(network: object, unchecked: None) -> None:
     assert "What muscles would do" not in words
 
 
+@pytest.mark.slow
 def test_no_alternatives_no_chapter() -> None:
     text = report_text(replace(plain_network(), alternatives=()))
     assert "Alternatives" not in text
@@ -78,6 +79,7 @@ def test_alternatives_of_one_size_have_no_front() -> None:
     assert "Error against cables" in told((2, 2, 0.01), (2, 3, 0.02))
 
 
+@pytest.mark.slow
 def test_of_many_alternatives_some_are_shown() -> None:
     page = told(*((2, 2, 0.01 + 1e-3 * index) for index in range(14)))
     assert page.count("<figure>") == 12

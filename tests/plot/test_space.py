@@ -81,6 +81,7 @@ def test_all_words_lie_within_the_picture(kind: str, width: float, monkeypatch: 
             assert box.y1 <= page.y1 + 1, text
 
 
+@pytest.mark.slow
 def test_cables_wear_the_colours_of_their_tension() -> None:
     """Oracle: the tension scale; where the body covers a cable, the same colour mixed with felt."""
     network = space_network()
@@ -94,6 +95,7 @@ def test_cables_wear_the_colours_of_their_tension() -> None:
         assert any(mix(full, FELT, share / 10000) in colours for share in range(2000, 7000, 25))
 
 
+@pytest.mark.slow
 def test_a_wire_in_front_is_drawn_over_one_behind() -> None:
     network = space_network()
     pose = network.reached[0].pose
@@ -181,6 +183,7 @@ def test_the_report_of_a_body_in_space() -> None:
     assert text.count("data:image/png;base64,") >= 10
 
 
+@pytest.mark.slow
 def test_a_page_holds_the_body_pixel_by_pixel() -> None:
     """Oracle: the image as it was rendered, once per view, in the order of the views."""
     import base64

@@ -115,6 +115,7 @@ def test_a_heavy_box_sags_downwards_in_its_picture() -> None:
             assert abs(sunk[:, 0].mean()) < 0.3 * abs(sunk[:, 1].mean())
 
 
+@pytest.mark.slow
 def test_what_a_picture_says_of_a_pose() -> None:
     """Oracle: how the solver ended; of a motion, what the caller says, and never that it converged."""
     from hydrostat.mechanics import Reason

@@ -123,6 +123,7 @@ def test_spoiled_text(text: str, folder: Path) -> None:
         assert robot_text(robot)
 
 
+@pytest.mark.slow
 def test_memory(folder: Path) -> None:
     """Oracle: the most that was held while reading numbers stays below 400 bytes for each of their characters."""
     text = "points = [" + ",".join(["[1,2]"] * 20_000) + "]"

@@ -33,6 +33,7 @@ def characteristic(surface: Surface) -> int:
     return len(np.unique(surface.triangles)) - 3 * len(surface.triangles) // 2 + len(surface.triangles)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", SHAPES)
 def test_closed_and_in_one_part(make: Callable[[], Shape]) -> None:
     """Oracle: every edge twice, once each way; Euler's number of a ball, so no two fingers are fused."""
@@ -45,6 +46,7 @@ def test_closed_and_in_one_part(make: Callable[[], Shape]) -> None:
     assert (surface.box[1] < shape.box[1] + 1e-9).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [extended_hand, tongue])
 def test_nothing_is_missed_for_speed(make: Callable[[], Shape]) -> None:
     """Oracle: the field at all points of the grid, where `surface` computes those near its zero alone."""

@@ -250,6 +250,7 @@ def test_an_even_shear_feels_the_viscosity() -> None:
             assert stress(simulation, motion) == pytest.approx(MU * rate * motion.time + viscosity * rate, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_cycle_has_a_loop_unless_it_is_slow_or_fast() -> None:
     """Oracle: closed form of the area, pi strain^2 G'', G'' = mu_1 w tau / (1 + w^2 tau^2), at small strain."""
     modulus, time, strain, count = 2e4, 0.1, 1e-3, 40

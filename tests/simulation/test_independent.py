@@ -92,6 +92,7 @@ def equilibrium(robot: Robot, contractions: np.ndarray) -> np.ndarray:
     return exact.x.reshape(-1, 2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     [{}, {"mount": Mount.WORLD}, {"sheathed": ((1, 3),), "slack": 0.004}],

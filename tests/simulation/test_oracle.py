@@ -249,6 +249,7 @@ def test_nodes_tensions_and_jacobian_are_those_of_jax(name: str) -> None:
     assert jacobian < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["strip", "block"])
 def test_gravity_is_seen(name: str) -> None:
     """The check can fail: without its weight a body is off by far more than is allowed."""

@@ -35,6 +35,7 @@ def test_a_pattern_holds():
     assert checked() == (True, True, True)
 
 
+@pytest.mark.slow
 def test_holes_that_are_moved_are_seen():
     """Oracle: holes 0.09 mm off are within 0.1 mm, holes 0.11 mm off are not."""
     assert checked(pattern_svg(shifted(0.09)), pattern_dxf(shifted(0.09)))[0]

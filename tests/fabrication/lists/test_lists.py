@@ -61,6 +61,7 @@ def test_the_same_bytes_twice() -> None:
     assert [table.csv for table in make_lists(this).tables] == [table.csv for table in make_lists(this).tables]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", gallery_names())
 def test_gallery_robots_have_sound_lists(name: str, unchecked: None) -> None:
     robot = gallery_robot(name)

@@ -236,6 +236,7 @@ def test_trunk_is_poured_into_its_held_end(trunk: Mould) -> None:
     assert trunk.warnings == ()
 
 
+@pytest.mark.slow
 def test_flat_body_is_parted_at_half_its_thickness() -> None:
     body = mesh_body(strip_mesh(8, 4, size=(0.1, 0.05)), thickness=0.02)
     pin = Pin(box=((-0.01, -0.1), (0.01, 0.1)))
@@ -289,6 +290,7 @@ def problems_of(share: float, material: str, kind: MouldKind) -> tuple[str, ...]
     return mould_problems(pull, MATERIALS[material], sprue, (), (), MouldOptions(kind=kind), halves)
 
 
+@pytest.mark.slow
 def test_tight_grip_is_a_problem_of_a_rigid_mould_only() -> None:
     assert problems_of(0.2, "flexfoam-it x", MouldKind.PRINTED) == ()
     assert "40 % of the surface is undercut" in problems_of(0.4, "flexfoam-it x", MouldKind.PRINTED)[0]

@@ -47,6 +47,7 @@ def test_spool_along_its_axis_has_the_undercut_of_the_closed_form() -> None:
     assert share_along(spool(), Z) == pytest.approx((2 * ring + stem) / whole, rel=0.01)
 
 
+@pytest.mark.slow
 def test_spool_across_its_axis_and_mushroom_under_its_cap_come_out() -> None:
     found = find_pull(spool(), count=60)
     assert found.share < 0.005
@@ -75,6 +76,7 @@ def test_release_agrees_with_rays() -> None:
         assert bool(freed.upward[number]) == (facing[number] > 0 and not hits)
 
 
+@pytest.mark.slow
 def test_pull_turns_with_the_body() -> None:
     body = Manifold.cube((90, 50, 24), True) + Manifold.cylinder(40, 8, 8, 48).rotate((60, 10, 0))
     turn = (25.0, -40.0, 70.0)
@@ -93,6 +95,7 @@ def test_directions_are_spread_evenly() -> None:
     assert np.degrees(np.arccos(near)).max() < 14
 
 
+@pytest.mark.slow
 def test_reported_shares_are_those_of_the_directions() -> None:
     found = find_pull(mushroom(), count=30)
     for number in (0, 20, len(found.shares) - 1):

@@ -25,6 +25,7 @@ def test_ready_flat_mesh_is_raised_by_its_thickness() -> None:
     assert np.reshape(solid.bounding_box(), (2, 3))[:, 2] == pytest.approx([-15, 15])
 
 
+@pytest.mark.slow
 def test_gallery_bodies_keep_their_volume() -> None:
     flat, space = gallery_robot("starfish").body, gallery_robot("trunk").body
     assert flat.outline is not None

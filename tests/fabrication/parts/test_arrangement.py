@@ -171,6 +171,7 @@ def test_two_winches_in_one_place_of_a_robot():
     assert any('"pull" and "again"' in text and "one above the other" in text for text in told)
 
 
+@pytest.mark.slow
 def test_eight_long_motors_do_not_fit_into_a_squid():
     assert any(
         "move the winches apart" in text
@@ -194,6 +195,7 @@ def test_channels_follow_the_cables_of_a_turned_unit():
                 assert abs((out - way + 180) % 360 - 180) <= (45 if unit.across else 90) + 1e-6
 
 
+@pytest.mark.slow
 def test_it_takes_little_time_and_is_the_same_again(unchecked: None):
     robot = with_winches(gallery_robot("squid"))
     begin = time.process_time()

@@ -59,6 +59,7 @@ def test_everything_fits_on_the_base(name: str, motor: Motor, unchecked: None):
         assert watertight_problems(part) == ()
 
 
+@pytest.mark.slow
 def test_a_motor_beside_its_hole_is_found():
     """The check can fail: a motor pushed by half a millimetre against the base."""
     base, _ = base_of("fish_tail")
@@ -92,6 +93,7 @@ def test_tiles_fit_the_bed_and_together_are_the_sheet(name: str, bed: tuple[floa
     assert next(part.count for part in base.printed if part.name == "base_leg") == 4 * len(tiles(base))
 
 
+@pytest.mark.slow
 def test_the_smaller_the_bed_the_more_tiles():
     counts = [
         len(tiles(base_of("cupping_hand", bed=bed)[0])) for bed in (BED, (120.0, 120.0, 100.0), (90.0, 60.0, 100.0))
@@ -100,6 +102,7 @@ def test_the_smaller_the_bed_the_more_tiles():
     assert counts == sorted(set(counts))
 
 
+@pytest.mark.slow
 def test_a_bed_too_small_for_one_unit_is_a_problem():
     base, _ = base_of("tongue", bed=(40.0, 40.0, 100.0))
     assert any("the bed 40 x 40 x 100 mm" in text for text in base.problems)
@@ -133,6 +136,7 @@ def test_a_holder_prints_and_closes_on_its_tubes():
         assert (sheet ^ solid).volume() == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", OUTSIDE_ALL)
 def test_every_tube_reaches_a_body_anywhere_in_front_of_the_base(name: str, unchecked: None):
     """Oracle: straight distances from each holder to all beginnings of cables, the body put at either end of the row.

@@ -42,12 +42,14 @@ def test_all_checks_hold(bear, pattern):
     assert not failed(bear, pattern, pattern_svg(pattern))
 
 
+@pytest.mark.slow
 def test_the_same_bytes_again(bear, pattern):
     again = space_pattern(bear, PatternOptions())
     assert pattern_svg(again) == pattern_svg(pattern)
     assert pattern_dxf(again) == pattern_dxf(pattern)
 
 
+@pytest.mark.slow
 def test_checks_fail_for_another_drawing(bear, pattern):
     svg = pattern_svg(pattern).decode()
     hole = next(line for line in svg.splitlines() if "<circle" in line)
@@ -124,6 +126,7 @@ def test_deep_cables_get_no_hole_and_are_told():
     assert any("nowhere within 15 mm" in warning for warning in pattern.warnings)
 
 
+@pytest.mark.slow
 def test_a_cable_through_the_body_is_refused():
     """Sewn in and out, it would go round the outside."""
     across = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.055), (0.0, 0.0, -0.055), (0.02, 0.0, -0.055)]

@@ -217,6 +217,7 @@ def test_a_list_with_other_columns_is_told_whole():
     assert "rope" in words(assembly_sheet(plush(tables={"cable_cuts": other})))
 
 
+@pytest.mark.slow
 def test_all_type_is_large_enough_and_comes_with_typst():
     sizes, fonts = set(), set()
 
@@ -291,6 +292,7 @@ def test_cables_are_put_in_as_deep_as_the_list_has_them(foam_sheet):
     assert "Draw cables through" not in words(foam_sheet)
 
 
+@pytest.mark.slow
 def test_names_that_no_font_can_print_are_replaced_with_a_warning(plush_sheet):
     """Oracle: typst itself refuses a page for archives with a letter that no font has."""
     given = plush(name="章鱼 7", warnings=('winch "왼쪽" is near the seam',))

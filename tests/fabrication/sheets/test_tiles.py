@@ -180,6 +180,7 @@ def test_tiles_overlap_by_10_mm_and_hold_the_whole_sheet(paper, size):
         assert tile.top == pytest.approx(first.top + tile.row * (height - 10))
 
 
+@pytest.mark.slow
 def test_pages_are_the_same_bytes_on_every_run(pattern):
     """Oracle: a second run of a second pattern after a second; there is no date in the file."""
     content = tiled_pdf(pattern, Paper.A4)

@@ -53,6 +53,7 @@ def test_frames_are_equilibria_at_equal_times(starfish: Robot) -> None:
     assert told.lines[-1] == ("solving", 5, 5)
 
 
+@pytest.mark.slow
 def test_a_gif_and_a_glb_are_written(starfish: Robot) -> None:
     from PIL import Image
 

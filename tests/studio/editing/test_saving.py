@@ -177,6 +177,7 @@ def edited_once(data: st.DataObject, robot: Robot) -> Robot:
         return robot
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_any_edits_are_read_again_and_lose_only_what_is_told(robot: Robot, data: st.DataObject) -> None:
@@ -244,6 +245,7 @@ def work_of(robot: Robot) -> Work:
     return Work(robot=robot, timeline=timeline, wishes=wishes)
 
 
+@pytest.mark.slow
 def test_a_file_that_numbers_kept_cables_is_still_read(tmp_path: Path) -> None:
     """Oracle: the names of the cables; numbers counted from 0 there. One that is gone is passed over."""
     robot = load_robot(gallery_folder("starfish"))

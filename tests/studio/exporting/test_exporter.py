@@ -207,6 +207,7 @@ def test_pictures_open_and_the_same_robot_gives_the_same(waving: Robot) -> None:
     assert all(picture.content == first[picture.name] for picture in again)
 
 
+@pytest.mark.slow
 def test_a_report_tells_errors_and_tensions(waving: Robot) -> None:
     report = make_report(Told(), waving)
     text = report.content.decode()

@@ -98,6 +98,7 @@ def test_what_changes_is_shown_while_a_step_takes_long(session: Session) -> None
         pulse.stop()
 
 
+@pytest.mark.slow
 def test_a_stage_that_stumbles_does_not_end_the_studio(session: Session, caplog: pytest.LogCaptureFixture) -> None:
     stage = session.current
     assert isinstance(stage, Busy)

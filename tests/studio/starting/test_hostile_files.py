@@ -6,6 +6,7 @@ import threading
 import time
 import zipfile
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -68,9 +69,8 @@ def entity_bomb() -> str:
 
 CORNERS = np.array([[[0, 0, 0], [9, 0, 0], [0, 9, 0]], [[0, 0, 0], [0, 9, 0], [0, 0, 9]]], dtype=float)
 NAN = np.full((4, 3, 3), np.nan)
-BIG_MODEL = b"<model>" + b"<v/>" * 20_000_000 + b"</model>"
 
-FILES: dict[str, bytes] = {
+FILES: dict[str, bytes | Callable[[], bytes]] = {
     "truncated.stl": binary_stl(200, np.repeat(CORNERS, 50, axis=0)),
     "claims.stl": binary_stl(4_000_000_000, CORNERS),
     "nan.stl": binary_stl(4, NAN),
@@ -81,7 +81,7 @@ FILES: dict[str, bytes] = {
     "text.stl": b"solid x\nfacet normal 0 0 0\nouter loop\nvertex 1 2\n",
     "text.png": b"this is no picture",
     "bomb.png": png(40_000, 40_000, zlib.compress(b"\0" * 1000)),
-    "deep.png": png(20_000, 20_000, zlib.compress(b"\0" * 100_000_000)),
+    "deep.png": lambda: png(20_000, 20_000, zlib.compress(b"\0" * 100_000_000)),
     "cut.png": png(300, 300, zlib.compress(b"\0" * 90_300)[:20]),
     "blank.jpg": b"\xff\xd8\xff\xe0" + b"\0" * 50,
     "entities.svg": entity_bomb().encode(),
@@ -101,11 +101,20 @@ FILES: dict[str, bytes] = {
     "negative.ply": b"ply\nformat ascii 1.0\nelement vertex -5\nproperty float x\nend_header\n",
     "indices.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\nf -9 -8 -7\n",
     "many.off": b"OFF\n2000000000 2000000000 0\n0 0 0\n",
-    "bomb.3mf": threemf({"[Content_Types].xml": b"<a/>", "3D/3dmodel.model": BIG_MODEL}),
+    "bomb.3mf": lambda: threemf(
+        {"[Content_Types].xml": b"<a/>", "3D/3dmodel.model": b"<model>" + b"<v/>" * 20_000_000 + b"</model>"}
+    ),
     "climbs.3mf": threemf({"../../../tmp/evil.model": b"<model/>", "_rels/.rels": b"<Relationships/>"}),
     "no_zip.3mf": b"PK\x03\x04" + b"\xff" * 200,
     "random.3mf": np.random.default_rng(0).bytes(4000),
 }
+"""What stands in each file; large ones are made when they are asked for."""
+
+
+def content(name: str) -> bytes:
+    """What stands in a file."""
+    found = FILES[name]
+    return found if isinstance(found, bytes) else found()
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -121,7 +130,7 @@ def test_a_wrong_file_ends_in_one_line(name: str) -> None:
 
     before, start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.perf_counter()
     with pytest.raises(InputError) as error:
-        make_sketch(Silent(), new_draft(name, FILES[name]))
+        make_sketch(Silent(), new_draft(name, content(name)))
     text = str(error.value)
     assert "\n" not in text
     assert 10 < len(text) < 400
@@ -202,7 +211,7 @@ def test_the_session_stays_as_it_was(tmp_path: Path) -> None:
 
     try:
         for name in ("claims.stl",):
-            starter.bring("../" + name, FILES[name])
+            starter.bring("../" + name, content(name))
             settle()
             assert starter.problem.startswith(name)
             assert starter.sketch is None
