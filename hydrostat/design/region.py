@@ -41,6 +41,11 @@ class Region(ABC):
         """Unit vectors in which `depths` grows the fastest: its gradient, but where several places are the nearest."""
         return -self._nearest(places).directions
 
+    def depths_and_ways(self, places: Points) -> tuple[Float[np.ndarray, " points"], Float[np.ndarray, "points dim"]]:
+        """Give `depths` and `inward` of points in one search [m]."""
+        nearest = self._nearest(places)
+        return -nearest.distances, -nearest.directions
+
     def sees(
         self, start: Float[np.ndarray, "segments dim"], end: Float[np.ndarray, "segments dim"]
     ) -> Bool[np.ndarray, " segments"]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import Assembly, CableEnergy
 from hydrostat.robot import Material
@@ -98,7 +98,7 @@ def sensitivity(
     return Sensitivity(
         contractions=by_controls,
         slack=-by_elongation,
-        routes=points.by_cable(by_routes(points, cables, pose.nodes, field, by_elongation, pulls)),
+        routes=points.by_cable(by_routes(points, cables, pose.nodes, field[None], by_elongation[None], pulls)[0]),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
         pin_stiffness=pins,
         young=young,
@@ -149,9 +149,14 @@ def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, 
 
 
 def by_routes(
-    points: RoutePoints, cables: CableEnergy, nodes: Nodes, field: Nodes, by_elongation: Vector, pulls: Vector
-) -> Points:
-    """Slopes by the rest position of every point of every cable.
+    points: RoutePoints,
+    cables: CableEnergy,
+    nodes: Nodes,
+    fields: Float[np.ndarray, "rows nodes dim"],
+    by_elongation: Float[np.ndarray, "rows cables"],
+    pulls: Vector,
+) -> Float[np.ndarray, "rows points dim"]:
+    """Slopes of some numbers by the rest position of every point of every cable.
 
     A segment with span d, at rest D, has the length l = sqrt(d^2 + r^2), at rest L, with r in proportion to |D|: all
     of these move, and so does the part of the field along it, q = e . d / l with e the difference of the field between
@@ -159,18 +164,18 @@ def by_routes(
     """
     spans = points.spans(points.positions(nodes))
     rests = points.spans(points.rests)
-    moves = points.spans(points.values(field))
+    moves = points.spans(points.values(fields))
     square = cables.roundings**2
     lengths, rest_lengths = (np.sqrt((part**2).sum(axis=1) + square) for part in (spans, rests))
     units = spans / lengths[:, None]
-    along = (moves * units).sum(axis=1)
-    lever, pull = by_elongation[points.cables], pulls[points.cables]
-    by_span = (lever + pull * along / lengths)[:, None] * units - (pull / lengths)[:, None] * moves
+    along = (moves * units).sum(axis=-1)
+    lever, pull = by_elongation[:, points.cables], pulls[points.cables]
+    by_span = (lever + pull * along / lengths)[..., None] * units - (pull / lengths)[:, None] * moves
     rounded = square / lengths * (lever + pull * along / lengths)
     tiny = np.finfo(float).tiny
-    by_rest = ((rounded - lever * rest_lengths) / np.maximum((rests**2).sum(axis=1), tiny))[:, None] * rests
+    by_rest = ((rounded - lever * rest_lengths) / np.maximum((rests**2).sum(axis=1), tiny))[..., None] * rests
     return (
         points.pulled_back(nodes, points.gathered(by_span))
         + points.held_back(points.gathered(by_rest))
-        - points.values_pulled_back(field, points.gathered(pull[:, None] * units))
+        - points.values_pulled_back(fields, points.gathered(pull[:, None] * units))
     )

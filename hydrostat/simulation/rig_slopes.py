@@ -58,14 +58,10 @@ def rig_slopes(simulation: Simulation, pose: SolvedPose, markers: list[int]) -> 
     by_winch = np.zeros((len(tangents), len(robot.winches)))
     by_winch[np.arange(len(tangents)), cables.winches] = cables.ratios
     shaped = fields.reshape(len(rows), *nodes.shape)
-    by_point = [
-        by_routes(simulation.route_points, cables, nodes, field, lever, pulls)
-        for field, lever in zip(shaped, by_elongation, strict=True)
-    ]
     return RigSlopes(
         contractions=by_elongation @ by_winch,
         slack=-by_elongation,
         ratios=by_elongation * pose.contractions[cables.winches],
-        points=np.array(by_point).reshape(len(rows), -1, dim),
+        points=by_routes(simulation.route_points, cables, nodes, shaped, by_elongation, pulls),
         fields=shaped,
     )

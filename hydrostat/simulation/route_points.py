@@ -82,42 +82,50 @@ class RoutePoints:
         """Where the points are when the nodes are at `nodes` [m]."""
         return np.where(self.world[:, None], self.places, self.anchors.positions(nodes))
 
-    def values(self, field: Nodes) -> Points:
-        """A field of displacements at the points; 0 where they are fixed in space."""
-        return np.where(self.world[:, None], 0.0, self.anchors.positions(field))
+    def values(self, field: Float[np.ndarray, "*rows nodes dim"]) -> Float[np.ndarray, "*rows points dim"]:
+        """Fields of displacements at the points; 0 where they are fixed in space."""
+        there = np.einsum("pc,...pcd->...pd", self.anchors.weights, field[..., self.anchors.stencils, :])
+        return np.where(self.world[:, None], 0.0, there)
 
-    def pulled_back(self, nodes: Nodes, slopes: Points) -> Points:
+    def pulled_back(
+        self, nodes: Nodes, slopes: Float[np.ndarray, "*rows points dim"]
+    ) -> Float[np.ndarray, "*rows points dim"]:
         """Slopes by the positions in the pose, as slopes by the places in the rest shape: F^T times them."""
         back = self._through(nodes, slopes)
         return np.where(self.world[:, None], slopes, back)
 
-    def values_pulled_back(self, field: Nodes, slopes: Points) -> Points:
-        """Slopes by `values` of a field, as slopes by the places in the rest shape."""
+    def values_pulled_back(
+        self, field: Float[np.ndarray, "*rows nodes dim"], slopes: Points
+    ) -> Float[np.ndarray, "*rows points dim"]:
+        """Slopes by `values` of fields, as slopes by the places in the rest shape."""
         return np.where(self.world[:, None], 0.0, self._through(field, slopes))
 
-    def held_back(self, slopes: Points) -> Points:
+    def held_back(self, slopes: Float[np.ndarray, "*rows points dim"]) -> Float[np.ndarray, "*rows points dim"]:
         """Slopes by the positions at rest, as slopes by the places asked for."""
-        held = np.einsum("pij,pi->pj", self.projections, slopes)
+        held = np.einsum("pij,...pi->...pj", self.projections, slopes)
         return np.where(self.world[:, None], slopes, held)
 
-    def spans(self, positions: Points) -> Float[np.ndarray, "segments dim"]:
+    def spans(self, positions: Float[np.ndarray, "*rows points dim"]) -> Float[np.ndarray, "*rows segments dim"]:
         """From end to end of each bare segment."""
-        return positions[self.starts + 1] - positions[self.starts]
+        return positions[..., self.starts + 1, :] - positions[..., self.starts, :]
 
-    def gathered(self, slopes: Float[np.ndarray, "segments dim"]) -> Points:
-        """Slopes by the spans, as slopes by the points."""
-        total = np.zeros((len(self.places), slopes.shape[1]))
-        np.add.at(total, self.starts + 1, slopes)
-        np.subtract.at(total, self.starts, slopes)
+    def gathered(self, slopes: Float[np.ndarray, "*rows segments dim"]) -> Float[np.ndarray, "*rows points dim"]:
+        """Slopes by the spans, as slopes by the points; a point ends one segment at most, and begins one."""
+        total = np.zeros((*slopes.shape[:-2], len(self.places), slopes.shape[-1]))
+        total[..., self.starts + 1, :] += slopes
+        total[..., self.starts, :] -= slopes
         return total
 
     def by_cable(self, rows: Points) -> tuple[RouteSlopes, ...]:
         """The rows of each cable."""
         return tuple(np.split(rows, np.cumsum(self.counts)[:-1])) if self.counts else ()
 
-    def _through(self, field: Nodes, slopes: Points) -> Points:
-        gradients = np.einsum("pci,pcj->pij", field[self.anchors.stencils], self.shape_gradients)
-        return np.einsum("pij,pi,pjk->pk", gradients, slopes, self.projections)
+    def _through(
+        self, field: Float[np.ndarray, "*some nodes dim"], slopes: Float[np.ndarray, "*others points dim"]
+    ) -> Float[np.ndarray, "*rows points dim"]:
+        gradients = np.einsum("...pci,pcj->...pij", field[..., self.anchors.stencils, :], self.shape_gradients)
+        back = np.einsum("...pij,...pi->...pj", gradients, slopes)
+        return np.einsum("...pj,pjk->...pk", back, self.projections)
 
 
 def route_points(robot: Robot) -> RoutePoints:

@@ -62,8 +62,13 @@ class Bench:
         places = simulation.marker_anchors.positions(nodes)[self.markers[pose]]
         return self.weights[pose] * (self.goals[pose] - places).ravel()
 
-    def reached(self, layout: Layout, before: Trial | None, *, iterations: int = 30) -> Trial | None:
-        """The layout brought nearest to every pose, from a trial whose winches are its first; None: no equilibrium."""
+    def reached(
+        self, layout: Layout, before: Trial | None, *, iterations: int = 30, worst: float = np.inf
+    ) -> Trial | None:
+        """The layout brought nearest to every pose, from a trial whose winches are its first.
+
+        None: no equilibrium, or an error above `worst` [m]; poses that are left when it is sure of that are not solved.
+        """
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)
         options = InverseOptions(restarts=0, unique=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
@@ -75,10 +80,17 @@ class Bench:
                 found.append(solve_ik(simulation, target, start=start, limits=limits, options=options).pose)
             except NotConvergedError:
                 return None
+            if self._error(simulation, found) > worst:
+                return None
         return self.trial(layout, simulation, found)
 
-    def held(self, layout: Layout, contractions: Sequence[Vector], before: Trial) -> Trial | None:
-        """The layout at given contractions of each pose [m]; None where Newton does not find an equilibrium at once."""
+    def held(
+        self, layout: Layout, contractions: Sequence[Vector], before: Trial, *, worst: float = np.inf
+    ) -> Trial | None:
+        """The layout at given contractions of each pose [m].
+
+        None where Newton does not find an equilibrium at once, or the error is above `worst` [m].
+        """
         self.solves += 1
         simulation = Simulation(layout.robot(), body=self.body)
         found = []
@@ -87,6 +99,8 @@ class Bench:
             if not (result.converged and result.stable):
                 return None
             found.append(simulation.posed(pulled, result))
+            if self._error(simulation, found) > worst:
+                return None
         return self.trial(layout, simulation, found)
 
     def _begun(self, simulation: Simulation, before: Trial, index: int) -> SolvedPose | None:
@@ -100,6 +114,10 @@ class Bench:
 
     def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[SolvedPose]) -> Trial:
         """The trial of poses that were solved."""
-        squares = [float((self.residual(simulation, index, pose.nodes) ** 2).sum()) for index, pose in enumerate(poses)]
         pull = max(float(pose.tensions.max(initial=0.0)) for pose in poses) / self.constraints.tension_limit
-        return Trial(layout, simulation, tuple(poses), float(np.sqrt(sum(squares))), pull)
+        return Trial(layout, simulation, tuple(poses), self._error(simulation, poses), pull)
+
+    def _error(self, simulation: Simulation, poses: Sequence[SolvedPose]) -> float:
+        """Root of the mean squared marker error [m], of the first poses as if the others were reached."""
+        squares = [float((self.residual(simulation, index, pose.nodes) ** 2).sum()) for index, pose in enumerate(poses)]
+        return float(np.sqrt(sum(squares)))

@@ -42,8 +42,8 @@ class Growth:
         if needed <= 0:
             return [trial]
         starts = options.starts_for(trial.layout.dim)
-        found = self._tried(trial, winches, needed, max(options.trials, _SEEDS * starts))
-        refined = [self._short(seed) for seed in found[: _SEEDS * starts]]
+        found = self._tried(trial, winches, needed, count=max(options.trials, _SEEDS * starts), best=_SEEDS * starts)
+        refined = [self._short(seed) for seed in found]
         return sorted(refined, key=self._rated)[:starts]
 
     def grown(self, trial: Trial, *, winches: int, cables: int) -> Trial:
@@ -61,7 +61,7 @@ class Growth:
 
     def with_one_more(self, trial: Trial, *, winches: int, needed: int) -> Trial | None:
         """The best network with one cable more (two where it is mirrored); None if there is none."""
-        tried = self._tried(trial, winches, needed, self.proposals.options.trials)
+        tried = self._tried(trial, winches, needed, count=self.proposals.options.trials, best=1)
         return self._short(tried[0]) if tried else None
 
     def polished(self, trial: Trial) -> Trial:
@@ -128,19 +128,30 @@ class Growth:
         enough = self.proposals.options.enough * self.proposals.graph.size
         return len(trial.layout.sites) >= winches and trial.cost <= enough
 
-    def _tried(self, trial: Trial, winches: int, needed: int, count: int) -> list[Trial]:
-        layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=count)
-        tried = (self.bench.reached(layout, trial, iterations=_GLANCE) for layout in layouts)
-        return sorted((found for found in tried if found is not None), key=self._rated)
+    def _tried(self, trial: Trial, winches: int, needed: int, *, count: int, best: int) -> list[Trial]:
+        """The `best` of about `count` networks with one cable more; what cannot be one of them is not solved to its end.
+
+        Marker errors add up over the poses, so those of the first poses bound them from below.
+        """
+        kept: list[Trial] = []
+        for layout in self.proposals.grown(trial, winches=winches, needed=needed, count=count):
+            worst = self._rated(kept[-1]) / self._weighed(layout) if len(kept) == best else np.inf
+            found = self.bench.reached(layout, trial, iterations=_GLANCE, worst=worst)
+            if found is not None:
+                kept = sorted([*kept, found], key=self._rated)[:best]
+        return kept
 
     def _rated(self, trial: Trial) -> float:
-        """The cost [m], more for winches that are not deep in the body (R12) and cables that turn much (E14)."""
-        layout = trial.layout
+        """The cost [m], more for networks that are worse to build."""
+        return trial.cost * self._weighed(trial.layout)
+
+    def _weighed(self, layout: Layout) -> float:
+        """What a cost counts: more for winches that are not deep in the body (R12) and cables that turn much (E14)."""
         inner = [site.winch.at for site in layout.sites if site.winch.mount is Mount.BODY]
         depths = self.proposals.graph.region.depths(np.array(inner)) if inner else np.zeros(0)
         shallow = np.maximum(1.0 - depths / self.proposals.deepest, 0.0).mean() if inner else 0.0
         turned = np.mean([turns(route.points).sum() for route in layout.routes])
-        return trial.cost * (1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned))
+        return 1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned)
 
     def _short(self, trial: Trial) -> Trial:
         return refine(self.bench, self.proposals.graph.region, trial, self._options(self.proposals.options.steps))

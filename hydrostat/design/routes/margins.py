@@ -1,5 +1,6 @@
 """`margins`: what the constraints leave a layout to move in, to first order."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -59,7 +60,7 @@ class _MarginRows:
         inner = [i for i, site in enumerate(layout.sites) if site.winch.mount is Mount.BODY and not site.fixed]
         if not inner:
             return
-        depths, ways = self.region.depths(places[inner]), self.region.inward(places[inner])
+        depths, ways = self.region.depths_and_ways(places[inner])
         for index, depth, way in zip(inner, depths, ways, strict=True):
             own = slice(dim * index, dim * (index + 1))
             need = max(self.constraints.winch_clearance, self.constraints.clearance)
@@ -85,10 +86,11 @@ class _MarginRows:
             return
         places = spots.places(self.layout.numbers, self.layout.dim)
         needs = np.where(spots.shares == 0.0, clearance + _HAIR, 0.6 * clearance)
-        lefts = np.where(spots.entry, np.inf, self.region.depths(places) - needs)
+        depths, ways = self.region.depths_and_ways(places)
+        lefts = np.where(spots.entry, np.inf, depths - needs)
         near = np.flatnonzero(lefts <= self.reach)
         if len(near):
-            self._add_spots(spots.chosen(near), lefts[near], self.region.inward(places[near]))
+            self._add_spots(spots.chosen(near), lefts[near], ways[near])
         for zone in self.constraints.keep_out:
             self._outside(zone, spots)
         for zone in self.constraints.still:
@@ -149,10 +151,13 @@ class _MarginRows:
                 continue
             corners = np.stack([route.points[:-2], route.points[1:-1], route.points[2:]], axis=1)
             for kind in ("turn", "radius") if radius > 0 else ("turn",):
-                values, slopes = _sloped(corners, kind, turn, radius)
-                for corner, (value, slope) in enumerate(zip(values, slopes, strict=True)):
+                margin, limit = (_turn_margin, turn) if kind == "turn" else (_radius_margin, radius)
+                values = margin(corners, limit)
+                near = np.flatnonzero(values <= self.reach)
+                slopes = _sloped(corners[near], margin, limit)
+                for corner, slope in zip(near.tolist(), slopes, strict=True):
                     parts = ((self.layout.place_of(index, corner + k), -slope[k]) for k in range(3))
-                    self._add(float(value), *parts)
+                    self._add(float(values[corner]), *parts)
 
     def _lengths(self) -> None:
         longest = self.constraints.longest
@@ -207,27 +212,34 @@ class _Spots(NamedTuple):
 
 def _spots(layout: Layout, spacing: float) -> _Spots:
     """Every point of a cable but those that stay, and places about every `spacing` between them."""
-    starts, ends, shares, bare, entry, widths = [], [], [], [], [], []
+    parts = []
     for index, route in enumerate(layout.routes):
         if route.kept is not None:
             continue
         site = layout.sites[route.winch]
         free = np.inf if site.winch.mount is Mount.WORLD else layout.constraints.clearance if site.fixed else 0.0
         lengths = np.linalg.norm(np.diff(route.points, axis=0), axis=1)
-        for point, length in enumerate(lengths):
-            here, there = (layout.place_of(index, end).start for end in (point, point + 1))
-            count = int(np.clip(np.ceil(length / spacing) - 1, 1, _MOST))
-            own = np.arange(1, count + 1) / (count + 1)
-            starts += [there, *[here] * count]
-            ends += [there] * (count + 1)
-            shares += [0.0, *own]
-            bare += [point + 1 > route.lead, *[point >= route.lead] * count]
-            entry += [False, *((own * length < free) & (point == 0))]
-            widths += [0.0, *[1 / (count + 1)] * count]
-    return _Spots(
-        np.array(starts, dtype=np.int64), np.array(ends, dtype=np.int64), np.array(shares), np.array(bare, dtype=bool),
-        np.array(entry, dtype=bool), np.array(widths),
-    )  # fmt: skip
+        counts = np.clip(np.ceil(lengths / spacing) - 1, 1, _MOST).astype(np.int64)
+        begins = layout.starts[index] + layout.dim * np.arange(-1, len(lengths))
+        begins[0] = layout.dim * route.winch
+        point = np.repeat(np.arange(len(counts)), counts + 1)  # each has its end first, then the places before that
+        place = np.arange(len(point)) - np.repeat(np.cumsum(counts + 1) - (counts + 1), counts + 1)
+        hole = place == 0
+        own = place / (counts + 1)[point]
+        parts.append(
+            _Spots(
+                starts=np.where(hole, begins[point + 1], begins[point]),
+                ends=begins[point + 1],
+                shares=own,
+                bare=np.where(hole, point + 1 > route.lead, point >= route.lead),
+                entry=~hole & (own * lengths[point] < free) & (point == 0),
+                widths=np.where(hole, 0.0, 1.0 / (counts + 1)[point]),
+            )
+        )
+    if not parts:
+        none, flags = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
+        return _Spots(none, none, np.zeros(0), flags, flags, np.zeros(0))
+    return _Spots(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
 def _nearest(zone: Zone, spots: _Spots, numbers: Vector, dim: int) -> _Spots:
@@ -265,21 +277,14 @@ def _unit(size: int, own: slice, sign: float) -> Vector:
 
 
 def _sloped(
-    corners: Float[np.ndarray, "corners 3 dim"], kind: str, turn: float, radius: float
-) -> tuple[Vector, Float[np.ndarray, "corners 3 dim"]]:
-    """Margin of each corner [m], and its slopes by the three points."""
-    value = _turn_margin if kind == "turn" else _radius_margin
-    limit = turn if kind == "turn" else radius
-    slopes = np.empty_like(corners)
-    for point in range(3):
-        for axis in range(corners.shape[2]):
-            ends = []
-            for sign in (1, -1):
-                moved = corners.copy()
-                moved[:, point, axis] += sign * _STEP
-                ends.append(value(moved, limit))
-            slopes[:, point, axis] = (ends[0] - ends[1]) / (2 * _STEP)
-    return value(corners, limit), slopes
+    corners: Float[np.ndarray, "corners 3 dim"], margin: Callable[[np.ndarray, float], Vector], limit: float
+) -> Float[np.ndarray, "corners 3 dim"]:
+    """Slopes of the margin of each corner by its three points, by central differences of all of them at once."""
+    if not len(corners):
+        return corners
+    steps = _STEP * np.eye(corners[0].size).reshape(-1, 1, *corners.shape[1:])
+    ends = [margin((corners + way * steps).reshape(-1, *corners.shape[1:]), limit) for way in (1, -1)]
+    return ((ends[0] - ends[1]) / (2 * _STEP)).reshape(-1, len(corners)).T.reshape(corners.shape)
 
 
 def _angles(corners: Float[np.ndarray, "corners 3 dim"]) -> tuple[Vector, Vector]:

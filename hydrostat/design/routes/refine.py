@@ -62,7 +62,7 @@ class _Refinement:
             effort = (
                 self.options.effort * trial.error / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.routes)))
             )
-            bend = self.options.straightness * trial.error / np.sqrt(max(len(turns(trial.layout)[0]), 1))
+            bend = self.options.straightness * trial.error / np.sqrt(max(len(turns(trial.layout)), 1))
             found = self._step(trial, effort, bend)
             if found is None:
                 break
@@ -75,7 +75,7 @@ class _Refinement:
 
     def _merit(self, trial: Trial, effort: float, bend: float) -> float:
         """Squares of error, effort and turns, and of what tensions exceed."""
-        total = trial.error**2 + float(((bend * turns(trial.layout)[0]) ** 2).sum())
+        total = trial.error**2 + float(((bend * turns(trial.layout)) ** 2).sum())
         for pose in trial.poses:
             over = np.maximum(pose.tensions - self.limit, 0.0)
             total += float((effort**2) * (pose.tensions**2).sum() + (_OVER * effort) ** 2 * (over**2).sum())
@@ -87,7 +87,7 @@ class _Refinement:
         before = self._merit(trial, effort, bend)
         for _ in range(_TRIES):
             step = self._damped(model)
-            found = None if step is None else self._tried(trial, step, model.free)
+            found = None if step is None else self._tried(trial, step, model.free, (before, bend))
             if step is not None and found is not None and (after := self._merit(found, effort, bend)) < before:
                 promised = before - float(((model.right + model.matrix @ step) ** 2).sum())
                 kept = (before - after) / max(promised, 1e-300)
@@ -113,7 +113,8 @@ class _Refinement:
             step = least_squares(stacked, aim, rows, np.maximum(model.left, 0.0))
         return None if step is None else model.scale * step
 
-    def _tried(self, trial: Trial, step: Vector, free: int) -> Trial | None:
+    def _tried(self, trial: Trial, step: Vector, free: int, beaten: tuple[float, float]) -> Trial | None:
+        """The trial after a step; None if it has none, or none below the merit `beaten` at that weight of turns."""
         layout = trial.layout
         longest = np.abs(layout.ties @ step[:free])[: layout.starts[-2]].max(initial=0.0)
         if longest > 2 * self.reach:
@@ -127,7 +128,9 @@ class _Refinement:
             low = [-site.winch.release for site in layout.sites]
             high = [site.winch.travel for site in layout.sites]
             contractions.append(np.clip(pose.contractions + change, low, high))
-        return self.bench.held(moved, contractions, trial)
+        merit, bend = beaten
+        room = merit - float(((bend * turns(moved)) ** 2).sum())
+        return self.bench.held(moved, contractions, trial, worst=float(np.sqrt(max(room, 0.0))))
 
 
 def linear_model(
@@ -159,7 +162,7 @@ def linear_model(
                 row[0, begin + winch] = sign
                 rows.append(row)
                 lefts.append(np.array([left]))
-    bends, slopes = turns(layout)
+    bends, slopes = turns(layout), turn_slopes(layout)
     straight = np.zeros((len(bends), count))
     straight[:, :free] = bend * slopes @ layout.ties
     matrix.append(straight)
@@ -175,25 +178,36 @@ def linear_model(
     )  # fmt: skip
 
 
-def turns(layout: Layout) -> tuple[Vector, np.ndarray]:
-    """How much each cable turns at its points, coordinate by coordinate [rad, roughly], and the slopes by the numbers.
+def turns(layout: Layout) -> Vector:
+    """How much each cable turns at its points, coordinate by coordinate [rad, roughly].
 
     A turn is the difference of the two segments at a point, over their mean length in this layout's cable.
     """
-    values, rows = [np.zeros(0)], [np.zeros((0, layout.size))]
-    for index, route in enumerate(layout.routes):
-        if route.kept is not None or len(route.points) < 3:
-            continue
-        spacing = float(np.linalg.norm(np.diff(route.points, axis=0), axis=1).mean())
-        inner = len(route.points) - 2
-        own = np.zeros((inner, layout.dim, layout.size))
-        for point in range(inner):
-            for step, weight in enumerate((1.0, -2.0, 1.0)):
-                place = layout.place_of(index, point + step)
-                own[point, :, place] += weight / spacing * np.eye(layout.dim)
-        values.append(np.diff(route.points, n=2, axis=0).ravel() / spacing)
+    parts = [np.diff(layout.routes[index].points, n=2, axis=0).ravel() / mean for index, mean in _bending(layout)]
+    return np.concatenate([np.zeros(0), *parts])
+
+
+def turn_slopes(layout: Layout) -> np.ndarray:
+    """Slopes of `turns` by the numbers of the layout, (turns, numbers), the mean lengths left as they are."""
+    rows = [np.zeros((0, layout.size))]
+    for index, mean in _bending(layout):
+        inner = np.arange(len(layout.routes[index].points) - 2)[:, None]
+        axes = np.arange(layout.dim)
+        begins = np.array([layout.place_of(index, point).start for point in range(len(inner) + 2)])
+        own = np.zeros((len(inner), layout.dim, layout.size))
+        for step, weight in enumerate((1.0, -2.0, 1.0)):
+            own[inner, axes, begins[inner + step] + axes] += weight / mean
         rows.append(own.reshape(-1, layout.size))
-    return np.concatenate(values), np.vstack(rows)
+    return np.vstack(rows)
+
+
+def _bending(layout: Layout) -> list[tuple[int, float]]:
+    """Numbers of the cables that may turn, and the mean length of their segments [m]."""
+    return [
+        (index, float(np.linalg.norm(np.diff(route.points, axis=0), axis=1).mean()))
+        for index, route in enumerate(layout.routes)
+        if route.kept is None and len(route.points) > 2
+    ]
 
 
 def _scales(layout: Layout, reach: float) -> Vector:
