@@ -110,7 +110,9 @@ class Body:
         from shapely import distance
         from shapely import points as shapely_points
 
-        return np.where(distances > 0, distance(self.outline.polygon, shapely_points(points)), 0.0)
+        beyond = distances > 0
+        distances[beyond] = distance(self.outline.polygon, shapely_points(points[beyond]))
+        return distances
 
 
 def _check_lengths(**lengths: float | None) -> None:

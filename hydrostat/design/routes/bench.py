@@ -24,6 +24,7 @@ class Trial:
     poses: tuple[SolvedPose, ...]  # at equilibrium, one for each target
     error: float  # root of the mean squared marker error over all poses [m]
     pull: float  # the largest tension, as a share of what a cable bears
+    from_rest: bool = False  # whether its poses were found from rest, to the end
 
     @property
     def cost(self) -> float:

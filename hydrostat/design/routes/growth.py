@@ -67,13 +67,13 @@ class Growth:
     def polished(self, trial: Trial) -> Trial:
         """The network refined in rounds, each of which must hold from rest on."""
         steps = self.proposals.options.polish
-        best = self.truly(trial)
+        best = trial if trial.from_rest else self.truly(trial)
         effort = 1.0
         done = 0
         while done < steps and best.cost > self._options(0).enough:
             size = min(_ROUND, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
-            found = self.truly(refine(self.bench, self.proposals.graph.region, best, options))
+            found = self.truly(refine(self.bench, self.proposals.graph.region, best, options), worst=best.cost)
             done += size
             if found.cost < best.cost:
                 gain = 1.0 - found.cost / best.cost
@@ -84,10 +84,10 @@ class Growth:
                 effort *= 4.0
         return best
 
-    def truly(self, trial: Trial) -> Trial:
-        """The same network with poses found from rest: what its user will find."""
-        found = self.bench.reached(trial.layout, None, iterations=60)
-        return found if found is not None else replace(trial, error=float("inf"))
+    def truly(self, trial: Trial, *, worst: float = np.inf) -> Trial:
+        """The same network with poses found from rest: what its user will find; infinite errors above `worst` [m]."""
+        found = self.bench.reached(trial.layout, None, iterations=60, worst=worst)
+        return replace(trial, error=np.inf) if found is None else replace(found, from_rest=True)
 
     def exchanged(self, trial: Trial, *, winches: int, most: int) -> Trial:
         """The network after up to `most` cables were taken out in turn, and the best put in where that is better."""
@@ -99,12 +99,13 @@ class Growth:
             before = None if rest is None else self.bench.reached(rest, None)
             if before is None:
                 continue
-            needed = len(trial.layout.routes) - len(before.layout.routes)
-            found = self.with_one_more(before, winches=winches, needed=needed)
+            missing = len(trial.layout.routes) - len(before.layout.routes)
+            found = self.with_one_more(before, winches=winches, needed=missing)
             if found is None:
                 continue
-            found = self.truly(found)
-            if found.cost < (1 - _WORTH) * trial.cost:
+            needed = (1 - _WORTH) * trial.cost
+            found = self.truly(found, worst=needed)
+            if found.cost < needed:
                 trial = found
                 self.noted("a cable exchanged", trial)
         return trial
@@ -117,8 +118,9 @@ class Growth:
             if route.kept is not None or route.twin is not None or not others:
                 continue
             rest = without(trial.layout, number)
-            found = None if rest is None else self.bench.reached(rest, None)
-            if found is not None and found.cost <= max((1 + _LOSS) * trial.cost, self._options(0).enough):
+            allowed = max((1 + _LOSS) * trial.cost, self._options(0).enough)
+            found = None if rest is None else self.bench.reached(rest, None, worst=allowed)
+            if found is not None and found.cost <= allowed:
                 trial = found
                 self.noted("a cable that does nothing left out", trial)
         return trial
@@ -129,7 +131,7 @@ class Growth:
         return len(trial.layout.sites) >= winches and trial.cost <= enough
 
     def _tried(self, trial: Trial, winches: int, needed: int, *, count: int, best: int) -> list[Trial]:
-        """The `best` of about `count` networks with one cable more; what cannot be one of them is not solved to its end.
+        """The `best` of about `count` networks with one cable more; those that cannot be are not solved to their end.
 
         Marker errors add up over the poses, so those of the first poses bound them from below.
         """

@@ -238,22 +238,47 @@ def walk_back(parents, sources, targets, slots, hops, labels, paths):
 
 @njit(**KERNEL)
 @no_type_check
-def share_edges(path, others, longest):
-    """The largest share of its edges that a path has in common with one of the others, either way round.
+def next_unlike(paths, begin, others, usable, alike):
+    """Find the first usable path from `begin` on unlike all others; as many as there are paths if there is none.
 
-    Shares are of the shorter of the two; `longest` is room for nothing more than the answer.
+    It shares at most `alike` of its edges, either way round, with each, as a part of the shorter of the two, and is the
+    same as none of them.
     """
-    longest[0] = 0.0
-    for row in range(others.shape[0]):
-        same, own, their = 0, 0, 0
-        while own + 1 < path.shape[0] and path[own + 1] >= 0:
-            own += 1
-        while their + 1 < others.shape[1] and others[row, their + 1] >= 0:
-            their += 1
-        for one in range(own):
-            for two in range(their):
-                forth = path[one] == others[row, two] and path[one + 1] == others[row, two + 1]
-                back = path[one] == others[row, two + 1] and path[one + 1] == others[row, two]
-                if forth or back:
-                    same += 1
-        longest[0] = max(longest[0], same / min(own, their))
+    for index in range(begin, paths.shape[0]):
+        if not usable[index]:
+            continue
+        unlike = True
+        for row in range(others.shape[0]):
+            if _share(paths, index, others, row) > alike or _same(paths, index, others, row):
+                unlike = False
+                break
+        if unlike:
+            return index
+    return paths.shape[0]
+
+
+@njit(**INNER)
+@no_type_check
+def _same(paths, index, others, row):
+    differing = 0
+    for place in range(paths.shape[1]):
+        differing += paths[index, place] != others[row, place]
+    return differing == 0
+
+
+@njit(**INNER)
+@no_type_check
+def _share(paths, index, others, row):
+    """Share of their edges that two paths have in common."""
+    same, own, their = 0, 0, 0
+    while own + 1 < paths.shape[1] and paths[index, own + 1] >= 0:
+        own += 1
+    while their + 1 < others.shape[1] and others[row, their + 1] >= 0:
+        their += 1
+    for one in range(own):
+        here, there = paths[index, one], paths[index, one + 1]
+        for two in range(their):
+            first, second = others[row, two], others[row, two + 1]
+            if (here == first and there == second) or (here == second and there == first):
+                same += 1
+    return same / min(own, their)

@@ -14,7 +14,7 @@ from hydrostat.design.routes.path_kernels import (
     edge_products,
     first_labels,
     grow_labels,
-    share_edges,
+    next_unlike,
     spread_leads,
     walk_back,
 )
@@ -118,6 +118,17 @@ class _LeadStarts:
         self.rooms = np.where(reached, self.longest - lengths, -1.0)
         self.factors = np.where(reached, np.maximum(0.0, 1.0 - penalty * lengths / graph.size), 0.0)
 
+    def winches(self, paths: Int[np.ndarray, "paths points"]) -> Int[np.ndarray, " paths"]:
+        """Graph points at which the winches of bare parts stand."""
+        sources, targets = self.graph.sources, self.graph.targets
+        count = len(self.graph.points)
+        keys = sources * count + targets
+        order = np.argsort(keys)
+        ends = order[np.searchsorted(keys, paths[:, 0] * count + paths[:, 1], sorter=order)]
+        while (origins := self.origins[ends]).max(initial=-1) >= 0:
+            ends = np.where(origins >= 0, origins, ends)
+        return sources[ends]
+
     def lead(self, path: Int[np.ndarray, " points"]) -> tuple[int, ...]:
         """Graph points of the lead to a bare part."""
         first = self.graph.offsets[path[0]]
@@ -217,28 +228,25 @@ def _pick(
     reach = 2.0 * float(np.median(graph.lengths))
     quota = max(2, -(-count // _SOME))
     picked: dict[int, tuple[int, ...]] = {}
+    stands = graph.points[starts.winches(paths)]
+    near = np.zeros(len(paths), dtype=np.int64)  # picked ones in the region of winches of each
+    usable = np.ones(len(paths), dtype=bool)
     for alike, crowd in ((_ALIKE, quota), (_ALIKE, count), (1.0, count)):
-        for index, path in enumerate(paths):
-            if len(picked) == count:
-                break
+        index = -1
+        while len(picked) < count:
             others = paths[list(picked)]
-            if _likeness(path, others) > alike or (others == path).all(axis=1).any():
-                continue
+            index = next_unlike(paths, index + 1, others, usable & (near < crowd), alike)
+            if index == len(paths):
+                break
+            path = paths[index]
             lead = starts.lead(path)
             if len({*lead, *path[path >= 0].tolist()}) < len(lead) - 1 + (path >= 0).sum():
+                usable[index] = False  # its lead runs into it
                 continue
-            stands = graph.points[[other[0] for other in picked.values()]]
-            near = np.linalg.norm(stands - graph.points[lead[0]], axis=1) < reach
-            if near.sum() < crowd:
-                picked[index] = lead
+            picked[index] = lead
+            usable[index] = False
+            near += np.linalg.norm(stands - stands[index], axis=1) < reach
     return sorted(picked.items())
-
-
-def _likeness(path: Int[np.ndarray, " points"], others: Int[np.ndarray, "paths points"]) -> float:
-    """Largest share of edges in common with one of some paths."""
-    share = np.zeros(1)
-    share_edges(path, others, share)
-    return float(share[0])
 
 
 def _by_pose(
