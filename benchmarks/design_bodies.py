@@ -1,7 +1,7 @@
 """The bodies of the benchmark of designs, what their networks must keep, and how every network is judged."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import machine  # noqa: F401  one thread, before NumPy
 
@@ -30,13 +30,26 @@ class Body:
         cables: how many in all.
         constraints: that every network keeps.
         fibres: muscle fibres that the thesis counts (N1).
+        example: whose body it is, if that has another name.
+        more: poses beside those of the example, by name, as places of markers [mm].
     """
 
     winches: int
     cables: int
     constraints: Constraints = FLAT
     fibres: int | None = None
+    example: str = ""
+    more: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
 
+
+TWO_FINGERS = {
+    "thumb": (33, -50, 69),
+    "index": (43, -41, 146),
+    "middle": (9, -52, 150),
+    "ring": (-10, -32, 76),
+    "little": (-40, -43, 74),
+}
+"""Index and middle finger stretch, the others close [mm]."""
 
 BODIES = {
     "starfish": Body(winches=2, cables=6),
@@ -47,20 +60,29 @@ BODIES = {
     "puppy": Body(winches=3, cables=3, fibres=307),
     "squid": Body(winches=8, cables=11, fibres=429),
     "cupping_hand": Body(winches=10, cables=10, constraints=SPACE),
+    "five_poses": Body(
+        winches=10, cables=10, constraints=SPACE, example="cupping_hand", more={"two fingers": TWO_FINGERS}
+    ),
     "trunk": Body(winches=4, cables=6, constraints=Constraints(clearance=0.003, travel=0.15)),
 }
 """The designs of the thesis with its numbers of winches and cables (N1), the starfish, and two bodies in space.
 
-The poses of the examples in space are what their own networks reach, to the millimetre. The cupping hand keeps its ten
-winches, so its own network can hardly be beaten. The trunk gets four winches of its six, so that its own network is
-none of the candidates: bear and octopus arm have no winch to spare, and the poses of the arm need as much travel. The
-travel of the trunk's winches is that of its own.
+The poses of the examples in space are what their own networks reach, to the millimetre; `five_poses` is the cupping
+hand with one more of that kind. It keeps its ten winches, so its own network can hardly be beaten. The trunk gets four
+winches of its six, so that its own network is none of the candidates: bear and octopus arm have no winch to spare, and
+the poses of the arm need as much travel. The travel of the trunk's winches is that of its own.
 """
 
 
 def body_robot(name: str) -> Robot:
-    """The example of that name."""
-    return load_robot(EXAMPLES / name)
+    """The example of that name, with more poses if the benchmark has some."""
+    body = BODIES[name]
+    robot = load_robot(EXAMPLES / (body.example or name))
+    more = {
+        called: Pose(name=called, targets={m: tuple(1e-3 * x for x in place) for m, place in targets.items()})
+        for called, targets in body.more.items()
+    }
+    return replace(robot, poses={**robot.poses, **more})
 
 
 def judged(robot: Robot, poses: Sequence[Pose], constraints: Constraints) -> float:

@@ -68,10 +68,10 @@ class Growth:
         """The network refined in rounds, each of which must hold from rest on."""
         steps = self.proposals.options.polish
         best = trial if trial.from_rest else self.truly(trial)
-        effort = 1.0
+        effort, round_size = 1.0, _ROUND
         done = 0
         while done < steps and best.cost > self._options(0).enough:
-            size = min(_ROUND, steps - done)
+            size = min(round_size, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
             found = self.truly(refine(self.bench, self.proposals.graph.region, best, options), worst=best.cost)
             done += size
@@ -81,7 +81,7 @@ class Growth:
                 if gain < _IDLE or best.error <= options.enough:
                     break
             else:
-                effort *= 4.0
+                effort, round_size = 4.0 * effort, max(round_size // 2, 1)
         return best
 
     def truly(self, trial: Trial, *, worst: float = np.inf) -> Trial:
