@@ -17,8 +17,9 @@ from hydrostat.simulation import Simulation, SolvedPose
 class Tracker:
     """Any-time inverse kinematics: each update is one trust-region step nearer, and a pose of its own (R34).
 
-    Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once. Slack
-    cables are kept just short of taut, so that they can join without a delay.
+    Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once; with an
+    accuracy its nodes may be so far from it [m]. Slack cables are kept just short of taut, so that they can join
+    without a delay.
 
         tracker = hs.Tracker(simulation, limits=hs.Limits(rate=0.1))
         while True:
@@ -36,11 +37,15 @@ class Tracker:
         objectives: Sequence[Objective] = (),
         start: SolvedPose | None = None,
         options: InverseOptions | None = None,
+        accuracy: float | None = None,
     ) -> None:
-        """Begin at `start`, the rest pose if left out; the other arguments are as for `solve_ik`."""
+        """Begin at `start`, the rest pose if left out; the other arguments are as for `solve_ik`.
+
+        With an accuracy nodes may be so far from equilibrium [m], as in `Simulation.solve`.
+        """
         self._simulation, self._objectives = simulation, tuple(objectives)
         self._limits, self._options = limits or Limits(), options or InverseOptions()
-        self._radius = self._options.largest_step
+        self._radius, self._accuracy = self._options.largest_step, accuracy
         self._state = None
         self.pose = start or simulation.rest
 
@@ -98,7 +103,9 @@ class Tracker:
         allowed = bounds(self._simulation, limits)
         allowed = allowed.near(allowed.channel(self.pose.contractions))
         terms = [wish.on(self._simulation) for wish in wishes(target, [*self._objectives, *objectives])]
-        return InverseSearch(InverseProblem(self._simulation, terms, allowed, self._options, ready=True))
+        return InverseSearch(
+            InverseProblem(self._simulation, terms, allowed, self._options, ready=True), accuracy=self._accuracy
+        )
 
 
 def _reached(problem: InverseProblem, state: InverseState) -> bool:

@@ -36,6 +36,20 @@ def test_a_moving_target_is_followed_by_real_poses(robot) -> None:
     assert max(reached.errors.values()) < 1e-6 * robot.body.mesh.size
 
 
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-6])
+def test_poses_are_as_near_to_equilibrium_as_was_asked(accuracy: float) -> None:
+    """Oracle: the equilibrium of the same contractions; the error that is told is the one there is."""
+    simulation = Simulation(box_robot())
+    tracker = Tracker(simulation, accuracy=accuracy)
+    for targets in path(simulation, [0.012, 0.004], 12):
+        pose = tracker.update(targets, seconds=INTERVAL).pose
+        exact = simulation.solve(pose.contractions, start=pose)
+        off = np.linalg.norm(pose.nodes - exact.nodes, axis=1).max()
+        assert pose.result.error <= accuracy
+        assert off <= 1.1 * pose.result.error + 1e-9
+    assert max(tracker.update(targets, seconds=INTERVAL).errors.values()) < 2 * accuracy + 1e-6
+
+
 def test_limits_hold_at_every_update() -> None:
     simulation = Simulation(strip_robot())
     tracker = Tracker(simulation, limits=Limits(rate=0.06, tension=2.0))

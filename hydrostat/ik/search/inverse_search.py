@@ -17,10 +17,14 @@ from hydrostat.simulation import SolvedPose
 
 
 class InverseSearch:
-    """Equilibria on the way to the solution of a problem; `solves` counts those that were approached."""
+    """Equilibria on the way to the solution of a problem; `solves` counts those that were approached.
 
-    def __init__(self, problem: InverseProblem) -> None:
+    With an accuracy [m] nodes may be so far from equilibrium.
+    """
+
+    def __init__(self, problem: InverseProblem, *, accuracy: float | None = None) -> None:
         self.problem, self.solves = problem, 0
+        self.solver = problem.simulation.solver.roughly(accuracy)
 
     def begin(self, start: SolvedPose | None) -> InverseState:
         """The state of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
@@ -114,7 +118,7 @@ class InverseSearch:
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> InverseState | None:
         """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
-        result = self.problem.simulation.solver.relax(
+        result = self.solver.relax(
             start.nodes, self.problem.bounds.spread @ values, start.stiffness, iterations=_ITERATIONS
         )
         return self.problem.idle(self.problem.state(values, result)) if _sound(result) else None

@@ -18,8 +18,7 @@ from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.view.things import RobotShape, rest_shape
 
 TICK = 1 / 70  # motors are told and read once in this time [s], however often there is a step: about 60 times a second
-ROUGH = 1e-3  # force left over while it moves, as a share of the largest: 2 micrometres off, in half the time
-FEW = 6  # steps of Newton in which a body that moves should get there; else it is solved with all care
+ROUGH = 3e-4  # how far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel
 
 
 class Follower:
@@ -34,9 +33,8 @@ class Follower:
         """The body at these contractions [m], or as it was last; `failure` tells which. Rough: it moves on at once."""
         if simulation is not self._simulation:
             self._simulation, self._last = simulation, None
-        pose = self._roughly(simulation, contractions) if rough else None
-        if pose is None:
-            pose = simulation.solve(contractions, start=self._last, strict=False)
+        accuracy = ROUGH * simulation.robot.body.mesh.size if rough else None
+        pose = simulation.solve(contractions, start=self._last, strict=False, accuracy=accuracy)
         if pose.result.converged and upright(simulation.robot, pose):
             self._last, self.failure = pose, ""
         else:
@@ -45,15 +43,6 @@ class Follower:
         if self._last is None:
             return rest_shape(simulation.robot)
         return RobotShape(nodes=self._last.nodes, tensions=self._last.tensions, contractions=self._last.contractions)
-
-    def _roughly(self, simulation: Simulation, contractions: Vector) -> SolvedPose | None:
-        """From the last pose in a few steps; None if that does not do, or friction makes the way matter."""
-        last = self._last
-        if last is None or simulation.friction is not None:
-            return None
-        near = simulation.stiffness(last)
-        found = simulation.solver.relax(last.nodes, contractions, near, iterations=FEW, tolerance=ROUGH)
-        return simulation.posed(contractions, found) if found.converged else None
 
 
 class Machine:

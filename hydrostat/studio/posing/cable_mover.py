@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import Closeness, InverseReason, Limits, PointGoal, Tracker
+from hydrostat.ik import Closeness, InverseOptions, InverseReason, Limits, PointGoal, Tracker
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.posing.held import Anchored, Held
 from hydrostat.studio.posing.mover import Mover
@@ -24,6 +24,10 @@ MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes
 ROUGH = 1e-3
 """Force that may be left over while something moves, as a share of the largest tension: nobody sees a micrometre, and
 updates take little more than half the time. What comes to rest is followed to the end."""
+
+STRIDE = 0.05
+"""Most that a winch turns in one update, as a share of its range: longer strides take several times as long to solve,
+so that the body would follow by jerks; with these it goes through all of its range in half a second."""
 
 LAST = 10  # so many updates are made at most where that was done roughly before
 TICK = 1 / 30  # seconds that an update stands for; nothing here limits the rate
@@ -102,7 +106,12 @@ class CableMover(Mover):
     def _follow(self, simulation: Simulation) -> None:
         """Track from the pose on with these physics: rough ones, or the robot's own."""
         self._exact = simulation is self._simulation
-        self._tracker = Tracker(simulation, limits=Limits(tension=self.tension), start=self._pose)
+        self._tracker = Tracker(
+            simulation,
+            limits=Limits(tension=self.tension),
+            start=self._pose,
+            options=InverseOptions(largest_step=STRIDE),
+        )
 
     def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> RobotShape:
         pose = self._pose
