@@ -86,7 +86,7 @@ class Growth:
 
     def truly(self, trial: Trial, *, worst: float = np.inf) -> Trial:
         """The same network with poses found from rest: what its user will find; infinite errors above `worst` [m]."""
-        found = self.bench.reached(trial.layout, None, iterations=60, worst=worst)
+        found = self.bench.reached(trial.layout, None, iterations=60, worst=worst, hoped=trial)
         return replace(trial, error=np.inf) if found is None else replace(found, from_rest=True)
 
     def exchanged(self, trial: Trial, *, winches: int, most: int) -> Trial:
