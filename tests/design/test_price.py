@@ -12,6 +12,7 @@ from builders import mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import body_region
+from hydrostat.design.routes.path_kernels import next_unlike
 from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
 from hydrostat.geometry.anchors import Anchors
@@ -329,3 +330,29 @@ def test_loops_do_not_crowd_out_paths() -> None:
         ratios.append(found[0].gain / best)
     assert max(ratios) <= 1 + 1e-9
     assert min(ratios) > 0.97, ratios
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_next_unlike_path_by_sets_of_edges(seed: int) -> None:
+    """Oracle: edges as sets of pairs of points."""
+    draw = np.random.default_rng(seed)
+    paths = np.full((60, 5), -1)
+    for row in paths:
+        count = draw.integers(2, 6)
+        row[:count] = draw.permutation(7)[:count]
+    usable = draw.random(len(paths)) < 0.7
+    others, sets = paths[:3], [edge_set(path) for path in paths]
+
+    def unlike(index: int, alike: float) -> bool:
+        shares = [len(sets[index] & other) / min(len(sets[index]), len(other)) for other in sets[:3]]
+        return bool(usable[index]) and max(shares) <= alike and not (others == paths[index]).all(axis=1).any()
+
+    for alike in (0.3, 1.0):
+        for begin in (0, 10, 59, 60):
+            expected = next((index for index in range(begin, len(paths)) if unlike(index, alike)), len(paths))
+            assert next_unlike(paths, begin, others, usable, alike) == expected
+
+
+def edge_set(path: np.ndarray) -> set[frozenset[int]]:
+    points = path[path >= 0].tolist()
+    return {frozenset(pair) for pair in pairwise(points)}

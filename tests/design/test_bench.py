@@ -1,0 +1,102 @@
+"""What is cut short on the bench. Oracle: the same work without the cut."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.region import body_region
+from hydrostat.design.request import RouteOptions
+from hydrostat.design.routes import bench as bench_module
+from hydrostat.design.routes.begin import layout_of
+from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.growth import Growth
+from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.propose import Proposals
+from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
+from hydrostat.robot import Pose
+
+LIMITS = Constraints(winch_clearance=0.006, leads=False)
+POSES = [Pose(name="up", targets={"tip": (0.18, 0.06)}), Pose(name="down", targets={"tip": (0.18, -0.06)})]
+
+
+def robot_and_bench() -> tuple[Layout, Bench]:
+    robot = strip_robot(columns=6, rows=2)
+    return layout_of(robot, LIMITS), Bench(robot, POSES, LIMITS)
+
+
+@pytest.mark.parametrize("start", ["rest", "trial"])
+def test_a_bound_on_the_error_changes_only_what_is_above_it(start: str, unchecked: None) -> None:
+    layout, bench = robot_and_bench()
+    whole = bench.reached(layout, None)
+    assert whole is not None
+    before = None if start == "rest" else whole
+    found = bench.reached(layout, before)
+    assert found is not None
+    assert found.error > 1e-3
+    same = bench.reached(layout, before, worst=1.001 * found.error)
+    assert same is not None
+    assert same.error == found.error
+    assert bench.reached(layout, before, worst=0.999 * found.error) is None
+
+
+def test_a_held_layout_above_the_bound_is_none(unchecked: None) -> None:
+    layout, bench = robot_and_bench()
+    trial = bench.reached(layout, None)
+    assert trial is not None
+    pulls = [pose.contractions for pose in trial.poses]
+    same = bench.held(layout, pulls, trial, worst=1.001 * trial.error)
+    assert same is not None
+    assert same.error == pytest.approx(trial.error, rel=1e-6)
+    assert bench.held(layout, pulls, trial, worst=0.999 * trial.error) is None
+
+
+def test_the_best_candidates_are_those_of_all_solved_to_the_end(unchecked: None) -> None:
+    robot = strip_robot(columns=6, rows=2).with_network((), ())
+    bench = Bench(robot, POSES, LIMITS)
+    graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    growth = Growth(Proposals(bench, graph, RouteOptions(hops=4, trials=6, steps=0), 0.05), lambda *_: None)
+    start = growth.bare(Layout(robot, LIMITS, (), ()))
+    assert start is not None
+    (best,) = growth._tried(start, 1, 2, count=6, best=1)
+    layouts = growth.proposals.grown(start, winches=1, needed=2, count=6)
+    every = [bench.reached(layout, start, iterations=5) for layout in layouts]
+    ratings = sorted(growth._rated(trial) for trial in every if trial is not None)
+    assert len(ratings) > 3
+    assert ratings[0] < ratings[-1]
+    assert growth._rated(best) == ratings[0]
+
+
+def test_a_pose_that_misses_more_than_hoped_is_sought_again(monkeypatch: pytest.MonkeyPatch, unchecked: None) -> None:
+    layout, bench = robot_and_bench()
+    good = bench.reached(layout, None)
+    asked: list[int] = []
+
+    def watched(*given: Any, options: InverseOptions, **more: Any) -> ReachedPose:
+        asked.append(options.restarts)
+        return solve_ik(*given, options=options, **more)
+
+    monkeypatch.setattr(bench_module, "solve_ik", watched)
+    poor = bench.reached(layout, None, iterations=0)
+    assert good is not None
+    assert poor is not None
+    assert poor.error > 1.2 * good.error
+    assert asked == [0, 0]
+    bench.reached(layout, None, hoped=poor)
+    assert asked == [0, 0] * 2
+    bench.reached(layout, None, iterations=0, hoped=good)
+    assert 1 in asked[4:]
+
+
+def test_poses_from_rest_are_told(unchecked: None) -> None:
+    layout, bench = robot_and_bench()
+    graph = route_graph(bench.source, body_region(bench.source.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    growth = Growth(Proposals(bench, graph, RouteOptions(), 0.05), lambda *_: None)
+    found = bench.reached(layout, None)
+    assert isinstance(found, Trial)
+    assert not found.from_rest
+    assert growth.truly(found).from_rest
+    assert growth.truly(found, worst=0.5 * found.error).error == np.inf
