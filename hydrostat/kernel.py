@@ -10,7 +10,9 @@ nothing (docs/decisions/0025-the-first-minute.md).
 """
 
 import os
+import threading
 from collections.abc import Callable
+from functools import cached_property, update_wrapper
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -47,6 +49,55 @@ INNER: dict[str, Any] = {"error_model": "numpy", "no_cfunc_wrapper": True, "no_c
 """Options of `numba.njit` for a function that only compiled code calls."""
 
 
+class Late:
+    """Something that compiled functions find among the names of their module, and that is made when it is first needed.
+
+    numba takes a quarter of a second to load, and where the core serves nobody asks for it.
+    """
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        """What makes it."""
+        self._make = make
+
+    @cached_property
+    def now(self) -> Any:
+        """The thing itself."""
+        with _MAKING:
+            return self._make()
+
+
+class Compiled(Late):
+    """A function that numba compiles when it is first called; it stands for numba's in all else."""
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        """The function in Python, and options of `numba.njit`."""
+        super().__init__(self._compiled)
+        self.py_func, self.options = function, options
+        update_wrapper(self, function)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it."""
+        return self.now(*arguments)
+
+    def _compiled(self) -> Any:
+        """Numba's function. What it calls must be numba's too when numba looks for it."""
+        from numba import njit as by_numba
+
+        names = self.py_func.__globals__
+        for name in self.py_func.__code__.co_names:
+            if isinstance(names.get(name), Late):
+                names[name] = names[name].now
+        return by_numba(**self.options)(self.py_func)
+
+
+_MAKING = threading.RLock()
+
+
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Compiled]:
+    """Compile a function as `numba.njit` does, with the same options, but load numba only when it is called."""
+    return lambda function: Compiled(function, options)
+
+
 class Kernel:
     """A function that the compiled core has under the same name, less its underscore; numba's where there is no core.
 
@@ -57,9 +108,7 @@ class Kernel:
 
     def __init__(self, function: Callable[..., Any], options: dict[str, Any] = KERNEL) -> None:
         """Take the core's function where there is one; numba compiles only what is called, with these options."""
-        from numba import njit
-
-        self.by_numba = njit(**options)(function)
+        self.by_numba = Compiled(function, options)
         self.by_core = getattr(native, function.__name__.lstrip("_"), None)
         self.__doc__ = function.__doc__
 

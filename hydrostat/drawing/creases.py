@@ -5,10 +5,9 @@ from typing import Self, no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
-from numba import njit
 
 from hydrostat.geometry.healing.mend import sides_of
-from hydrostat.kernel import KERNEL
+from hydrostat.kernel import KERNEL, njit
 
 Segments = Float[np.ndarray, "segments 2 3"]  # straight pieces of lines by both ends [mm]
 

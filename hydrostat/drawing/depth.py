@@ -7,9 +7,8 @@ from typing import Self, no_type_check
 import numpy as np
 import shapely
 from jaxtyping import Float, Int
-from numba import njit
 
-from hydrostat.kernel import KERNEL
+from hydrostat.kernel import KERNEL, njit
 
 Polyline = Float[np.ndarray, "_ 2"]  # a line on a picture: to the right, up [mm]
 _RIM = 4  # pixels of nothing round the picture

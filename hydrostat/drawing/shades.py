@@ -3,9 +3,8 @@
 from typing import no_type_check
 
 import numpy as np
-from numba import njit
 
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL, njit
 
 SAMPLES = 40  # neighbours that are asked how much of the sky they take
 

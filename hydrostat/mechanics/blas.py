@@ -7,14 +7,11 @@ Fortran takes every argument by address, so scalars go through a `Scratch`. Matr
 address of their first entry and the distance of two columns.
 """
 
-from typing import NamedTuple, no_type_check
+from typing import Any, NamedTuple, no_type_check
 
-import llvmlite.binding
 import numpy as np
-from numba import njit, types
-from numba.extending import get_cython_function_address
 
-from hydrostat.kernel import INNER
+from hydrostat.kernel import INNER, Late, njit
 
 
 class Scratch(NamedTuple):
@@ -36,17 +33,21 @@ def scratch() -> Scratch:
     return Scratch(np.zeros(8, np.int32), np.array([1.0, -1.0, 0.0]), np.frombuffer(b"LRNTU", np.uint8).copy())
 
 
-def _routine(name: str, arguments: int) -> types.ExternalFunction:
+def _routine(name: str, arguments: int) -> Any:
     """A Fortran routine as a symbol that compiled code may call."""
+    import llvmlite.binding
+    from numba import types
+    from numba.extending import get_cython_function_address
+
     symbol = f"hydrostat_{name}"
     address = get_cython_function_address("scipy.linalg.cython_blas", name)
     llvmlite.binding.add_symbol(symbol, address)
     return types.ExternalFunction(symbol, types.void(*[types.intp] * arguments))
 
 
-_dgemm = _routine("dgemm", 13)
-_dsyrk = _routine("dsyrk", 10)
-_dtrsm = _routine("dtrsm", 11)
+_dgemm = Late(lambda: _routine("dgemm", 13))
+_dsyrk = Late(lambda: _routine("dsyrk", 10))
+_dtrsm = Late(lambda: _routine("dtrsm", 11))
 
 
 @njit(inline="never", **INNER)

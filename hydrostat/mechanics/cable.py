@@ -6,10 +6,9 @@ from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
-from numba import njit
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.kernel import INNER, Kernel
+from hydrostat.kernel import INNER, Kernel, njit
 from hydrostat.mechanics.energy import Blocks, Coupling, Energy, HessianBlocks, Places, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw
 

@@ -6,10 +6,9 @@ from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Bool, Int
-from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL, njit
 from hydrostat.mechanics.energy import Small
 from hydrostat.mechanics.tension_law import TensionLaw, spring
 

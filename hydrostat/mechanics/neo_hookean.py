@@ -7,10 +7,9 @@ from typing import ClassVar, no_type_check
 
 import numpy as np
 from jaxtyping import Float
-from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
-from hydrostat.kernel import INNER, LONG, Kernel, native
+from hydrostat.kernel import INNER, LONG, Kernel, native, njit
 from hydrostat.mechanics.energy import Blocks, ElementGroups, Energy, HessianBlocks, Places, element_groups
 
 

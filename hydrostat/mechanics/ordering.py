@@ -14,9 +14,8 @@ A graph is (starts, neighbours): those of node i are neighbours[starts[i]:starts
 from typing import no_type_check
 
 import numpy as np
-from numba import njit
 
-from hydrostat.kernel import INNER, Kernel
+from hydrostat.kernel import INNER, Kernel, njit
 
 Graph = tuple[np.ndarray, np.ndarray]
 

@@ -7,9 +7,9 @@ from typing import ClassVar, no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
-from numba import njit
 
 from hydrostat.arrays import Elements, Nodes, Vector
+from hydrostat.kernel import njit
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.neo_hookean import NeoHookean, _displacement_gradient, _spatial_gradients
 

@@ -18,9 +18,8 @@ import threading
 from typing import NamedTuple, no_type_check
 
 import numpy as np
-from numba import njit
 
-from hydrostat.kernel import INNER, LONG, THREADS, Kernel, native
+from hydrostat.kernel import INNER, LONG, THREADS, Kernel, native, njit
 from hydrostat.mechanics.blas import (
     Scratch,
     divide_right,

@@ -11,9 +11,8 @@ Everything here counts nodes, that is blocks of `dim` degrees of freedom.
 from typing import NamedTuple, no_type_check
 
 import numpy as np
-from numba import njit
 
-from hydrostat.kernel import INNER, Kernel
+from hydrostat.kernel import INNER, Kernel, njit
 
 FRONT = 1.5e-6
 ENTRY = 0.6e-9

@@ -5,10 +5,9 @@ from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float
-from numba import njit
 
 from hydrostat.arrays import Vector
-from hydrostat.kernel import INNER, Kernel
+from hydrostat.kernel import INNER, Kernel, njit
 from hydrostat.mechanics.energy import Small
 
 

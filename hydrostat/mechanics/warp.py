@@ -5,10 +5,9 @@ from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
-from numba import njit
 
 from hydrostat.arrays import Nodes
-from hydrostat.kernel import INNER, LONG, native
+from hydrostat.kernel import INNER, LONG, native, njit
 from hydrostat.mechanics.energy import Stencils, element_groups
 from hydrostat.mechanics.factorisation import Analysis
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh, strip_robot
+from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design import Constraints, Network, TreeOptions, design_cables
 from hydrostat.design.buildable import pulls, violations
@@ -334,9 +334,9 @@ def test_options_out_of_range(unchecked: None, wrong: dict[str, object], words: 
     assert str(caught.value) == words
 
 
-@pytest.mark.parametrize("asked", [{}, {"winches": "auto"}, {"method": "trees", "options": TreeOptions(trials=2)}])
-def test_a_design_builds_its_body_once(asked: dict[str, Any], unchecked: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Oracle: how often its energies are made, over all networks that are solved."""
+@pytest.fixture
+def bodies(monkeypatch: pytest.MonkeyPatch) -> list[Robot]:
+    """A robot for each time that the energies of a body are made, from now on."""
     made: list[Robot] = []
     begin = BodyPhysics.__init__
 
@@ -345,7 +345,21 @@ def test_a_design_builds_its_body_once(asked: dict[str, Any], unchecked: None, m
         begin(self, robot)
 
     monkeypatch.setattr(BodyPhysics, "__init__", counted)
+    return made
+
+
+@pytest.mark.parametrize("asked", [{}, {"winches": "auto"}, {"method": "trees", "options": TreeOptions(trials=2)}])
+def test_a_design_builds_its_body_once(asked: dict[str, Any], unchecked: None, bodies: list[Robot]) -> None:
+    """Oracle: how often its energies are made, over all networks that are solved."""
     given: dict[str, Any] = {"winches": 1, "cables": 2, "options": SMALL} | asked
     network = design_cables(bare(), [UP], **given)
-    assert len(made) == 1
+    assert len(bodies) == 1
+    assert network.tried > 1
+
+
+def test_a_design_of_the_starfish_builds_its_body_once(unchecked: None, bodies: list[Robot]) -> None:
+    """Oracle: as above, over all networks that are solved for one of its poses."""
+    robot = gallery_robot("starfish")
+    network = design_cables(robot, [robot.poses["wave"]], winches=1, cables=1, options=SMALL)
+    assert len(bodies) == 1
     assert network.tried > 1

@@ -10,7 +10,7 @@ from numba.core.dispatcher import Dispatcher
 from scipy.sparse import block_diag, coo_array, csc_array, eye_array, kron
 from scipy.spatial import Delaunay
 
-from hydrostat.kernel import Kernel
+from hydrostat.kernel import Compiled, Kernel
 from hydrostat.mechanics import blas, ordering, supernodal, symbolic
 from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
 
@@ -289,7 +289,8 @@ def test_nothing_is_compiled_twice(monkeypatch: pytest.MonkeyPatch) -> None:
             for right in (np.ones(80 * dim), np.ones((80 * dim, 3), order="F"), np.ones((80 * dim, 4))[:, ::2]):
                 factor.solve(right)
     items = {name: getattr(item, "by_numba", item) for room in ROOMS for name, item in vars(room).items()}
-    kernels = {name: item for name, item in items.items() if isinstance(item, Dispatcher)}
+    made = {name: item.now if isinstance(item, Compiled) else item for name, item in items.items()}
+    kernels = {name: item for name, item in made.items() if isinstance(item, Dispatcher)}
     assert {"factorise_fronts", "solve_vector", "solve_matrix", "_dissect", "_alternate", "_rows"} <= kernels.keys()
     assert {name: len(item.signatures) for name, item in kernels.items() if len(item.signatures) > 1} == {}
 

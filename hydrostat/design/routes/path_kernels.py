@@ -3,9 +3,7 @@
 import math
 from typing import no_type_check
 
-from numba import njit
-
-from hydrostat.kernel import INNER, KERNEL
+from hydrostat.kernel import INNER, KERNEL, njit
 
 FINE = {"contract", "reassoc"}  # what of floating point may be rearranged: sums, so that they run in vector registers
 

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import no_type_check
 
-import numba as nb
 import numpy as np
 from jaxtyping import Bool, Float
 from manifold3d import Manifold
 
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.solids.printed import TriangleMesh, triangles_of
-from hydrostat.kernel import KERNEL
+from hydrostat.kernel import KERNEL, njit
 
 _OUT = 5e-4  # how far outside its triangle a point is, in sizes of the body: shallower overhangs than that are none
 _STEEP = 1e-3  # a wall may lean by this cosine and still count as parallel to the pull: rounding, not an overhang
@@ -88,7 +87,7 @@ def axes_along(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     return np.array([first, np.cross(direction, first), direction])
 
 
-@nb.njit(**KERNEL)
+@njit(**KERNEL)
 @no_type_check
 def _covered(points, corners):  # pragma: no cover
     """Tell whether triangles lie straight above and straight below each point; they are found by a grid of cells."""

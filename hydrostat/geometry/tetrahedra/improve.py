@@ -5,12 +5,11 @@ from typing import no_type_check
 
 import numpy as np
 from jaxtyping import Float, Int
-from numba import njit
 
 from hydrostat.arrays import Elements, Nodes
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Solid
-from hydrostat.kernel import INNER, Kernel
+from hydrostat.kernel import INNER, Kernel, njit
 
 _SAMPLES = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
 """Places of a facet that should lie on the surface, by their weights."""
