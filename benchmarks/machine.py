@@ -4,8 +4,9 @@ import os
 import platform
 from pathlib import Path
 
-for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "HYDROSTAT_THREADS"):
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[_name] = "1"
+os.environ.setdefault("HYDROSTAT_THREADS", "1")
 
 
 def machine() -> str:

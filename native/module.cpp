@@ -176,16 +176,14 @@ class Pool {
     void release(double* numbers) {
         if (!numbers) return;
         std::lock_guard<std::mutex> guard(lock);
+        if (held + size(numbers) > KEPT) return std::free(numbers - HEAD);
         idle.push_back(numbers);
         held += size(numbers);
     }
-    void trim(int64_t most) {
-        std::lock_guard<std::mutex> guard(lock);
-        for (; held > most; idle.pop_back()) held -= size(idle.back()), std::free(idle.back() - HEAD);
-    }
 
   private:
-    static constexpr int64_t HEAD = 8;  // before the numbers stands how many there are
+    static constexpr int64_t HEAD = 8;           // before the numbers stands how many there are
+    static constexpr int64_t KEPT = 16'000'000;  // most numbers that lie idle (128 MB)
     static int64_t size(double* numbers) { return *(int64_t*)(numbers - HEAD); }
     std::mutex lock;
     std::vector<double*> idle;
@@ -193,7 +191,6 @@ class Pool {
 };
 
 Pool pool;
-constexpr int64_t KEPT = 16'000'000;  // numbers that stay between factorisations (128 MB)
 
 double* claim(int64_t numbers) { return pool.claim(numbers); }
 void release(double* numbers) { pool.release(numbers); }
@@ -230,7 +227,6 @@ int64_t factorise_together(Array<const int64_t, 2> table, Array<const int64_t, 1
     for (double* update : updates) release(update);
     for (const Room& room : rooms)
         for (double* part : {room.first, room.second, room.spare, room.packed}) release(part);
-    pool.trim(KEPT);
     if (!enough || team.short_of_memory) throw std::bad_alloc();
     return team.failed ? -1 : team.negative;
 }

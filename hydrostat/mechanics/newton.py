@@ -156,6 +156,7 @@ class _EnergyDescent:
             if found is not None:
                 return found
         reused = self._reuse(place, known)
+        self.last = None  # its memory serves for new factors
         stiffness = reused or self._definite(place)
         self.last, self.sharp = (
             (stiffness, self.left < _NEAR and (reused is None or self.exact)) if self.share == 0.0 else (None, False)
