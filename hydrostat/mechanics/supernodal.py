@@ -42,8 +42,8 @@ WHOLE, LOWER, UPPER = range(3)
 IDLE = 3
 """So many arrays of factors are kept by a thread for those to come; fresh pages take half as long as factors."""
 
-IDLE_SIZE = 32_000_000
-"""Numbers in all arrays that are kept so (256 MB)."""
+IDLE_SIZE = 75_000_000
+"""Numbers in all arrays that are kept so (600 MB)."""
 
 LARGE = 0.2
 """Modelled time of a factorisation [s] from which on several threads share it."""
