@@ -259,7 +259,7 @@ from hydrostat.mechanics.factorisation import Analysis
 from hydrostat.mechanics import supernodal
 factor = Analysis(np.arange(7, dtype=np.int32), np.arange(6, dtype=np.int32), dim=2).factorise(np.ones(6))
 assert (factor.solve(np.ones(6)) == 1).all()
-stats = supernodal.factorise_fronts.stats
+stats = supernodal.factorise_fronts.now.stats
 assert stats.cache_hits and not stats.cache_misses, stats
 """
     for _ in range(2):
