@@ -58,6 +58,7 @@ def test_check_says_that_all_is_well(run: Run) -> None:
         assert "Nothing is wrong" in out
 
 
+@pytest.mark.slow
 def test_simulate_writes_what_the_library_solves(run: Run, tmp_path: Path, starfish: Path) -> None:
     code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--jacobian", "--out", tmp_path)
     assert code == 0

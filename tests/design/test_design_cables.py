@@ -62,6 +62,7 @@ def test_a_design_has_what_was_asked_for(case: str, unchecked: None) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
+@pytest.mark.slow
 def test_the_errors_told_are_those_of_the_robot(case: str, unchecked: None) -> None:
     poses = CASES[case][0]
     network = designed(case)

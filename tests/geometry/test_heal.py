@@ -152,6 +152,7 @@ def test_a_large_hole_is_closed_about_flat() -> None:
     assert healing.largest_distance < _FINE / 2
 
 
+@pytest.mark.slow
 def test_overlapping_spheres_are_united() -> None:
     """Oracle: closed form of what two spheres share. The input counts it twice."""
     apart = 0.03

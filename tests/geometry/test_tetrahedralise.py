@@ -92,6 +92,7 @@ def test_volume_area_and_distance_converge_with_order_two() -> None:
     assert away[0] < 0.05 * sizes[0]
 
 
+@pytest.mark.slow
 def test_closed_forms_of_box_cone_and_ring() -> None:
     """Volumes and areas."""
     for made, element_size, volume, area in (

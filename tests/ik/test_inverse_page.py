@@ -32,6 +32,7 @@ def test_the_targets_of_the_page_are_reached(page: dict[str, Any]) -> None:
     assert page["contractions"].keys() == {"right", "left", "feet"}
 
 
+@pytest.mark.slow
 def test_the_limits_of_the_page_hold(page: dict[str, Any]) -> None:
     """The last one says that two winches are one; no update of the tracker is faster than its rate."""
     contractions = page["found"].pose.contractions

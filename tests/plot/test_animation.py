@@ -57,6 +57,7 @@ def test_the_same_frames_give_the_same_bytes(tmp_path: Path) -> None:
     assert one == save_gif(robot, made.frames[:4], tmp_path / "two.gif", step=0.1, width=200).read_bytes()
 
 
+@pytest.mark.slow
 def test_what_is_held_does_not_tremble() -> None:
     """Oracle: pinned nodes do not move, so neither do pixels of the hatched end, which is at the left; the tip does."""
     robot, made = space_film()
@@ -226,6 +227,7 @@ def fake_ffmpeg(folder: Path, monkeypatch: pytest.MonkeyPatch, *, fails: str = "
     monkeypatch.setenv("PATH", str(folder) + os.pathsep + os.environ["PATH"])
 
 
+@pytest.mark.slow
 def test_every_frame_goes_to_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: bytes are frames x height x width x 3, all sides even; the rate is that of the frames."""
     fake_ffmpeg(tmp_path, monkeypatch)

@@ -45,6 +45,7 @@ class Page(HTMLParser):
         self.words.append(data)
 
 
+@pytest.mark.slow
 def test_report_names_everything_and_runs_nothing() -> None:
     network = hostile_network()
     text = report_text(network, facts={"seed": 7, "<i>": "<img src=x onerror=alert(1)>"})

@@ -168,6 +168,7 @@ def test_a_robot_without_cables_or_markers() -> None:
     assert plot.inline_svg(plot.draw_rest(bare), name="it", label="").endswith("</svg>")
 
 
+@pytest.mark.slow
 def test_winches_far_away_are_on_the_picture() -> None:
     robot = space_network().robot
     far = replace(robot, winches=(*robot.winches, Winch(name="far", at=(0.11, 0.03, 0.03))))

@@ -59,6 +59,7 @@ def test_poses(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", HANDS)
+@pytest.mark.slow
 def test_hands_are_as_in_the_thesis(name: str) -> None:
     """Oracle: N3 (916 nodes, 3030 elements), R64 (10 cables), R54 (motors outside, tubes), five fingertips, foam."""
     one = robot(name)

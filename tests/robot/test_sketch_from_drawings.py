@@ -35,6 +35,7 @@ def bar_dxf() -> bytes:
 
 
 @pytest.mark.parametrize(("content", "file", "size"), [(bar_png(), "bar.png", 0.2), (bar_dxf(), "bar.dxf", None)])
+@pytest.mark.slow
 def test_sketch(content: bytes, file: str, size: float | None, tmp_path: Path) -> None:
     """Oracle: the robot itself, saved and read again; the size that was asked for or that the file has."""
     robot = sketch_robot(content, file=file, name="bar", size=size)

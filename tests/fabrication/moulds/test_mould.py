@@ -50,6 +50,7 @@ def left_over(mould: Mould) -> float:
     return sum(mould.volumes[part] for part in PARTS) / mould.volumes["box"] - 1
 
 
+@pytest.mark.slow
 def test_account_is_exact_on_tetrahedra(blob: Mould) -> None:
     volumes = blob.volumes
     assert volumes["body"] == pytest.approx(1e9 * blob_body().mesh.volumes.sum(), rel=1e-9)
@@ -124,6 +125,7 @@ def test_material_that_is_not_poured_is_a_problem() -> None:
     assert "another robot than was simulated" in mould.problems[0]
 
 
+@pytest.mark.slow
 def test_slab_has_the_mould_of_the_closed_form(slab: Mould) -> None:
     mould = slab
     assert mould.pull.share == 0

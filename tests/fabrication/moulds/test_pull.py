@@ -28,6 +28,7 @@ def share_along(solid: Manifold, direction: np.ndarray) -> float:
     return best_height(skin, release(skin, direction))[1]
 
 
+@pytest.mark.slow
 def test_sphere_and_box_come_out() -> None:
     assert find_pull(Manifold.sphere(40, 64), count=20).share == 0
     box = find_pull(Manifold.cube((30, 60, 90)).rotate((20, 35, 50)), count=40)

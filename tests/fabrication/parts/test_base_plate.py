@@ -109,6 +109,7 @@ def test_a_bed_too_small_for_one_unit_is_a_problem():
 
 
 @pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
+@pytest.mark.slow
 def test_a_straight_tube_runs_from_its_seat_through_its_holder(motor: Motor):
     """Oracle: a straight tube from the exit on, a hair thinner than it is, cuts nothing; beside its bore it does."""
     base, units = base_of("trunk", motor)
@@ -174,6 +175,7 @@ def test_the_run_is_an_option():
     assert all(tubes[1][cable] == pytest.approx(tubes[0][cable] + 250.0) for cable in tubes[0])
 
 
+@pytest.mark.slow
 def test_a_tube_that_ends_where_its_cable_begins_is_to_be_held_there():
     robot = gallery_robot("fish_tail")
     bare = replace(robot, cables=(replace(robot.cables[0], sheathed=()), *robot.cables[1:]))

@@ -23,6 +23,7 @@ def parts_of(name: str, motor: str = "auto", torque: float = 0.02) -> RigidParts
 
 
 @pytest.mark.parametrize("name", gallery_names())
+@pytest.mark.slow
 def test_parts_of_the_gallery(name: str, unchecked: None):
     """Oracle: counts of winches, cables and holes of the robot; names once each, with those of all pieces."""
     robot, parts = gallery_robot(name), parts_of(name)
@@ -70,6 +71,7 @@ def test_an_unknown_motor_is_refused():
         parts_of("letter_s", "stepper")
 
 
+@pytest.mark.slow
 def test_the_same_on_every_run():
     for one, other in zip(parts_of("squid").printed, parts_of("squid").printed, strict=True):
         assert (one.name, one.title, one.count, one.note) == (other.name, other.title, other.count, other.note)
@@ -78,6 +80,7 @@ def test_the_same_on_every_run():
 
 
 @pytest.mark.parametrize("name", ["cupping_hand", "squid"])
+@pytest.mark.slow
 def test_it_takes_little_time(name: str, unchecked: None):
     robot = gallery_robot(name)
     begin = time.process_time()

@@ -73,6 +73,7 @@ def test_patches_are_discs_that_cover_the_skin_once(name, request):
     assert max(distortion(patch).give(0.95) for patch in cutting.patches) <= MOST_GIVE
 
 
+@pytest.mark.slow
 def test_a_rounder_body_takes_more_patches(ball, lens):
     assert lens.names == ("front", "back")
     assert len(ball.patches) > 2

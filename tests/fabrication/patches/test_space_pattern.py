@@ -38,6 +38,7 @@ def test_the_bear_is_a_front_and_a_back(pattern):
     assert sum(patch.disc.areas.sum() for patch in pattern.patches) == pytest.approx(pattern.skin, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_all_checks_hold(bear, pattern):
     assert not failed(bear, pattern, pattern_svg(pattern))
 

@@ -52,6 +52,7 @@ def test_the_same_bytes(plush_sheet, foam_sheet):
     assert assembly_sheet(foam()) == foam_sheet
 
 
+@pytest.mark.slow
 def test_another_robot_gives_other_bytes(plush_sheet):
     assert assembly_sheet(plush(cables=3)) != plush_sheet
 
@@ -75,6 +76,7 @@ def test_what_a_plush_sheet_says(plush_sheet):
     assert "Never PVC" in text
 
 
+@pytest.mark.slow
 def test_what_a_foam_sheet_says(foam_sheet):
     text = words(foam_sheet)
     for part in (

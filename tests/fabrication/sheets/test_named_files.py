@@ -44,6 +44,7 @@ def test_files_of_a_mould_of_silicone_are_there():
     assert wrong(kit) == set()
 
 
+@pytest.mark.slow
 def test_the_check_of_names_can_fail(plush_kit):
     """Oracle: a kit without its list of cables."""
     files = {path: content for path, content in plush_kit.files.items() if path != "lists/cable_cuts.csv"}

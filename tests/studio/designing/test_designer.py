@@ -98,6 +98,7 @@ def test_what_is_found_is_what_design_cables_returns(done: Studio, strip: Robot,
     assert done.session.document.robot is strip
 
 
+@pytest.mark.slow
 def test_networks_on_the_way_get_better_from_rest_on(done: Studio, strip: Robot) -> None:
     run = done.designer.run
     assert run is not None

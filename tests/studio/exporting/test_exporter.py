@@ -101,6 +101,7 @@ def test_a_kit_is_the_files_of_the_library_in_one_zip(
     assert "Pattern" in told.stages
 
 
+@pytest.mark.slow
 def test_pages_are_pictures_of_the_sheet(kit: tuple[KitMade, Told]) -> None:
     made, _ = kit
     assert len(made.pages) == 2  # of a robot of plush

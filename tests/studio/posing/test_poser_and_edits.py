@@ -165,6 +165,7 @@ def test_a_cable_over_the_body_is_the_body(starfish: Robot, poser: Poser) -> Non
     assert not poser.grab(Hit(key="cable:0", rest=None, world=middle)), "beside the body there is nothing to hold"
 
 
+@pytest.mark.slow
 def test_what_is_shown_is_of_one_robot(starfish: Robot, document: Document, monkeypatch: pytest.MonkeyPatch) -> None:
     """While one thread meets a new body, another one that draws sees the old one whole, or the new one whole."""
     from hydrostat.studio.posing import poser as module
