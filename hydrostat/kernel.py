@@ -11,6 +11,7 @@ nothing (docs/decisions/0025-the-first-minute.md).
 
 import os
 import threading
+import warnings
 from collections.abc import Callable
 from functools import cached_property, update_wrapper
 from importlib import import_module
@@ -22,8 +23,14 @@ from hydrostat.errors import InputError
 native: Any = None
 """The compiled core; None where numba's kernels serve alone."""
 
+INTERFACE = 2
+"""Which functions, with which arguments, are asked of the core; `interface` in native/module.cpp is the same."""
+
 if os.environ.get("HYDROSTAT_NATIVE", "1") != "0" and find_spec("hydrostat._native"):
     native = import_module("hydrostat._native")
+    if getattr(native, "interface", 1) != INTERFACE:
+        warnings.warn("hydrostat's compiled core is of another version; install hydrostat again", stacklevel=1)
+        native = None
 
 
 def _threads() -> int:
@@ -31,8 +38,8 @@ def _threads() -> int:
     given = os.environ.get("HYDROSTAT_THREADS", "")
     if not given:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if not given.isdecimal() or int(given) < 1:
-        raise InputError(f"HYDROSTAT_THREADS must be a whole number from 1 on, not {given!r}")
+    if not given.isdecimal() or not 1 <= int(given) <= 1024:
+        raise InputError(f"HYDROSTAT_THREADS must be a whole number from 1 to 1024, not {given!r}")
     return int(given)
 
 

@@ -1,9 +1,11 @@
 // `hydrostat._native`: the compiled core for Python. Functions check shapes; those that take long let other threads run.
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <new>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -87,12 +89,21 @@ Fronts plan(const Array<const int64_t, 2>& table, const Array<const int64_t, 1>&
             runs.data(), entries.data(), diagonal.data()};
 }
 
+void demand_room(const Fronts& fronts, const Array<double, 1>& lower, const Array<double, 1>& signs, const Reals<1>& data) {
+    int64_t largest = -1;
+    for (int64_t dof = 0; dof < fronts.dofs; dof++)
+        if (fronts.diagonal[dof] > largest) largest = fronts.diagonal[dof];
+    demand((int64_t)signs.shape(0) == fronts.dofs, "as many signs as degrees of freedom");
+    demand((int64_t)lower.shape(0) >= fronts.table[fronts.count * 11 + 3] + 8, "room for the factors");
+    demand((int64_t)data.shape(0) > largest, "as many numbers as the plan was made for");
+}
+
 int64_t factorise(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<const int64_t, 2> runs,
                   Array<const int32_t, 2> entries, Array<const int64_t, 1> diagonal, Reals<1> data,
                   Array<double, 1> lower, Array<double, 1> signs, Array<double, 1> first, Array<double, 1> second,
                   Array<double, 1> spare, double tiny) {
     Fronts fronts = plan(table, rows, runs, entries, diagonal);
-    demand(signs.shape(0) == diagonal.shape(0), "as many signs as degrees of freedom");
+    demand_room(fronts, lower, signs, data);
     Free free(0.3 * (double)lower.shape(0));
     return kernels.factorise(fronts, data.data(), lower.data(), signs.data(), first.data(), second.data(),
                              spare.data(), tiny);
@@ -201,7 +212,8 @@ int64_t factorise_together(Array<const int64_t, 2> table, Array<const int64_t, 1
                            Array<const int32_t, 2> entries, Array<const int64_t, 1> diagonal, Reals<1> data,
                            Array<double, 1> lower, Array<double, 1> signs, int64_t widest, double tiny, int threads) {
     Fronts fronts = plan(table, rows, runs, entries, diagonal);
-    demand(signs.shape(0) == diagonal.shape(0) && threads > 0, "as many signs as degrees of freedom, and threads");
+    demand(threads > 0, "threads");
+    demand_room(fronts, lower, signs, data);
     nb::gil_scoped_release free;
     double largest = kernels.largest(fronts, data.data());
     if (!(largest < __builtin_inf())) return -1;
@@ -220,7 +232,18 @@ int64_t factorise_together(Array<const int64_t, 2> table, Array<const int64_t, 1
     }
     if (enough) {
         std::vector<std::thread> others;
-        for (int me = 1; me < threads; me++) others.emplace_back(work, std::cref(rooms[me]));
+        std::atomic<bool> go{false};
+        auto wait = [&](const Room& room) {
+            while (!go.load(std::memory_order_acquire)) std::this_thread::yield();
+            work(room);
+        };
+        others.reserve(threads);
+        try {
+            for (int me = 1; me < threads; me++) others.emplace_back(wait, std::cref(rooms[me]));
+        } catch (const std::system_error&) {
+        }  // no more threads can be had: those that there are do it
+        team.size = 1 + (int)others.size();
+        go.store(true, std::memory_order_release);
         work(rooms[0]);
         for (std::thread& other : others) other.join();
     }
@@ -272,6 +295,7 @@ void solve(Array<const int64_t, 2> table, Array<const int64_t, 1> rows, Array<co
 NB_MODULE(_native, module) {
     nb::set_leak_warnings(false);
     module.attr("instructions") = kernels.name;
+    module.attr("interface") = 2;  // kernel.py asks for it: raise both where a function that is not a Kernel changes
     module.def("value", &value);
     module.def("gradient", &gradient);
     module.def("hessian", &hessian);

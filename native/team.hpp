@@ -244,8 +244,8 @@ void own_subtrees(const Fronts& fronts, Together& all, const Room& room, const d
 void join(const Fronts& fronts, Team& team, const Room& room, const double* data, double* lower, double* signs) {
     Together all{team, room.me};
     own_subtrees(fronts, all, room, data, lower, signs);
-    for (int64_t place = 0; place < team.tops; place++) {
-        if (all.failed()) return;
+    if (all.failed()) return;
+    for (int64_t place = 0; place < team.tops; place++) {  // all threads ask for failures behind the same barriers
         const int64_t which = team.top[place];
         const int64_t* row = fronts.table + which * WIDTH;
         const int64_t below = row[BELOW];

@@ -172,7 +172,7 @@ class _EnergyDescent:
         """Whether a step with the very Hessian of a place tells that it lies as near to equilibrium as was asked."""
         if self.options.accuracy is None or not self.left < _LINEAR:
             return False
-        self.error = furthest(step.reshape(place.nodes.shape))
+        self.error = _MARGIN * furthest(step.reshape(place.nodes.shape))
         self.sharp = self.sharp or self.error <= self.options.accuracy
         return self.error <= self.options.accuracy
 
@@ -310,12 +310,15 @@ class _EnergyDescent:
             stable=stiffness is not None and stiffness.definite,
             buckled=self.saddles > 0,
             stiffness=stiffness,
-            error=self.error,
+            error=0.0 if self.options.accuracy is None else self.error if reason is Reason.CONVERGED else np.inf,
         )
 
 
 _NEAR = 1e-5
 """With less than this share of the largest applied force left over, the factors of the last step may serve again."""
+
+_MARGIN = 1.1
+"""Newton's step is the distance to equilibrium but for its square; so much more is told."""
 
 _LINEAR = 1e-2
 """With less than this share of the largest applied force left over, Newton's step tells how far equilibrium is."""

@@ -30,8 +30,8 @@ class NewtonOptions:
         halvings: most halvings of one step.
         whole: whether to give up at once, at no cost, where the first step cannot be taken whole.
         deadline: when it stops at the latest [s], as `time.monotonic` counts.
-        accuracy: how far a node may be from equilibrium [m], by the step that would come next; it stops there even
-            with more force left over than the tolerance allows. None: the tolerance alone counts.
+        accuracy: about how far a node may be from equilibrium [m], by the step that would come next; it stops there
+            even with more force left over than the tolerance allows. None: the tolerance alone counts.
     """
 
     tolerance: float = 1e-10
@@ -70,7 +70,8 @@ class NewtonResult:
         buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
         stiffness: the Hessian there, factorised, or where the last step began, if that was with less than 1e-5 of the
             applied force left over, or within the accuracy.
-        error: about how far a node is from equilibrium [m], where an accuracy was asked for; 0 where it was not.
+        error: about how far a node is from equilibrium [m], where an accuracy was asked for, infinite where it was not
+            reached; 0 where none was asked for.
     """
 
     nodes: Nodes

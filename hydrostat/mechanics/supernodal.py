@@ -15,7 +15,7 @@ stacks, in turn with the depth in the tree: then the children of a front are alw
 """
 
 import threading
-from typing import NamedTuple, no_type_check
+from typing import Any, NamedTuple, no_type_check
 
 import numpy as np
 
@@ -39,11 +39,11 @@ SPARE = 8
 WHOLE, LOWER, UPPER = range(3)
 """What of A^-1 is applied: all of it, L^-1, or L^-T S."""
 
-IDLE = 3
-"""So many arrays of factors are kept by a thread for those to come; fresh pages take half as long as factors."""
+IDLE = 4
+"""So many arrays of factors are kept for each body, for those to come; fresh pages take half as long as factors."""
 
 IDLE_SIZE = 75_000_000
-"""Numbers in all arrays that are kept so (600 MB)."""
+"""Numbers in all arrays that are kept so for one body (600 MB)."""
 
 LARGE = 0.2
 """Modelled time of a factorisation [s] from which on several threads share it."""
@@ -473,10 +473,31 @@ class _Workspace(threading.local):
         self.call: Scratch = scratch()
         self.spare = np.empty(spare)
         self.stacks = np.empty(stacks[0] + SPARE), np.empty(stacks[1] + SPARE)
-        self.idle: list[np.ndarray] = []
 
     def __reduce__(self) -> tuple:
         return _Workspace, self.sizes
+
+
+class _IdleArrays:
+    """Memory of factors that are no more; it is not sent to other processes."""
+
+    def __init__(self) -> None:
+        self._arrays: list[np.ndarray] = []
+
+    def take(self, size: int) -> np.ndarray:
+        """An array of this size, with whatever stands in it."""
+        try:  # one step that threads cannot share
+            return self._arrays.pop()
+        except IndexError:
+            return np.empty(size)
+
+    def give(self, array: np.ndarray) -> None:
+        """Keep an array that nobody else uses, if there is room."""
+        if len(self._arrays) < IDLE and (len(self._arrays) + 1) * len(array) <= IDLE_SIZE:
+            self._arrays.append(array)
+
+    def __reduce__(self) -> tuple:
+        return _IdleArrays, ()
 
 
 class SupernodalAnalysis:
@@ -490,13 +511,14 @@ class SupernodalAnalysis:
         self.entries = int(table[-1, PANEL])
         self.height = int((table[:, COLUMNS] + table[:, BELOW]).max(initial=1))
         widest = int(table[:, COLUMNS].max(initial=1))
+        self.idle = _IdleArrays()
         self.workspace = _Workspace(max(widest * max(widest, BLOCK), 1), (int(sizes[0]), int(sizes[1])))
 
     def factorise(self, data: np.ndarray, tiny: float) -> "SupernodalFactors":
         """Factors of the matrix with these values."""
         signs = np.ones(len(self.place))
         work = self.workspace
-        lower = work.idle.pop() if work.idle else np.empty(self.entries + SPARE)
+        lower = self.idle.take(self.entries + SPARE)
         if native is not None and THREADS > 1 and self.seconds >= LARGE:
             widest = len(work.spare)
             negative = native.factorise_together(*self.fronts, data, lower, signs, widest, tiny, THREADS)
@@ -520,11 +542,20 @@ class SupernodalFactors:
         self.singular = negative < 0
         self.negative = max(negative, 0)
         self._analysis, self._lower, self._signs = analysis, lower, signs
+        self._owns = True
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"_owns": False}  # a copy may share its arrays with others
+
+    def __copy__(self) -> "SupernodalFactors":
+        self._owns = False
+        other = object.__new__(SupernodalFactors)
+        other.__dict__.update(self.__dict__)
+        return other
 
     def __del__(self) -> None:
-        idle = self._analysis.workspace.idle
-        if len(idle) < IDLE and (len(idle) + 1) * len(self._lower) <= IDLE_SIZE:
-            idle.append(self._lower)
+        if getattr(self, "_owns", False):
+            self._analysis.idle.give(self._lower)
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution for one or several right-hand sides."""

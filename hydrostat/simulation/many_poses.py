@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry.anchors import Anchors
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Robot
@@ -106,7 +106,7 @@ def pose_row(
     if slopes is not None:
         try:
             jacobian = np.einsum("pc,pcdw->pdw", anchors.weights, slopes(pose)[anchors.stencils])
-        except NotConvergedError as error:
+        except HydrostatError as error:
             trouble = str(error)
     return PoseRow(
         markers=anchors.positions(pose.nodes),
@@ -149,7 +149,7 @@ def in_threads(work: Callable[[int], PoseRow], size: int, threads: int, *, pays:
     Raises:
         InputError: no number of threads.
     """
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
         raise InputError(f"threads must be a whole number from 1 on, not {threads!r}")
     rows = [PoseRow()] * size
     numbers = count()

@@ -103,7 +103,7 @@ class Simulation:
             start: a pose to begin from; the rest pose if left out.
             strict: raise when the solver does not converge, rather than return the best pose found.
             seconds: after which it stops, with what it has; no limit if left out.
-            accuracy: how far a node may be from equilibrium [m], for poses that are streamed, 1e-5 for instance; about
+            accuracy: about how far a node may be from equilibrium [m], for poses that are streamed, 1e-5 for instance;
                 what is left is told as `pose.result.error`. Solved to rounding if left out, and always with friction.
 
         Raises:
@@ -112,8 +112,6 @@ class Simulation:
         """
         goal = self.contractions(contractions)
         self.check_start(start)
-        if accuracy is not None and not accuracy > 0:
-            raise InputError(f"accuracy must be above 0 m, not {accuracy:g}")
         history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy)
         if self.assembly.has_history:
             path = self._path if seconds is None else LoadingPath(self.robot, self.solver.within(seconds))

@@ -78,7 +78,13 @@ class StaticSolver:
         return replace(self, options=replace(self.options, deadline=time.monotonic() + seconds))
 
     def roughly(self, accuracy: float | None) -> "StaticSolver":
-        """The same that stops where nodes are so near to equilibrium [m]; itself if that is None."""
+        """The same that stops where nodes are so near to equilibrium [m]; itself if that is None.
+
+        Raises:
+            InputError: an accuracy that is not above 0.
+        """
+        if accuracy is not None and not (isinstance(accuracy, int | float | np.number) and accuracy > 0):
+            raise InputError(f"accuracy must be above 0 m, not {accuracy!r}")
         return self if accuracy is None else replace(self, options=replace(self.options, accuracy=accuracy))
 
     def allowed(self, nodes: Nodes, controls: Vector) -> float:

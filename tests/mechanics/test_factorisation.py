@@ -1,6 +1,8 @@
 """The factorisation. Oracle: dense eigenvalues and dense solves; SuperLU, an independent program."""
 
+import copy
 import os
+import pickle
 import subprocess
 import sys
 
@@ -13,6 +15,7 @@ from scipy.spatial import Delaunay
 from hydrostat.kernel import Compiled, Kernel
 from hydrostat.mechanics import blas, ordering, supernodal, symbolic
 from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
+from hydrostat.mechanics.supernodal import SupernodalAnalysis
 
 ROOMS = (blas, ordering, supernodal, symbolic)
 BACKENDS: tuple[Backend, ...] = ("supernodal", "superlu")
@@ -306,3 +309,24 @@ def test_ordering_finds_the_separator_of_a_grid() -> None:
     graph = coo_array((np.ones(pairs.shape[1]), (pairs[0], pairs[1])), shape=(320, 320))
     matrix = csc_array(graph + graph.T + 5 * eye_array(320))
     assert_right(factorised(matrix, points=np.stack([x.ravel(), y.ravel()], 1), backend="supernodal"), matrix, 1e-10)
+
+
+def test_factors_that_go_give_nothing_away_that_is_still_in_use() -> None:
+    """Copies, and what other processes send, may share arrays with others. Oracle: the same solve before."""
+    places, graph = body(80, 2)
+    matrix = shifted(elastic(graph, 2), 0)
+    matrix.sort_indices()
+    analysis = SupernodalAnalysis(
+        Analysis(matrix.indptr, matrix.indices, dim=2, points=places).tree,
+        matrix.indptr.astype(np.int32),
+        matrix.indices.astype(np.int32),
+        2,
+    )
+    factors, right = analysis.factorise(matrix.data, 1e-13), np.ones(160)
+    before = factors.solve(right)
+    for again in (copy.copy(factors), pickle.loads(pickle.dumps(factors))):
+        assert (again.solve(right) == before).all()
+    del again
+    others = [analysis.factorise(share * matrix.data, 1e-13) for share in (2.0, 3.0, 4.0)]
+    assert (factors.solve(right) == before).all()
+    assert others[0].solve(right) == pytest.approx(before / 2)

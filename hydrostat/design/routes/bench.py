@@ -1,6 +1,7 @@
 """`Bench`: what a network in the making does to every pose."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -88,7 +89,8 @@ class Bench:
                 pose = solve_ik(simulation, target, start=start, limits=limits, options=options).pose
                 if hoped is not None and self._missed(simulation, index, pose) > self._short_of(hoped, index):
                     more = replace(options, restarts=_RESTARTS)
-                    pose = solve_ik(simulation, target, start=start, limits=limits, options=more).pose
+                    with suppress(NotConvergedError):  # then the first one stands
+                        pose = solve_ik(simulation, target, start=start, limits=limits, options=more).pose
                 found.append(pose)
             except NotConvergedError:
                 return None
