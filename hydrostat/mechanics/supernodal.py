@@ -15,6 +15,7 @@ stacks, in turn with the depth in the tree: then the children of a front are alw
 """
 
 import threading
+from functools import cached_property
 from typing import Any, NamedTuple, no_type_check
 
 import numpy as np
@@ -470,9 +471,13 @@ class _Workspace(threading.local):
 
     def __init__(self, spare: int, stacks: tuple[int, int]) -> None:
         self.sizes = spare, stacks
-        self.call: Scratch = scratch()
         self.spare = np.empty(spare)
         self.stacks = np.empty(stacks[0] + SPARE), np.empty(stacks[1] + SPARE)
+
+    @cached_property
+    def call(self) -> Scratch:
+        """What numba's kernels call BLAS with."""
+        return scratch()
 
     def __reduce__(self) -> tuple:
         return _Workspace, self.sizes

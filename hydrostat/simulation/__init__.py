@@ -3,7 +3,6 @@
 from hydrostat.simulation.adjoint import Sensitivity
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
-from hydrostat.simulation.contractions import Contractions
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.many_poses import ManyPoses
@@ -14,7 +13,7 @@ from hydrostat.simulation.pose_file import pose_facts, write_pose
 from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, read_profile, write_profile
 from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Simulation
-from hydrostat.simulation.solved_pose import SolvedPose, largest_distance
+from hydrostat.simulation.solved_pose import Contractions, SolvedPose, largest_distance
 
 __all__ = [
     "BodyPhysics",

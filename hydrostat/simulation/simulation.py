@@ -14,7 +14,6 @@ from hydrostat.robot import Robot
 from hydrostat.simulation.adjoint import Sensitivity, sensitivity
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
-from hydrostat.simulation.contractions import Contractions, contraction_values
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.loading_path import LoadingPath
 from hydrostat.simulation.many_poses import LONG_ENOUGH, ManyPoses, PoseRow, in_threads, many_poses, pose_row
@@ -23,7 +22,7 @@ from hydrostat.simulation.obstacles import obstacles
 from hydrostat.simulation.profile import Profile
 from hydrostat.simulation.response import response
 from hydrostat.simulation.route_points import RoutePoints, route_points
-from hydrostat.simulation.solved_pose import SolvedPose, check_pose
+from hydrostat.simulation.solved_pose import Contractions, SolvedPose, check_pose, contraction_values
 from hydrostat.simulation.static_solver import StaticSolver
 
 
