@@ -1,6 +1,6 @@
 """`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, partial
 
 import numpy as np
@@ -152,7 +152,10 @@ class Simulation:
         Raises:
             InputError: as for `solve`; or no number of threads.
         """
-        goals = np.array([self.contractions(given) for given in contractions]).reshape(-1, len(self.robot.winches))
+        if not isinstance(contractions, Iterable):
+            raise InputError(f"contractions must be a row for each pose, not {contractions!r}")
+        given = [self.contractions(each) for each in contractions]
+        goals = np.array(given).reshape(len(given), len(self.robot.winches))
         self.check_start(start)
         _ = self.solver.within(seconds), self.rest_stiffness  # checked and made before threads ask for them
         pays = self.assembly.pattern.analysis.tree.seconds >= LONG_ENOUGH

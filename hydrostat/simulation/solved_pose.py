@@ -80,13 +80,13 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
     Raises:
         InputError: an unknown winch, a wrong number of values, or a value that is not finite.
     """
-    winches = robot.winches
+    winches, wanted = robot.winches, given
     if isinstance(given, Mapping):
         for name in given:
             robot.winch(name)
-        given = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
+        wanted = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
     try:
-        values = np.array(given, dtype=float)
+        values = np.array(wanted, dtype=float)
     except (TypeError, ValueError):
         raise InputError(f"contractions must be numbers [m], not {given!r}") from None
     if values.shape != (len(winches),):

@@ -194,3 +194,9 @@ def test_an_interrupt_ends_it(simulation: Simulation, monkeypatch: pytest.Monkey
     with pytest.raises(KeyboardInterrupt):
         simulation.solve_many(np.zeros((10_000, len(simulation.robot.winches))), threads=threads)
     assert len(solved) < 1000
+
+
+def test_what_is_no_row_of_contractions_is_told(simulation: Simulation, unchecked: None) -> None:
+    for given, words in ((None, "a row for each pose, not None"), ([{simulation.robot.winches[0].name: "a"}], "'a'")):
+        with pytest.raises(InputError, match=words):
+            simulation.solve_many(given)  # pyright: ignore[reportArgumentType]
