@@ -9,6 +9,38 @@ namespace {
 
 using Int = int64_t;
 
+// The sign bit is set where a number is negative or not below `count`: such bits are gathered without branches.
+uint64_t outside(Int number, Int count) {
+    return (uint64_t)number | ((uint64_t)count - 1 - (uint64_t)number);
+}
+
+void demand_below(const Int* numbers, Int size, Int count, const char* what) {
+    uint64_t wrong = 0;
+    for (Int i = 0; i < size; i++) wrong |= outside(numbers[i], count);
+    demand(wrong >> 63 == 0, what);
+}
+
+// Each block of dim by dim numbers lies within the matrix: one for each pair of corners, its columns a stride apart.
+void demand_blocks(const Counts<2>& stencils, const Counts<3>& slots, const Counts<1>& strides, Int dim, Int size) {
+    Int terms = (Int)stencils.shape(0), corners = (Int)stencils.shape(1);
+    const Int *stencil = stencils.data(), *stride = strides.data(), *slot = slots.data();
+    demand_below(stencil, terms * corners, (Int)strides.shape(0), "a corner is no node");
+    demand_below(stride, (Int)strides.shape(0), size + 1, "a column is longer than the matrix");
+    Int widest = 0;
+    for (Int place = 0; place < terms * corners; place++)
+        widest = stride[stencil[place]] > widest ? stride[stencil[place]] : widest;
+    Int last = (dim - 1) * widest + dim - 1;
+    uint64_t wrong = 0, unsure = 0;
+    for (Int i = 0; i < terms * corners * corners; i++) unsure |= outside(slot[i], size - last);
+    if (unsure >> 63 == 0) return;
+    for (Int term = 0; term < terms; term++)  // exactly, each with its own stride: only where blocks lie at the end
+        for (Int a = 0; a < corners; a++)
+            for (Int b = 0; b < corners; b++)
+                wrong |= outside(slot[(term * corners + a) * corners + b],
+                                 size - (dim - 1) * stride[stencil[term * corners + b]] - dim + 1);
+    demand(wrong >> 63 == 0, "a block lies outside the matrix");
+}
+
 // Segments of cables as they come from Python.
 struct Segments {
     Int terms, corners, dim;
@@ -22,6 +54,7 @@ struct Segments {
           stencils(stencils.data()) {
         demand((Int)weights.shape(0) == terms && (Int)weights.shape(1) == corners && (Int)offsets.shape(0) == terms &&
                    (Int)offsets.shape(1) == dim && (Int)roundings.shape(0) == terms, "as many segments of each");
+        demand_below(this->stencils, terms * corners, (Int)nodes.shape(0), "a corner is no node");
     }
 
     double measure(Int term, double* span) const {
@@ -50,6 +83,7 @@ void lengths(Reals<2> nodes, Counts<2> stencils, Reals<2> weights, Reals<2> offs
     Segments all(nodes, stencils, weights, offsets, roundings);
     double span[3];
     demand((Int)cables.shape(0) == all.terms && all.dim <= 3, "as many segments of each");
+    demand_below(cables.data(), all.terms, (Int)total.shape(0), "a segment of no cable");
     for (Int term = 0; term < all.terms; term++) total.data()[cables.data()[term]] += all.measure(term, span);
 }
 
@@ -80,6 +114,8 @@ void add_bends(Reals<2> spans, Reals<1> lengths, Reals<2> weights, Reals<1> pull
     demand((Int)lengths.shape(0) == terms && (Int)weights.shape(0) == terms && (Int)pulls.shape(0) == terms &&
                (Int)stencils.shape(0) == terms && (Int)stencils.shape(1) == corners &&
                (Int)slots.size() == terms * corners * corners && dim <= 3, "as many segments of each");
+    demand((Int)slots.shape(0) == terms && (Int)slots.shape(1) == corners, "as many segments of each");
+    demand_blocks(stencils, slots, strides, dim, (Int)data.shape(0));
     for (Int term = 0; term < terms; term++) {
         const double *span = spans.data() + term * dim, *share = weights.data() + term * corners;
         double pull = pulls.data()[term], square = lengths.data()[term] * lengths.data()[term], across[3][3];
@@ -103,6 +139,8 @@ void spread(Counts<2> stencils, Counts<1> cables, Reals<3> gradients, Array<doub
     Int count = (Int)columns.shape(1);
     demand((Int)cables.shape(0) == terms && (Int)gradients.shape(0) == terms && (Int)gradients.shape(1) == corners,
            "as many segments of each");
+    demand_below(stencils.data(), terms * corners, dim > 0 ? (Int)columns.shape(0) / dim : 0, "a corner is no node");
+    demand_below(cables.data(), terms, count, "a segment of no cable");
     for (Int term = 0; term < terms; term++)
         for (Int corner = 0; corner < corners; corner++)
             for (Int axis = 0; axis < dim; axis++) {
@@ -221,6 +259,7 @@ bool balance(Reals<1> stiffness, Reals<1> smoothing, Reals<1> elongations, Reals
 void add_vectors(Counts<2> stencils, Reals<3> vectors, Array<double, 2> total) {
     Int places = (Int)stencils.size(), dim = (Int)total.shape(1);
     demand((Int)vectors.size() == places * dim, "a vector for each corner");
+    demand_below(stencils.data(), places, (Int)total.shape(0), "a corner is no node");
     for (Int place = 0; place < places; place++)
         for (Int axis = 0; axis < dim; axis++)
             total.data()[stencils.data()[place] * dim + axis] += vectors.data()[place * dim + axis];
@@ -232,6 +271,7 @@ void add_blocks(Counts<2> stencils, Counts<3> slots, Counts<1> strides, Reals<3>
                (Int)slots.shape(0) == terms && (Int)slots.shape(1) == corners && (Int)slots.shape(2) == corners,
            "a block for each term");
     Int dim = corners > 0 ? size / corners : 0;
+    demand_blocks(stencils, slots, strides, dim, (Int)data.shape(0));
     for (Int term = 0; term < terms; term++)
         for (Int b = 0; b < corners; b++) {
             Int stride = strides.data()[stencils.data()[term * corners + b]];
@@ -250,6 +290,7 @@ double least_volume(Reals<2> nodes, Counts<2> stencils, Reals<3> gradients, nb::
     Int terms = (Int)stencils.shape(0), corners = (Int)stencils.shape(1), dim = (Int)nodes.shape(1);
     demand((dim == 2 || dim == 3) && dim == (Int)nb::len(axes) && corners == dim + 1 && (Int)gradients.shape(0) == terms &&
                (Int)gradients.shape(1) == corners && gradients.shape(2) == 3, "elements must be simplices");
+    demand_below(stencils.data(), terms * corners, (Int)nodes.shape(0), "a corner is no node");
     double least = 1.0;
     Free others(10.0 * terms);
     for (Int term = 0; term < terms; term++) {

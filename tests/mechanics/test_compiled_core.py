@@ -235,3 +235,34 @@ def test_what_the_core_cannot_fill_in_is_refused() -> None:
         kernel_of_both(stencils, vectors, np.zeros((1, 2), np.float32))
     with pytest.raises(ValueError, match="a vector for each corner"):
         kernel_of_both(stencils, np.ones((2, 1, 2)), total)
+
+
+@pytest.mark.parametrize("wrong", [-1, 5, 2**62, -(2**63)])
+def test_what_is_no_node_is_refused(wrong: int) -> None:
+    core, whole = kernel.native, np.array([[0, 4]])
+    nodes, corners, data = np.zeros((5, 2)), np.array([[0, wrong]]), np.zeros(40)
+    segment = np.ones((1, 2)), np.ones((1, 2)), np.ones(1)
+    slots, strides, vectors, blocks = np.zeros((1, 2, 2), int), np.full(5, 4), np.ones((1, 2, 2)), np.ones((1, 4, 4))
+    far, none = np.full((1, 2, 2), 36 if wrong > 0 else wrong), np.array([wrong])
+    spans, lengths, first = np.ones((1, 2)), np.ones(1), np.zeros(1, int)
+    calls = [
+        lambda at: core.measure(nodes, at, *segment, spans, lengths),
+        lambda at: core.lengths(nodes, at, *segment, first, np.zeros(5)),
+        lambda at: core.add_bends(spans, lengths, np.ones((1, 2)), lengths, at, slots, strides, data),
+        lambda at: core.spread(at, first, vectors, np.zeros((10, 5))),
+        lambda at: core.add_vectors(at, vectors, np.zeros((5, 2))),
+        lambda at: core.add_blocks(at, slots, strides, blocks, data),
+    ]
+    for call in calls:
+        call(whole)
+        with pytest.raises(ValueError, match="a corner is no node"):
+            call(corners)
+    with pytest.raises(ValueError, match="a corner is no node"):
+        core.least_volume(nodes, np.array([[0, 1, wrong]]), np.ones((1, 3, 3)), (0, 1))
+    with pytest.raises(ValueError, match="a segment of no cable"):
+        core.lengths(nodes, whole, *segment, none, np.zeros(5))
+    with pytest.raises(ValueError, match="a segment of no cable"):
+        core.spread(whole, none, vectors, np.zeros((10, 5)))
+    core.add_blocks(whole, np.full((1, 2, 2), 34), strides, blocks, data)  # the last block: 34, 35, 38 and 39
+    with pytest.raises(ValueError, match="a block lies outside the matrix"):
+        core.add_blocks(whole, far, strides, blocks, data)
