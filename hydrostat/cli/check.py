@@ -35,11 +35,10 @@ def check(robot: RobotFolder) -> None:
 def _body_lines(body: "Body") -> list[str]:
     """Material with mass and volume; thickness of nine tenths of the body, and the worst angle of its mesh."""
     from hydrostat.geometry import dihedral_angles, smallest_angle
-    from hydrostat.geometry.thickness import measure_thickness
 
     mesh, material = body.mesh, body.material
     volume = float(mesh.volumes.sum()) * (body.thickness or 1.0)
-    thickness = measure_thickness(mesh)
+    thickness = body.measured_thickness
     (thin, few), (thick, many) = thickness.part(0.05), thickness.part(0.95)
     if mesh.dim == 2:
         angle = f"smallest angle {smallest_angle(mesh):.0f} degrees"

@@ -112,8 +112,10 @@ class Mesh:
     @cached_property
     def edges(self) -> Int[np.ndarray, "edges 2"]:
         """Every edge once, lower node first, sorted."""
-        pairs = np.concatenate([self.elements[:, list(pair)] for pair in combinations(range(self.dim + 1), 2)])
-        return np.unique(np.sort(pairs, axis=1), axis=0)
+        count = max(len(self.nodes), 1)  # each pair as one number: far quicker to sort than rows
+        pairs = [(self.elements[:, one], self.elements[:, two]) for one, two in combinations(range(self.dim + 1), 2)]
+        numbers = np.concatenate([np.minimum(*pair) * count + np.maximum(*pair) for pair in pairs])
+        return np.stack(np.divmod(np.unique(numbers), count), axis=1)
 
     @cached_property
     def boundary(self) -> Int[np.ndarray, "facets dim"]:
@@ -132,8 +134,10 @@ class Mesh:
         facets = np.concatenate([np.delete(self.elements, corner, axis=1) for corner in corners])
         odd = np.repeat([corner % 2 == 1 for corner in corners], len(self.elements))
         facets[odd, :2] = facets[odd, 1::-1]
-        _, index, count = np.unique(np.sort(facets, axis=1), axis=0, return_index=True, return_counts=True)
-        outer = np.sort(index[count == 1])
+        risen = np.sort(facets, axis=1)
+        order = np.lexsort((risen[:, 1], risen[:, 0] * len(self.nodes) + risen[:, -1]))
+        again = (risen[order[1:]] == risen[order[:-1]]).all(axis=1)
+        outer = np.sort(order[~(np.append(again, False) | np.append(False, again))[: len(order)]])
         return facets[outer], outer % max(len(self.elements), 1)
 
     @cached_property

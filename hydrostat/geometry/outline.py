@@ -137,11 +137,18 @@ class Curve:
         """Stations of the corners three times round."""
         return np.concatenate([self.stations[:-1] + turn * self.length for turn in (-1, 0, 1)])
 
+    @cached_property
+    def _unrolled_corners(self) -> Points:
+        """The corners three times round, each where its station is."""
+        return self.at(self._unrolled)
+
     def sagitta(self, start: float, end: float) -> float:
         """Largest distance of the curve from its chord between two stations, start < end."""
+        first, last = np.searchsorted(self._unrolled, start, side="right"), np.searchsorted(self._unrolled, end)
+        if first >= last:
+            return 0.0
         ends = self.at(np.array([start, end]))
-        between = self._unrolled
-        inner = self.at(between[(between > start) & (between < end)]) - ends[0]
+        inner = self._unrolled_corners[first:last] - ends[0]
         chord = ends[1] - ends[0]
         along = (inner * chord).sum(axis=1)
         fraction = np.clip(along / max(float((chord**2).sum()), 1e-300), 0.0, 1.0)

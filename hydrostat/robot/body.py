@@ -18,6 +18,7 @@ from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.surface import Solid
+from hydrostat.geometry.thickness import Thickness, measure_thickness
 from hydrostat.robot.checks import check_positive
 from hydrostat.robot.materials import Material, find_material
 
@@ -99,6 +100,11 @@ class Body:
     def solid(self) -> Solid | None:
         """Solid that the closed surface of a body in space encloses; None for other bodies."""
         return None if self.healing is None else Solid(self.healing.surface)
+
+    @cached_property
+    def measured_thickness(self) -> Thickness:
+        """How thick the body is, straight in from each facet of its boundary."""
+        return measure_thickness(self.mesh)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
         """Distance of points outside the body [m], 0 inside its drawing, its surface or its mesh."""

@@ -8,7 +8,7 @@ from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
 from hydrostat.geometry.surface import Solid
 from hydrostat.geometry.tetrahedra.manifold import euler
 from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit
-from hydrostat.geometry.thickness import measure_thickness, thin_parts
+from hydrostat.geometry.thickness import thin_parts
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.risks.words import mm, place
 from hydrostat.robot.robot import Robot
@@ -94,7 +94,7 @@ def _locking(body: Body) -> Iterator[str]:
 
 def _thin(body: Body) -> Iterator[str]:
     dim = body.mesh.dim
-    parts = thin_parts(measure_thickness(body.mesh), LEAST_ACROSS[dim])
+    parts = thin_parts(body.measured_thickness, LEAST_ACROSS[dim])
     if not parts:
         return
     thinnest = parts[0]
