@@ -1,10 +1,19 @@
 """How long hydrostat takes to start, in a fresh process each time.
 
     python benchmarks/startup.py [--repeats 15]
+    python benchmarks/startup.py --together 4
+    python benchmarks/startup.py --check 3.3
 
 Then a first solve, phase by phase: cold, where nothing has been compiled yet (an empty folder for what numba keeps),
 and warm, where it has been. The flat robot is the gallery's starfish, the one in space the hand of `hand_body.py`, of
 few nodes; each has its own folder.
+
+With `--together` only this: so many processes begin at once on one empty folder, by numba's kernels and by the compiled
+core, and each solves a robot; then as many again, now that all is compiled. It fails unless all of them end well, and
+those that began together give the same bytes.
+
+With `--check` only this: `hydrostat check` of the hand with elements of so many millimetres, in a process of its own,
+once as the gallery's surface, which is meshed, and once as a folder that holds the ready mesh.
 """
 
 import argparse
@@ -14,24 +23,47 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from statistics import median
 
-from machine import machine
+from machine import machine  # isort: skip  (before NumPy)
+import numpy as np
+
+HYDROSTAT = [sys.executable, "-c", "from hydrostat.cli.main import main; main()"]
+STARFISH = str(Path(__file__).parents[1] / "examples" / "starfish")
 
 COMMANDS = {
     "python -c pass": ([sys.executable, "-c", "pass"], None),
     "import hydrostat": ([sys.executable, "-c", "import hydrostat"], 0.5),
-    "hydrostat --help": ([str(Path(sys.executable).with_name("hydrostat")), "--help"], 0.3),
+    "import hydrostat.robot": ([sys.executable, "-c", "import hydrostat.robot"], None),
+    "hydrostat --help": ([*HYDROSTAT, "--help"], 0.3),
+    "hydrostat materials": ([*HYDROSTAT, "materials"], 0.6),
+    "hydrostat check starfish": ([*HYDROSTAT, "check", STARFISH], 0.6),
+    "hydrostat simulate starfish": (
+        [*HYDROSTAT, "simulate", STARFISH, "--contract", "left=12mm", "--out", "{out}/a"],
+        0.6,
+    ),
+    "hydrostat pose starfish": ([*HYDROSTAT, "pose", STARFISH, "--pose", "wave", "--out", "{out}/a"], 0.6),
+    "hydrostat new": ([*HYDROSTAT, "new", "{out}/new", "--from", "gallery:starfish"], 0.6),
 }
 """Name, command, and the time [s] it should stay under."""
 
 
-def seconds(command: list[str]) -> float | None:
-    """Wall-clock time of one run; None if it fails."""
-    began = time.perf_counter()
-    ended = subprocess.run(command, capture_output=True, check=False)
-    return time.perf_counter() - began if ended.returncode == 0 else None
+def seconds(command: list[str]) -> tuple[float, float] | None:
+    """CPU and wall-clock time of one run; None if it fails."""
+    with tempfile.TemporaryDirectory() as out:
+        began, used = time.perf_counter(), used_by_children()
+        ended = subprocess.run([word.format(out=out) for word in command], capture_output=True, check=False)
+        taken = used_by_children() - used, time.perf_counter() - began
+    return taken if ended.returncode == 0 else None
+
+
+def used_by_children() -> float:
+    """CPU time of all processes that were begun here and have ended."""
+    times = os.times()
+    return times.children_user + times.children_system
 
 
 ROBOTS = {
@@ -39,6 +71,9 @@ ROBOTS = {
     "hand": "from hand_body import hand_robot\nrobot = hand_robot(17e-3)",
 }
 """How to make a robot."""
+
+ROUNDING = 1e-13
+"""Farther apart [m] are no shapes from the same kernels, compiled in this process or loaded from a file."""
 
 PHASES = ("imports", "robot", "simulation", "first solve", "second solve", "together")
 
@@ -82,16 +117,99 @@ def print_solves(repeats: int) -> None:
             print(f"| {robot} | {phase} | {cells} |")
 
 
+SHAPE = """
+import hydrostat.robot, hydrostat.simulation
+{robot}
+simulation = hydrostat.simulation.Simulation(robot)
+solved = simulation.solve({{robot.winches[0].name: 0.004}})
+assert solved.result.reason == 'converged'
+print(solved.nodes.tobytes().hex())
+"""
+
+
+def shapes(robot: str, variables: dict[str, str], processes: int) -> list[bytes]:
+    """The shapes that processes begun at once find (RuntimeError: one of them failed or had something to say)."""
+    here = os.pathsep.join((str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")))
+    environment = os.environ | {"PYTHONPATH": here} | variables
+    command = [sys.executable, "-c", SHAPE.format(robot=ROBOTS[robot])]
+    begun = [
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+        for _ in range(processes)
+    ]
+    ended = [process.communicate() for process in begun]
+    failed = [words for process, (_, words) in zip(begun, ended, strict=True) if process.returncode or words]
+    if failed:
+        raise RuntimeError(f"{robot}: {len(failed)} of {processes} processes failed: {failed[0]}")
+    return [bytes.fromhex(found) for found, _ in ended]
+
+
+def print_together(processes: int) -> None:
+    """A table of processes that share one cold folder, and of as many that find it warm; an error if bytes differ."""
+    print("| robot | kernels | processes | cold, wall s | warm, wall s | files kept | from cold to warm m |")
+    print("|---|---|---|---|---|---|---|")
+    for robot, native in product(ROBOTS, ("1", "0")):
+        found, taken = [], []
+        with tempfile.TemporaryDirectory() as folder:
+            for _ in range(2):
+                began = time.perf_counter()
+                each = shapes(robot, {"NUMBA_CACHE_DIR": folder, "HYDROSTAT_NATIVE": native}, processes)
+                taken.append(time.perf_counter() - began)
+                if len(set(each)) != 1:
+                    raise RuntimeError(f"{robot}: {processes} processes found {len(set(each))} different shapes")
+                found.append(np.frombuffer(each[0]))
+            kept = sum(path.is_file() for path in Path(folder).rglob("*"))
+        apart = float(np.abs(found[0] - found[1]).max())
+        times = f"{taken[0]:.1f} | {taken[1]:.1f}"
+        print(f"| {robot} | {'core' if native == '1' else 'numba'} | {processes} | {times} | {kept} | {apart:.1g} |")
+        if apart > ROUNDING:
+            raise RuntimeError(f"{robot}: shapes are {apart} m apart, cold and warm")
+
+
+def print_check(element_size: float, repeats: int) -> None:
+    """A table of `hydrostat check` of a large body."""
+    from hand_body import hand_robot
+
+    from hydrostat.geometry.files.vtu_file import write_vtu
+    from hydrostat.geometry.mesh import Mesh
+    from hydrostat.robot import mesh_body, save_robot
+
+    robot = hand_robot(element_size)
+    mesh = robot.body.mesh
+    print("| hand | nodes | CPU s | wall s | aim |\n|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "hand.vtu"
+        file.write_bytes(write_vtu(Mesh(1e3 * mesh.nodes, mesh.elements), 1e3 * mesh.nodes, {}))
+        ready = mesh_body(file, unit=1e-3, material=robot.body.material, volume=robot.body.volume)
+        for name, saved in (("surface", robot), ("mesh", replace(robot, body=ready))):
+            save_robot(saved, Path(folder) / name)
+            found = [seconds([*HYDROSTAT, "check", str(Path(folder) / name)]) for _ in range(repeats)]
+            times = [taken for taken in found if taken is not None]
+            usual = [median(each) for each in zip(*times, strict=True)]
+            text = " | ".join(f"{value:.2f}" for value in usual) if len(times) == repeats else "failed | failed"
+            print(f"| {name} | {len(mesh.nodes)} | {text} | < 3 |")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--repeats", type=int, default=15)
+    parser.add_argument("--together", type=int, metavar="PROCESSES")
+    parser.add_argument("--check", type=float, metavar="MILLIMETRES")
     options = parser.parse_args()
-    print(f"{machine()}; wall-clock time, median of {options.repeats} starts\n")
-    print("| command | s | aim |\n|---|---|---|")
+    if options.check:
+        print(f"{machine()}; median of {options.repeats} starts\n")
+        print_check(1e-3 * options.check, options.repeats)
+        return
+    if options.together:
+        print(f"{machine()}\n")
+        print_together(options.together)
+        return
+    print(f"{machine()}; median of {options.repeats} starts\n")
+    print("| command | CPU s | wall s | aim |\n|---|---|---|---|")
     for name, (command, aim) in COMMANDS.items():
         times = [seconds(command) for _ in range(options.repeats + 1)][1:]
         found = [taken for taken in times if taken is not None]
-        text = f"{median(found):.3f}" if len(found) == len(times) else "failed"
+        usual = [median(each) for each in zip(*found, strict=True)]
+        text = " | ".join(f"{value:.3f}" for value in usual) if len(found) == len(times) else "failed | failed"
         print(f"| `{name}` | {text} | {f'< {aim}' if aim else ''} |")
     print_solves(options.repeats)
 
