@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         SolvedPose,
         StepOptions,
         follow_branch,
+        friction_band,
         path_dependence,
     )
 
@@ -109,6 +110,7 @@ __all__ = [
     "drawn_pose",
     "export_kit",
     "follow_branch",
+    "friction_band",
     "load_robot",
     "path_dependence",
     "save_robot",
@@ -168,6 +170,7 @@ _HOMES = {
     "drawn_pose": "ik",
     "export_kit": "fabrication",
     "follow_branch": "simulation",
+    "friction_band": "simulation",
     "load_robot": "robot",
     "path_dependence": "simulation",
     "save_robot": "robot",

@@ -1,7 +1,7 @@
 """`ReachedPose`: what inverse kinematics found for one pose."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -36,6 +36,8 @@ class ReachedPose:
         optimality: how much the length of the residual would still fall for each metre that one channel moves, as far
             as it may [m/m]; near 0 at an optimum, but not where a pose is reached.
         held: the limits that keep it from coming nearer, in words.
+        friction_band: how far each marker is from where the same contractions leave it when they are come to from a
+            tenth above [m]; empty without friction, in answers of a `Tracker`, and where that way cannot be followed.
     """
 
     target: Pose | None
@@ -46,6 +48,7 @@ class ReachedPose:
     solves: int
     optimality: float = 0.0
     held: tuple[str, ...] = ()
+    friction_band: Mapping[str, float] = field(default_factory=dict)
 
     def without_factors(self) -> "ReachedPose":
         """The same with a pose that keeps no factorised Hessian, to be kept with many others."""

@@ -1,13 +1,14 @@
 """`solve_ik`: the contractions that bring a robot nearest to a pose, by descents from several beginnings."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import count, islice
 
 import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Vector
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.effort import keeps_taut
 from hydrostat.ik.objectives.marker_goal import MarkerGoal, named_targets
@@ -17,7 +18,7 @@ from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, S
 from hydrostat.ik.search.linear_model import LinearModel
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState, ModelStep
 from hydrostat.robot import Point, Pose
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Simulation, SolvedPose, friction_band
 
 Targets = Pose | Mapping[str, Point]  # where markers should go [m]: a pose, or points by name
 
@@ -37,6 +38,9 @@ def solve_ik(
     is linearised by dx/da; equilibria on the way are only as sharp as they must be, the last one is exact. The answer
     is a local optimum; where it misses its goal, the search begins elsewhere a few times. docs/theory/inverse.md.
 
+    Where cables rub, the way counts. The answer is the pose in which the robot ends when the winches go straight from
+    `start`, or from rest, to the contractions, all in proportion, as in `Simulation.solve`.
+
     Args:
         simulation: the robot's physics.
         targets: where markers should go [m].
@@ -48,7 +52,7 @@ def solve_ik(
 
     Raises:
         InputError: nothing to reach, something that the robot does not have, limits without room, a robot without
-            cables or with friction.
+            cables, or other physics that remember the way.
         NotConvergedError: no equilibrium where the search begins.
     """
     target = as_pose(targets)
@@ -59,14 +63,23 @@ def solve_ik(
     terms = [wish.on(simulation) for wish in wishes(target, objectives)]
     ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
     problem = InverseProblem(simulation, terms, allowed, options or InverseOptions(), ready=ready)
-    search = InverseSearch(problem)
+    search = InverseSearch(problem, origin=start)
     begun = search.begin(start)
     seek = descend
     if problem.options.unique and problem.redundant(begun):
         seek = least_effort
         begun = begun if start is None or given.rate is not None else search.begin(None)
     found = _best(search, seek(search, begun), seek)
-    return reached_pose(search, found, target)
+    reached = reached_pose(search, found, target)
+    return replace(reached, friction_band=_band(simulation, reached.pose))
+
+
+def _band(simulation: Simulation, pose: SolvedPose) -> Mapping[str, float]:
+    """What friction leaves open; empty where the way there and back breaks off."""
+    try:
+        return friction_band(simulation, pose)
+    except NotConvergedError:
+        return {}
 
 
 def as_pose(targets: Targets | None) -> Pose | None:

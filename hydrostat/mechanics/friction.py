@@ -129,6 +129,15 @@ class FrictionCableEnergy(Energy):
         return -np.expm1(-self.friction * self.angles(nodes)) * larger
 
     @property
+    def owners(self) -> Int[np.ndarray, " spans"]:
+        """Cable that each span belongs to."""
+        return self._owners
+
+    def at_winches(self, spans: Float[np.ndarray, "spans *columns"]) -> Float[np.ndarray, "cables *columns"]:
+        """Rows of the span at the winch of each cable."""
+        return spans[self._firsts]
+
+    @property
     def history(self) -> Vector:
         """Slips at the point before each span [m]."""
         return self.slips
@@ -178,10 +187,29 @@ class FrictionCableEnergy(Energy):
             controls: contractions [m].
             compliance: of the body there.
         """
+        return -compliance.moves @ self.tension_slopes(nodes, controls, compliance)
+
+    def tension_slopes(
+        self, nodes: Nodes, controls: Vector, compliance: Compliance, taut: Int[np.ndarray, " some"] | None = None
+    ) -> Float[np.ndarray, "spans controls"]:
+        """D T of each span / d controls [N/m], as in `moves`.
+
+        Args:
+            nodes: an equilibrium [m].
+            controls: contractions [m].
+            compliance: of the body there.
+            taut: cables that, where they are slack, are taken as if they had just become taut and slipped; none if left
+                out.
+        """
         tensions = self.span_tensions(nodes, controls)
+        joining = np.isin(self._owners, [] if taut is None else taut) & (tensions <= 0)
+        turned = np.cumsum(self.friction * self.angles(nodes))
+        turned -= turned[self.law.starts[self._owners]]
+        little = self.law.stiffness * self.law.smoothing * _JUST_TAUT
+        tensions = np.where(joining, little * np.exp(-turned), tensions)
         drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
         near = _AT_THE_LIMIT * tensions.max(initial=0.0)
-        slipping = np.abs(drops) >= self.capstan_limits(nodes, controls) - near
+        slipping = joining | (np.abs(drops) >= self.capstan_limits(nodes, controls) - near)
         by_elongation, by_limit = self.law.locked(tensions, np.sign(drops) * slipping)
         pulled = np.zeros((len(tensions), len(controls)))
         pulled[np.arange(len(tensions)), self._spans.winches] = self._by_control(by_elongation)
@@ -189,7 +217,7 @@ class FrictionCableEnergy(Energy):
         slopes = (
             unit + by_elongation @ compliance.compliance - by_limit @ self._limit_slopes(nodes, tensions, compliance)
         )
-        return -compliance.moves @ np.linalg.solve(slopes, pulled)
+        return np.linalg.solve(slopes, pulled)
 
     def _limit_slopes(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> Small:
         """D capstan limits / d tensions, of the body that gives way to these too."""
@@ -218,6 +246,9 @@ class FrictionCableEnergy(Energy):
 _HELD = 1e30
 """Friction that nothing overcomes [N]."""
 
+
+_JUST_TAUT = 1.0 / 16.0
+"""Tension of a cable that has just become taut, in units of its stiffness times its smoothing: at half of this."""
 
 _AT_THE_LIMIT = 1e-6
 """Tensions that come as near to the capstan's limit, as a share of the largest tension, are at it."""

@@ -5,6 +5,7 @@ from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
+from hydrostat.simulation.friction_band import friction_band
 from hydrostat.simulation.many_poses import ManyPoses
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
@@ -39,6 +40,7 @@ __all__ = [
     "SolvedPose",
     "StepOptions",
     "follow_branch",
+    "friction_band",
     "largest_distance",
     "path_dependence",
     "pose_facts",

@@ -66,6 +66,24 @@ class LoadingPath:
         assert state.result is not None
         return replace(state.result, iterations=iterations), state.assembly.history
 
+    def at_once(self, goal: Vector, start: SolvedPose | None, near: NewtonResult) -> tuple[NewtonResult, Vector]:
+        """The same way in a single increment, found from a state that is near its end.
+
+        It ends where `solve` does as long as cable slips one way only; else it is close.
+
+        Args:
+            goal: contractions [m].
+            start: where the way begins; at rest if left out.
+            near: nodes near the end, and the Hessian there.
+        """
+        assembly = self._rest.assembly if start is None else self.resumed(start)
+        assembly = assembly.near(near.nodes)
+        for _ in range(_GUESSES):  # balance there: a better guess than none of what friction holds
+            assembly = assembly.corrected(near.nodes, goal, None)
+        state = self._solve(_PathState(near.nodes, goal, assembly, near), goal)
+        assert state.result is not None
+        return state.result, state.assembly.history
+
     def resumed(self, pose: SolvedPose) -> Assembly:
         """Physics that remember how a pose was reached."""
         return self._rest.assembly.near(pose.nodes).resumed(pose.history, pose.nodes, pose.contractions)
@@ -107,6 +125,9 @@ _INCREMENT = 0.05
 
 _TOLERANCE = 1e-8
 """Forces in balance to this share of the largest one are right."""
+
+_GUESSES = 5
+"""Corrections of a first guess, while nothing moves."""
 
 _CORRECTIONS = 40
 _NEWTON = 12

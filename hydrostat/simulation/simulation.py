@@ -113,7 +113,7 @@ class Simulation:
         self.check_start(start)
         history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy)
         if self.assembly.has_history:
-            path = self._path if seconds is None else LoadingPath(self.robot, self.solver.within(seconds))
+            path = self.path if seconds is None else LoadingPath(self.robot, self.solver.within(seconds))
             result, history = path.solve(goal, start)
         else:
             begin = None if start is None else (start.nodes, start.contractions, self.stiffness_of(start))
@@ -332,7 +332,7 @@ class Simulation:
     def stiffness(self, pose: SolvedPose) -> Stiffness:
         """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
         if self.assembly.has_history:
-            return self._path.resumed(pose).stiffness(pose.nodes, pose.contractions)
+            return self.path.resumed(pose).stiffness(pose.nodes, pose.contractions)
         return self.stiffness_of(pose) or self.assembly.near(pose.nodes).stiffness(pose.nodes, pose.contractions)
 
     def _regular(self, pose: SolvedPose) -> Stiffness:
@@ -364,7 +364,7 @@ class Simulation:
         return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
 
     @cached_property
-    def _path(self) -> LoadingPath:
+    def path(self) -> LoadingPath:
         """Incremental loading; only for energies with a history."""
         return LoadingPath(self.robot, self.solver)
 

@@ -98,16 +98,14 @@ def test_a_search_that_is_stuck_ends_with_1(
 
 
 @pytest.mark.slow
-def test_cables_with_friction_are_refused_in_one_line(run: Run, starfish: Path, tmp_path: Path) -> None:
+def test_cables_with_friction_follow_a_trajectory(run: Run, starfish: Path, tmp_path: Path) -> None:
     robot = tmp_path / "rubbing"
     hs.save_robot(hs.load_robot(starfish), robot)
     text = (robot / "robot.toml").read_text()
     (robot / "robot.toml").write_text(text.replace("[[cable]]\n", "[[cable]]\nfriction = 0.3\n"))
     code, _, errors = run("trajectory", robot, "--poses", "rest", "--out", tmp_path / "out")
-    assert code == 2
-    assert errors.strip().count("\n") == 0
-    assert "set friction = 0" in errors
-    assert not (tmp_path / "out").exists()
+    assert code == 0, errors
+    assert (tmp_path / "out" / "trajectory.csv").exists()
 
 
 def test_help_has_an_example(run: Run) -> None:

@@ -295,13 +295,6 @@ def test_given_poses_are_of_this_robot(simulation: Simulation, as_start: bool) -
             solve_ik_trajectory(simulation, [keyframe], start=start)
 
 
-@pytest.mark.parametrize("solved", [False, True])
-def test_cables_with_friction_are_refused(simulation: Simulation, solved: bool) -> None:
-    robot = replace(strip(), cables=tuple(replace(cable, friction=0.2) for cable in strip().cables))
-    with pytest.raises(InputError, match=r"cables with friction .* set friction = 0"):
-        solve_ik_trajectory(Simulation(robot), [simulation.rest if solved else {"tip": (0.19, 0.0)}])
-
-
 BAD = {
     "at least one keyframe": {"keyframes": []},
     "keyframe 1 has no target": {"keyframes": [{}]},

@@ -2,15 +2,16 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.mechanics import FrictionCableEnergy, Stiffness
 from hydrostat.simulation import Simulation, SolvedPose
 
 Rows = Float[np.ndarray, " rows"]
@@ -25,13 +26,15 @@ class Posture:
         nodes: positions [m].
         contractions: of each winch [m].
         elongations: how much longer each cable is than it should be [m]; negative when slack.
-        tensions: of each cable [N].
+        tensions: of each cable [N]; at its winch where cables rub.
+        history: what the physics remember of the way there, as in a `SolvedPose`.
     """
 
     nodes: Nodes
     contractions: Vector
     elongations: Vector
     tensions: Vector
+    history: Vector = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,14 +93,23 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
 
 def posture_at(simulation: Simulation, pose: SolvedPose) -> Posture:
     """What an objective may look at in a pose."""
-    return posture_of(simulation, pose.nodes, pose.contractions)
+    return posture_of(simulation, pose.nodes, pose.contractions, pose.history)
 
 
-def posture_of(simulation: Simulation, nodes: Nodes, contractions: Vector) -> Posture:
-    """The same of nodes at some contractions [m]."""
+def posture_of(simulation: Simulation, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Posture:
+    """The same of nodes at some contractions [m], after a way that left `history`."""
     elongations = simulation.cables.elongations(nodes, contractions)
-    tensions = simulation.cables.law.tension(elongations)
-    return Posture(nodes=nodes, contractions=contractions, elongations=elongations, tensions=tensions)
+    if simulation.friction is None or history is None:
+        tensions = simulation.cables.law.tension(elongations)
+    else:
+        tensions = simulation.tensions(nodes, contractions, history)
+    return Posture(
+        nodes=nodes,
+        contractions=contractions,
+        elongations=elongations,
+        tensions=tensions,
+        history=np.zeros(0) if history is None else history,
+    )
 
 
 def follows(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
@@ -109,15 +121,41 @@ def follows(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
 def moves_at(simulation: Simulation, pose: SolvedPose) -> Moves:
     """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da (R33).
 
-    Cables that rub are not covered: their tension differs along the cable.
+    Cables that rub slip on as they slip, and their tension is that at the winch.
 
     Raises:
         NotConvergedError: the pose is about to snap, its Hessian is singular.
     """
+    if simulation.friction is not None:
+        stiffness = simulation.stiffness(pose)
+        return rubbing_moves(simulation, simulation.friction, posture_at(simulation, pose), stiffness)
     cables, nodes = simulation.cables, simulation.jacobian(pose)
     elongations = follows(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(pose.nodes.size, -1)
     tangents = cables.law.tangent(cables.elongations(pose.nodes, pose.contractions))
     return Moves(nodes=nodes, elongations=elongations, tensions=tangents[:, None] * elongations)
+
+
+def rubbing_moves(
+    simulation: Simulation,
+    friction: FrictionCableEnergy,
+    posture: Posture,
+    stiffness: Stiffness,
+    taut: Int[np.ndarray, " some"] | None = None,
+) -> Moves:
+    """The same of cables that rub: the capstan's law holds, points at their limit slip on, the others stick.
+
+    Slack cables among `taut` count as if they had just become taut.
+    """
+    nodes, contractions = posture.nodes, posture.contractions
+    cables = friction.resumed(posture.history[: len(friction.history)], nodes, contractions)
+    compliance = stiffness.compliance_of(slice(0, len(friction.history)))
+    tensions = cables.tension_slopes(nodes, contractions, compliance, taut)
+    moves = -compliance.moves @ tensions
+    return Moves(
+        nodes=moves.reshape(*nodes.shape, -1),
+        elongations=follows(simulation) + simulation.cables.columns(nodes).T @ moves,
+        tensions=cables.at_winches(tensions),
+    )
 
 
 def numbers(given: object) -> Float[np.ndarray, "..."] | None:

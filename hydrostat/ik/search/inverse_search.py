@@ -19,18 +19,25 @@ from hydrostat.simulation import SolvedPose
 class InverseSearch:
     """Equilibria on the way to the solution of a problem; `solves` counts those that were approached.
 
-    With an accuracy [m] nodes may be so far from equilibrium.
+    With an accuracy [m] nodes may be so far from equilibrium. Where physics remember the way, as cables that rub do,
+    each state is reached straight from the pose `origin`, or from rest if there is none: all contractions change in
+    proportion, as in `Simulation.solve`.
     """
 
-    def __init__(self, problem: InverseProblem, *, accuracy: float | None = None) -> None:
-        self.problem, self.solves = problem, 0
+    def __init__(
+        self, problem: InverseProblem, *, accuracy: float | None = None, origin: SolvedPose | None = None
+    ) -> None:
+        self.problem, self.solves, self._origin = problem, 0, origin
         self.solver = problem.simulation.solver.roughly(accuracy)
+        self._remembers, self._turns = problem.simulation.assembly.has_history, False
 
     def begin(self, start: SolvedPose | None) -> InverseState:
         """The state of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
         pose = start or self.problem.simulation.rest
         self.problem.simulation.check_start(pose)
         values = self.problem.bounds.channel(pose.contractions)
+        if self._remembers:
+            return self._begin_where(values, pose)
         given = self._result(pose)
         if (self.problem.bounds.spread @ values == pose.contractions).all() and given.stable:
             found = self.problem.state(values, given)
@@ -40,12 +47,40 @@ class InverseSearch:
         if found is not None:
             return found
         solved = self.problem.simulation.solve(self.problem.bounds.spread @ values, start=pose, strict=False)
-        if not _sound(solved.result):
-            raise NotConvergedError(
-                f"inverse kinematics finds no stable equilibrium to begin from: {solved.result.reason}; give a start",
-                solved.result,
-            )
-        return self.problem.state(values, self._result(solved))
+        return self.problem.state(values, self._result(_begun(solved)))
+
+    def _begin_where(self, values: Vector, pose: SolvedPose) -> InverseState:
+        """The state of a pose if that is where ways begin, else where the way to its contractions ends."""
+        simulation = self.problem.simulation
+        origin = self._origin or simulation.rest
+        contractions = self.problem.bounds.spread @ values
+        if pose is not origin or (contractions != pose.contractions).any():
+            pose = _begun(simulation.solve(contractions, start=self._origin, strict=False))
+        stiffness = simulation.stiffness(pose)
+        return self._idled(self.problem.state(values, replace(pose.result, stiffness=stiffness), pose.history))
+
+    def _travelled(self, values: Vector) -> InverseState | None:
+        """The state at the end of the straight way to contractions of the channels [m]; None if it breaks off."""
+        simulation = self.problem.simulation
+        pose = simulation.solve(self.problem.bounds.spread @ values, start=self._origin, strict=False)
+        if not _sound(pose.result) or pose.result.stiffness is None:
+            return None
+        return self.problem.state(values, pose.result, pose.history)
+
+    def _reached_at_once(self, state: InverseState, values: Vector) -> InverseState | None:
+        """The same from a state close by, by a single increment while that does as well as many."""
+        if self._turns:
+            return self._travelled(values)
+        path, contractions = self.problem.simulation.path, self.problem.bounds.spread @ values
+        result, history = path.at_once(contractions, self._origin, state.result)
+        if not _sound(result) or result.stiffness is None:
+            return None
+        return self.problem.state(values, result, history, whole=False)
+
+    def _idled(self, state: InverseState) -> InverseState:
+        """The state with slack channels where they should be, at the end of the way to these contractions."""
+        idle = self.problem.idle(state)
+        return state if idle is state else self._travelled(idle.values) or state
 
     def jump(self, values: Vector) -> InverseState | None:
         """The state to which contractions of the channels [m] lead at once from rest; None if that is none."""
@@ -55,6 +90,9 @@ class InverseSearch:
     def approach(self, state: InverseState, values: Vector) -> InverseState | None:
         """The state at other contractions, near enough to equilibrium to go on; None if no stable one is found."""
         self.solves += 1
+        if self._remembers:
+            near = self._reached_at_once(state, values)
+            return near and self.problem.idle(near)
         contractions = self.problem.bounds.spread @ values
         result = state.result
         far = (np.abs(values - state.values) > _FAR * self.problem.bounds.span).any()
@@ -80,13 +118,20 @@ class InverseSearch:
 
     def renewed(self, state: InverseState) -> InverseState:
         """A state of another search of the same robot, in the eyes of this one."""
-        return self.problem.idle(self.problem.state(state.values, state.result))
+        history = state.history if self._remembers else None
+        return self.problem.idle(self.problem.state(state.values, state.result, history))
 
     def sharpened(self, state: InverseState) -> InverseState | None:
         """The same contractions at equilibrium."""
         if state.sharp:
             return state
         self.solves += 1
+        if self._remembers:
+            whole = self._travelled(state.values)
+            if whole is not None:
+                apart = np.abs(whole.result.nodes - state.result.nodes).max()
+                self._turns = self._turns or bool(apart > _APART * self.problem.simulation.robot.body.mesh.size)
+            return whole
         contractions = self.problem.bounds.spread @ state.values
         result = self.problem.simulation.solver.relax(
             state.result.nodes, contractions, state.result.stiffness, exact=True
@@ -118,6 +163,9 @@ class InverseSearch:
 
     def _relaxed(self, values: Vector, start: NewtonResult) -> InverseState | None:
         """By Newton alone, to the end: what takes longer is better reached in smaller steps."""
+        if self._remembers:
+            found = self._travelled(values)
+            return found and self._idled(found)
         result = self.solver.relax(
             start.nodes, self.problem.bounds.spread @ values, start.stiffness, iterations=_ITERATIONS
         )
@@ -128,6 +176,7 @@ _RELAXATIONS = 6  # steps of Newton towards an equilibrium before stronger means
 _ITERATIONS = 30  # steps of Newton before an equilibrium is given up
 _FAR = 0.02  # a step of more than this share of a channel's range is far: it takes more than one step of Newton
 _LOOSE = 0.1  # force left over after these, as a share of the largest tension
+_APART = 1e-8  # ways that end within this share of the body's size end in the same pose
 _LEFT = 0.2  # an equilibrium is near enough when what is left is this share of the last step of Newton
 _HARDLY = 1e-3  # a channel whose tautest cable pulls less than this share of the largest tension may as well be slack
 
@@ -135,6 +184,16 @@ _HARDLY = 1e-3  # a channel whose tautest cable pulls less than this share of th
 def _sound(result: NewtonResult) -> bool:
     """Whether it is a stable equilibrium."""
     return result.converged and result.stable
+
+
+def _begun(pose: SolvedPose) -> SolvedPose:
+    """The pose, if a search can begin from it."""
+    if not _sound(pose.result):
+        raise NotConvergedError(
+            f"inverse kinematics finds no stable equilibrium to begin from: {pose.result.reason}; give a start",
+            pose.result,
+        )
+    return pose
 
 
 EXCESS = 1e-6  # a tension may exceed its limit by this share
@@ -210,7 +269,7 @@ class Descent:
 def reached_pose(search: InverseSearch, found: Descent, target: Pose | None) -> ReachedPose:
     """Pose that was found, with how near it is to an optimum and the limits that hold."""
     state, problem = found.state, search.problem
-    pose = problem.simulation.posed(problem.bounds.spread @ state.values, state.result)
+    pose = problem.simulation.posed(problem.bounds.spread @ state.values, state.result, state.history)
     return ReachedPose(
         target=target,
         pose=pose,

@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
 from hydrostat.ik.limits import Bounds
-from hydrostat.ik.objectives.objective import Moves, Posture, follows
+from hydrostat.ik.objectives.objective import Moves, Posture, follows, rubbing_moves
 from hydrostat.mechanics import CableEnergy, Stiffness
 from hydrostat.simulation import Simulation
 
@@ -47,6 +47,8 @@ def slopes(simulation: Simulation, posture: Posture, stiffness: Stiffness, taut:
 
     A slack cable has none (E15); those in `taut` are taken as if they had just become taut.
     """
+    if simulation.friction is not None:
+        return rubbing_moves(simulation, simulation.friction, posture, stiffness, taut)
     cables = simulation.cables
     loose = np.zeros(len(cables.winches), dtype=bool)
     loose[taut] = posture.elongations[taut] <= 0

@@ -64,6 +64,11 @@ class InverseState:
     sharp: bool  # whether the nodes rest
 
     @property
+    def history(self) -> Vector:
+        """What the physics remember of the way there."""
+        return self.posture.history
+
+    @property
     def error(self) -> float:
         """The largest error that is left of a goal [m]; infinite without goals."""
         return max(self.errors.values(), default=np.inf)
@@ -91,24 +96,22 @@ class InverseProblem:
     ) -> None:
         """State what is sought; if `ready`, slack cables are kept just short of taut, so that they can join at once.
 
-        A robot without cables, or one whose cables have friction, is an InputError.
+        A robot without cables, or physics beside the cables that remember the way, is an InputError.
         """
         robot = simulation.robot
         if not robot.cables:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
-        if simulation.assembly.has_history:
-            raise InputError(
-                "cables with friction end in another pose for every way there, so no contractions belong to a pose; "
-                "set friction = 0 to find some, then simulate them with friction"
-            )
-        others = [energy for energy in simulation.assembly.energies if energy is not simulation.cables]
+        own = simulation.friction or simulation.cables
+        others = [energy for energy in simulation.assembly.energies if energy is not own]
         idle = simulation.robot.body.mesh.nodes, np.zeros(len(robot.winches))
-        if any(energy.controls is not None or energy.coupling(*idle) is not None for energy in others):
+        if any(
+            energy.controls is not None or energy.has_history or energy.coupling(*idle) is not None for energy in others
+        ):
             raise InputError(
-                "inverse kinematics knows no energy beside the cables that follows winches or couples many nodes; "
-                "leave it out of the simulation's energies"
+                "inverse kinematics knows no energy beside the cables that follows winches, remembers the way or "
+                "couples many nodes; leave it out of the simulation's energies"
             )
         self.simulation, self.terms, self.bounds, self.options = simulation, tuple(terms), bounds, options
         size = robot.body.mesh.size
@@ -117,12 +120,18 @@ class InverseProblem:
         self._size = size
         self._ready = ready
 
-    def state(self, values: Vector, result: NewtonResult) -> InverseState:
-        """State of nodes near equilibrium: what the terms see where these come to rest, to first order."""
+    def state(
+        self, values: Vector, result: NewtonResult, history: Vector | None = None, *, whole: bool = True
+    ) -> InverseState:
+        """State of nodes near equilibrium: what the terms see where these come to rest, to first order.
+
+        Where the way there counts, it has left `history`, and the nodes rest already; `whole` tells whether all of it
+        was followed.
+        """
         contractions = self.bounds.spread @ values
-        sharp = result.residual <= self.simulation.allowed(result.nodes, contractions)
-        nodes = result.nodes if sharp else self._resting(result, contractions)
-        posture = posture_of(self.simulation, nodes, contractions)
+        sharp = result.residual <= self.simulation.allowed(result.nodes, contractions) if history is None else whole
+        nodes = result.nodes if sharp or history is not None else self._resting(result, contractions)
+        posture = posture_of(self.simulation, nodes, contractions, history)
         errors: dict[str, float] = {}
         for term in self.terms:
             errors.update(term.errors(posture))
@@ -157,7 +166,11 @@ class InverseProblem:
             step = least_squares(matrix, right, np.vstack([eye, -eye]), np.concatenate([up, down]))
             if step is not None:
                 values[slack] = state.values[slack] + self.bounds.span[slack] * np.clip(step, -down, up)
-        return state if (values == state.values).all() else self.state(values, state.result)
+        return state if (values == state.values).all() else self._idled(state, values)
+
+    def _idled(self, state: InverseState, values: Vector) -> InverseState:
+        history = state.history if self.simulation.assembly.has_history else None
+        return self.state(values, state.result, history, whole=False)
 
     def step(self, state: InverseState, weight: float, radius: float, curvature: np.ndarray | None = None) -> ModelStep:
         """Where to go from a state: contractions of the channels [m], and what that promises."""
@@ -233,5 +246,8 @@ def _full_tension(simulation: Simulation) -> float:
     """What the hardest cable would pull at the full travel of its winch, were the body linear [N]."""
     robot, cables = simulation.robot, simulation.cables
     travel = cables.taken(np.array([winch.travel for winch in robot.winches]))
-    compliance = simulation.stiffness(simulation.rest).compliance.diagonal()
+    springs = simulation.stiffness(simulation.rest).compliance
+    owners = np.arange(len(robot.cables)) if simulation.friction is None else simulation.friction.owners
+    joined = (owners == np.arange(len(robot.cables))[:, None]).astype(float)  # spans of a cable are springs in a row
+    compliance = (joined @ springs @ joined.T).diagonal()
     return float((travel / (1.0 / cables.law.stiffness + compliance)).max())

@@ -180,15 +180,6 @@ _BETTER = 0.01  # a search from rest is better when its error is smaller by this
 _TELL = 1e-5  # and by this share of the body's size
 
 
-def check_robot(simulation: Simulation) -> None:
-    """Refuse a robot whose poses do not follow from contractions (InputError: cables with friction)."""
-    if simulation.assembly.has_history:
-        raise InputError(
-            "cables with friction end in another pose for every way there, so a trajectory cannot be found; "
-            "set friction = 0 to find one, then simulate it with friction"
-        )
-
-
 def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: SolvedPose) -> None:
     """Refuse a pose that inverse kinematics would not have found; its tensions are told in the report instead.
 

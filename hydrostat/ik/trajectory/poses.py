@@ -63,10 +63,14 @@ def _go(simulation: Simulation, pose: SolvedPose, goal: Vector, jump: float, hal
     if (pose.contractions == goal).all():
         return pose, 0.0
     predicted = _predicted(simulation, pose, goal)
-    result = simulation.solver.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
-    distance = largest_distance(result.nodes, predicted)
-    if result.converged and result.stable and distance <= jump:
-        return simulation.posed(goal, result), 0.0
+    if simulation.assembly.has_history:
+        found = simulation.solve(goal, start=pose, strict=False)
+    else:
+        result = simulation.solver.relax(pose.nodes, goal, simulation.stiffness(pose), iterations=_ITERATIONS)
+        found = simulation.posed(goal, result)
+    distance = largest_distance(found.nodes, predicted)
+    if found.result.converged and found.result.stable and distance <= jump:
+        return found, 0.0
     if halvings:
         middle, first = _go(simulation, pose, 0.5 * (pose.contractions + goal), jump, halvings - 1)
         if not middle.result.converged:

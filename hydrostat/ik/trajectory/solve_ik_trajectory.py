@@ -12,7 +12,7 @@ from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.objectives.objective import Objective
 from hydrostat.ik.search.problem import InverseOptions
 from hydrostat.ik.trajectory.course import ByWinch, Course, Pace, StraightCourse, earliest, linear
-from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes, check_given, check_robot
+from hydrostat.ik.trajectory.keys import Found, Key, Keyframe, KeySearch, as_keyframes, check_given
 from hydrostat.ik.trajectory.poses import Tell, follow
 from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory, legs_of, stray
 from hydrostat.simulation import Simulation, SolvedPose
@@ -57,7 +57,9 @@ def solve_ik_trajectory(
 
     "smooth": contractions are C2 in time and pass keyframes without a stop where they can. "linear": contractions go
     along lines, as the thesis has it; their speed changes at once. "straight": markers go along straight lines.
-    Keyframes without times are reached as soon as the limits allow. docs/theory/trajectories.md.
+    Keyframes without times are reached as soon as the limits allow. Where cables rub, each keyframe is found for a way
+    straight from the one before, and the poses are those of the way that is played, which remembers all of it.
+    docs/theory/trajectories.md.
 
     Args:
         simulation: the robot's physics.
@@ -75,10 +77,9 @@ def solve_ik_trajectory(
 
     Raises:
         InputError: keyframes, limits or options that do not fit, a given pose of another robot or out of the limits,
-            times that are too short for them, or cables with friction.
+            or times that are too short for them.
         NotConvergedError: no equilibrium somewhere on the way.
     """
-    check_robot(simulation)
     chosen = options or TrajectoryOptions()
     kind = member(PathKind, path, what="path")
     frames = as_keyframes(keyframes)
