@@ -175,7 +175,7 @@ def test_a_pose_is_kept_when_nothing_changes() -> None:
     assert again.tensions == pytest.approx(pose.tensions, rel=1e-6)
 
 
-def test_what_friction_does_not_allow_is_refused() -> None:
+def test_motion_in_time_is_refused() -> None:
     simulation = Simulation(wavy_strip(0.3))
     with pytest.raises(InputError, match="cables with friction cannot move in time yet"):
         simulation.step(simulation.still(), PULL, 0.01)

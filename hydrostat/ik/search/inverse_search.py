@@ -67,12 +67,12 @@ class InverseSearch:
             return None
         return self.problem.state(values, pose.result, pose.history)
 
-    def _reached_at_once(self, state: InverseState, values: Vector) -> InverseState | None:
-        """The same from a state close by, by a single increment while that does as well as many."""
+    def _reached_at_once(self, near: NewtonResult, values: Vector) -> InverseState | None:
+        """The same from nodes close by, by a single increment while that does as well as many."""
         if self._turns:
             return self._travelled(values)
         path, contractions = self.problem.simulation.path, self.problem.bounds.spread @ values
-        result, history = path.at_once(contractions, self._origin, state.result)
+        result, history = path.at_once(contractions, self._origin, near)
         if not _sound(result) or result.stiffness is None:
             return None
         return self.problem.state(values, result, history, whole=False)
@@ -85,13 +85,18 @@ class InverseSearch:
     def jump(self, values: Vector) -> InverseState | None:
         """The state to which contractions of the channels [m] lead at once from rest; None if that is none."""
         self.solves += 1
-        return self._relaxed(values, self._result(self.problem.simulation.rest))
+        simulation = self.problem.simulation
+        if self._remembers:
+            begin = self._origin or simulation.rest
+            near = self._reached_at_once(replace(begin.result, stiffness=simulation.stiffness(begin)), values)
+            return self.problem.idle(near) if near else self._relaxed(values, begin.result)
+        return self._relaxed(values, self._result(simulation.rest))
 
     def approach(self, state: InverseState, values: Vector) -> InverseState | None:
         """The state at other contractions, near enough to equilibrium to go on; None if no stable one is found."""
         self.solves += 1
         if self._remembers:
-            near = self._reached_at_once(state, values)
+            near = self._reached_at_once(state.result, values)
             return near and self.problem.idle(near)
         contractions = self.problem.bounds.spread @ values
         result = state.result
