@@ -1,5 +1,6 @@
 """The `hydrostat` command."""
 
+import gc
 import os
 import sys
 from collections.abc import Callable
@@ -69,6 +70,7 @@ def version(show: bool = typer.Option(False, "--version", help="Print the versio
 def main() -> None:
     """Run a command. Exit codes: 0 done, 1 ran and did not succeed, 2 the input is wrong, 130 stopped by Ctrl-C."""
     heed_interrupts()
+    gc.set_threshold(50_000, *gc.get_threshold()[1:])  # looking for garbage is a tenth of a short command
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
     try:
         app()

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Bool
-from scipy.optimize import minimize
 from shapely import contains_xy
 
 from hydrostat.arrays import Elements, Points, Vector
@@ -85,6 +84,8 @@ def _energy(points: Points, triangles: Elements, power: float) -> tuple[float, P
 
 def _minimise(draft: Draft, power: float, iterations: int, slide: bool) -> Draft:
     """The draft moved at fixed triangles, its boundary nodes only if they may slide."""
+    from scipy.optimize import minimize  # Imported here: bodies in space are read sooner.
+
     slides = ~np.concatenate([part.fixed for part in draft.divisions]) & slide
     triangles = draft.triangles
     start = np.concatenate([np.zeros(int(slides.sum())), draft.interior.ravel()])
