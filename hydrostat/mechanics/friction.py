@@ -2,9 +2,10 @@
 
 from copy import copy
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
@@ -12,6 +13,30 @@ from hydrostat.mechanics.chain_law import ChainLaw
 from hydrostat.mechanics.energy import Blocks, Compliance, Coupling, Energy, HessianBlocks, Small
 from hydrostat.mechanics.tension_law import TensionLaw
 from hydrostat.mechanics.turns import Turns
+
+
+class LockedTensions(NamedTuple):
+    """Tensions of the spans, and how they change while points at the capstan's limit slip on and the others stick.
+
+    Attributes:
+        tensions: T of each span [N].
+        springs: dT/ds of each span alone [N/m].
+        stretches: own elongation of each span after all slips [m].
+        by_elongation: dT / d elongations [N/m].
+        by_limit: dT / d limits of friction.
+        limits_by_tension: d limits / dT at fixed angles.
+        limits_by_angle: d limits / d angles [N/rad].
+        limits_by_friction: d limits / d coefficients mu [N].
+    """
+
+    tensions: Vector
+    springs: Vector
+    stretches: Vector
+    by_elongation: Small
+    by_limit: Small
+    limits_by_tension: Small
+    limits_by_angle: Vector
+    limits_by_friction: Vector
 
 
 class FrictionCableEnergy(Energy):
@@ -207,10 +232,7 @@ class FrictionCableEnergy(Energy):
         turned -= turned[self.law.starts[self._owners]]
         little = self.law.stiffness * self.law.smoothing * _JUST_TAUT
         tensions = np.where(joining, little * np.exp(-turned), tensions)
-        drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
-        near = _AT_THE_LIMIT * tensions.max(initial=0.0)
-        slipping = joining | (np.abs(drops) >= self.capstan_limits(nodes, controls) - near)
-        by_elongation, by_limit = self.law.locked(tensions, np.sign(drops) * slipping)
+        by_elongation, by_limit = self._locked(nodes, controls, tensions, joining)
         pulled = np.zeros((len(tensions), len(controls)))
         pulled[np.arange(len(tensions)), self._spans.winches] = self._by_control(by_elongation)
         unit = np.eye(len(tensions))
@@ -219,15 +241,62 @@ class FrictionCableEnergy(Energy):
         )
         return np.linalg.solve(slopes, pulled)
 
+    def locked(self, nodes: Nodes, controls: Vector) -> LockedTensions:
+        """Tensions at an equilibrium with the slopes that they and the capstan's limits have there."""
+        tensions = self.span_tensions(nodes, controls)
+        by_elongation, by_limit = self._locked(nodes, controls, tensions, np.zeros(len(tensions), dtype=bool))
+        angles, larger = self.angles(nodes), np.maximum(tensions, np.append(0.0, tensions[:-1]))
+        held = np.exp(-self.friction * angles) * larger
+        pulls = tensions > 0
+        stretches = np.where(pulls, self.law.elongation(tensions), 0.0)
+        return LockedTensions(
+            tensions=tensions,
+            springs=TensionLaw.tangent(self.law, stretches),
+            stretches=stretches,
+            by_elongation=by_elongation,
+            by_limit=by_limit,
+            limits_by_tension=self._by_tension(nodes, tensions),
+            limits_by_angle=self.friction * held,
+            limits_by_friction=angles * held,
+        )
+
+    @property
+    def spans(self) -> CableEnergy:
+        """The spans as cables of their own, as if nothing slipped."""
+        return self._spans
+
+    @property
+    def turns(self) -> Turns:
+        """Where the cables turn."""
+        return self._turns
+
+    def turn_gradients(self, nodes: Nodes) -> Float[np.ndarray, "dofs spans"]:
+        """D angles / d nodes [rad/m]."""
+        return self._turns.gradients(nodes, len(self.slips))
+
+    def _locked(
+        self, nodes: Nodes, controls: Vector, tensions: Vector, joining: Bool[np.ndarray, " spans"]
+    ) -> tuple[Small, Small]:
+        """dT/d elongations and dT/d limits while cable slips where it is at the limit, or joins."""
+        drops = np.where(self._firsts, 0.0, np.append(0.0, -np.diff(tensions)))
+        near = _AT_THE_LIMIT * tensions.max(initial=0.0)
+        slipping = joining | (np.abs(drops) >= self.capstan_limits(nodes, controls) - near)
+        return self.law.locked(tensions, np.sign(drops) * slipping)
+
+    def _by_tension(self, nodes: Nodes, tensions: Vector) -> Small:
+        """D capstan limits / d tensions at fixed angles."""
+        before = np.append(0.0, tensions[:-1])
+        slopes = np.zeros((len(tensions), len(tensions)))
+        span = np.arange(len(tensions))
+        slopes[span, span - (before > tensions)] = -np.expm1(-self.friction * self.angles(nodes))
+        return slopes
+
     def _limit_slopes(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> Small:
         """D capstan limits / d tensions, of the body that gives way to these too."""
         before = np.append(0.0, tensions[:-1])
-        angles = self.friction * self.angles(nodes)
-        slopes = np.zeros((len(tensions), len(tensions)))
-        span = np.arange(len(tensions))
-        slopes[span, span - (before > tensions)] = -np.expm1(-angles)
-        turned = self._turns.gradients(nodes, len(tensions)).T @ compliance.moves
-        return slopes - (self.friction * np.exp(-angles) * np.maximum(tensions, before))[:, None] * turned
+        held = np.exp(-self.friction * self.angles(nodes)) * np.maximum(tensions, before)
+        turned = self.turn_gradients(nodes).T @ compliance.moves
+        return self._by_tension(nodes, tensions) - (self.friction * held)[:, None] * turned
 
     def _pull(self, nodes: Nodes, forces: Vector) -> Blocks:
         return self._spans.length_gradients(nodes) * forces[self._spans.cables][:, None, None]

@@ -34,15 +34,19 @@ class Turns:
 
         A straight run has none: its angle has a kink there.
         """
-        (before, after), lengths = self._directions(nodes)
-        cosine = np.einsum("td,td->t", before, after)[:, None]
-        sine = np.maximum(np.sin(self.angles(nodes)), _STRAIGHT)[:, None]
-        slopes = np.stack([(cosine * before - after) / sine, (cosine * after - before) / sine]) / lengths[..., None]
+        slopes = self.slopes(nodes)
         columns = np.zeros((*nodes.shape, count))
         spread = self.weights[..., None] * slopes[:, :, None, :]
         axes = np.arange(nodes.shape[1])
         np.add.at(columns, (self.stencils[..., None], axes, self.points[:, None, None]), spread)
         return columns.reshape(nodes.size, count)
+
+    def slopes(self, nodes: Nodes) -> Float[np.ndarray, "2 turns dim"]:
+        """Derivative of each angle by the vectors along the segments before and after it [rad/m]; as above."""
+        (before, after), lengths = self._directions(nodes)
+        cosine = np.einsum("td,td->t", before, after)[:, None]
+        sine = np.maximum(np.sin(self.angles(nodes)), _STRAIGHT)[:, None]
+        return np.stack([(cosine * before - after) / sine, (cosine * after - before) / sine]) / lengths[..., None]
 
     def _directions(self, nodes: Nodes) -> tuple[Float[np.ndarray, "2 turns dim"], Float[np.ndarray, "2 turns"]]:
         spans = np.einsum("stc,stcd->std", self.weights, nodes[self.stencils]) + self.offsets

@@ -28,6 +28,7 @@ class Sensitivity:
         routes: by the rest position of each point, of each cable [1/m]; both its place in the body and the rest
             lengths beside it change. The first point of a cable of a winch in the world moves in space.
         cable_stiffness: of each cable [m/N].
+        friction: by the coefficient mu of each cable that has some; 0 for the others.
         pin_stiffness: of each pin [m/N].
         young: Young's modulus [1/Pa].
         poisson: Poisson's ratio [-].
@@ -39,6 +40,7 @@ class Sensitivity:
     slack: Vector
     routes: tuple[RouteSlopes, ...]
     cable_stiffness: Vector
+    friction: Vector
     pin_stiffness: Vector
     young: float
     poisson: float
@@ -75,15 +77,8 @@ def sensitivity(
     Raises:
         InputError: no solved pose or one of another robot, or cotangents of a wrong shape or not finite.
     """
-    if not isinstance(pose, SolvedPose):
-        raise InputError(f"an adjoint needs a SolvedPose, as solve() returns it, not a {type(pose).__name__}")
-    if pose.nodes.shape != assembly.shape or pose.tensions.shape != cables.winches.shape:
-        raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {assembly.shape}")
+    nodes, tensions = cotangents(pose, assembly.shape, len(cables.winches), nodes, tensions)
     assembly = assembly.near(pose.nodes)
-    nodes = _checked("nodes", nodes, assembly.shape)
-    tensions = _checked(
-        "tensions", np.zeros(len(cables.winches)) if tensions is None else tensions, pose.tensions.shape
-    )
     elongations = cables.elongations(pose.nodes, pose.contractions)
     tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
     columns = cables.columns(pose.nodes)
@@ -94,17 +89,35 @@ def sensitivity(
     by_tension = tensions - columns.T @ field
     by_elongation = tangents * by_tension
     field = field.reshape(assembly.shape)
-    young, poisson, density, thickness, pins = _by_body(body, pose, field)
+    young, poisson, density, thickness, pins = by_body(body, pose, field)
     return Sensitivity(
         contractions=by_controls,
         slack=-by_elongation,
         routes=points.by_cable(by_routes(points, cables, pose.nodes, field[None], by_elongation[None], pulls)[0]),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
+        friction=np.zeros(len(tensions)),
         pin_stiffness=pins,
         young=young,
         poisson=poisson,
         density=density,
         thickness=thickness,
+    )
+
+
+def cotangents(
+    pose: SolvedPose, shape: tuple[int, ...], cables: int, nodes: Nodes, tensions: Vector | None
+) -> tuple[Nodes, Vector]:
+    """dL/dx and dL/dT as numbers, for a robot with nodes of this shape and so many cables.
+
+    Raises:
+        InputError: as for `sensitivity`.
+    """
+    if not isinstance(pose, SolvedPose):
+        raise InputError(f"an adjoint needs a SolvedPose, as solve() returns it, not a {type(pose).__name__}")
+    if pose.nodes.shape != shape or pose.tensions.shape != (cables,):
+        raise InputError(f"the pose is of another robot: its nodes have shape {pose.nodes.shape}, not {shape}")
+    return _checked("nodes", nodes, shape), _checked(
+        "tensions", np.zeros(cables) if tensions is None else tensions, (cables,)
     )
 
 
@@ -118,7 +131,7 @@ def _checked(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.ndarray
     return values
 
 
-def _by_body(body: BodyPhysics, pose: SolvedPose, field: Nodes) -> tuple[float, float, float, float | None, Vector]:
+def by_body(body: BodyPhysics, pose: SolvedPose, field: Nodes) -> tuple[float, float, float, float | None, Vector]:
     """By Young's modulus, Poisson's ratio, density, thickness and the stiffness of pins."""
     material = body.material
     works: dict[str, Vector] = {}
@@ -155,12 +168,13 @@ def by_routes(
     fields: Float[np.ndarray, "rows nodes dim"],
     by_elongation: Float[np.ndarray, "rows cables"],
     pulls: Vector,
+    by_rest_length: Float[np.ndarray, "rows cables"] | None = None,
 ) -> Float[np.ndarray, "rows points dim"]:
     """Slopes of some numbers by the rest position of every point of every cable.
 
     A segment with span d, at rest D, has the length l = sqrt(d^2 + r^2), at rest L, with r in proportion to |D|: all
     of these move, and so does the part of the field along it, q = e . d / l with e the difference of the field between
-    its ends. The slope is that of by_elongation (l - L) - T q.
+    its ends. The slope is that of by_elongation (l - L) - T q; by_rest_length stands at L if it is given.
     """
     spans = points.spans(points.positions(nodes))
     rests = points.spans(points.rests)
@@ -169,11 +183,12 @@ def by_routes(
     lengths, rest_lengths = (np.sqrt((part**2).sum(axis=1) + square) for part in (spans, rests))
     units = spans / lengths[:, None]
     along = (moves * units).sum(axis=-1)
-    lever, pull = by_elongation[:, points.cables], pulls[points.cables]
+    lever, pull = by_elongation[:, cables.cables], pulls[cables.cables]
+    held = lever if by_rest_length is None else by_rest_length[:, cables.cables]
     by_span = (lever + pull * along / lengths)[..., None] * units - (pull / lengths)[:, None] * moves
     rounded = square / lengths * (lever + pull * along / lengths)
     tiny = np.finfo(float).tiny
-    by_rest = ((rounded - lever * rest_lengths) / np.maximum((rests**2).sum(axis=1), tiny))[..., None] * rests
+    by_rest = ((rounded - held * rest_lengths) / np.maximum((rests**2).sum(axis=1), tiny))[..., None] * rests
     return (
         points.pulled_back(nodes, points.gathered(by_span))
         + points.held_back(points.gathered(by_rest))

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from jaxtyping import Int
 
 from hydrostat.mechanics import CableEnergy, CableSegments, FrictionCableEnergy, TensionLaw, Turns
 from hydrostat.robot import Robot
@@ -46,6 +47,15 @@ def _turns(robot: Robot, points: RoutePoints) -> Turns:
     A corner is where two bare segments meet, or where a sheath between two of them begins and ends. Nothing rubs at the
     ends of a cable: before its first bare segment it is the winch that moves it, behind its last one nothing does.
     """
+    (before, after), behind = turn_starts(robot)
+    stencils, weights, offsets = (
+        np.stack(parts) for parts in zip(points.segments(before), points.segments(after), strict=True)
+    )
+    return Turns(stencils=stencils, weights=weights, offsets=offsets, points=behind)
+
+
+def turn_starts(robot: Robot) -> tuple[Int[np.ndarray, "2 turns"], Int[np.ndarray, " turns"]]:
+    """First points of the segments before and after each of these corners, and which bare segment comes behind it."""
     none = np.zeros(0, dtype=np.int64)
     corners, first, begin = [(none, none, none)], 0, 0
     for cable in robot.cables:
@@ -55,10 +65,7 @@ def _turns(robot: Robot, points: RoutePoints) -> Turns:
             corners.append((begin + before, begin + after, first + behind))
         first, begin = first + len(bare), begin + len(cable.points)
     before, after, behind = (np.concatenate(parts) for parts in zip(*corners, strict=True))
-    stencils, weights, offsets = (
-        np.stack(parts) for parts in zip(points.segments(before), points.segments(after), strict=True)
-    )
-    return Turns(stencils=stencils, weights=weights, offsets=offsets, points=behind)
+    return np.stack([before, after]), behind
 
 
 def _corners(bare: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -33,7 +33,7 @@ def rig_slopes(simulation: Simulation, pose: SolvedPose, markers: list[int]) -> 
     """Slopes of some markers and of all tensions at an equilibrium, by one adjoint solve for all rows.
 
     Args:
-        simulation: of a robot whose cables have no friction.
+        simulation: of the robot; where its cables rub they slip on or stick as for `Simulation.jacobian`.
         pose: an equilibrium of it.
         markers: numbers of the markers asked for.
 
@@ -52,6 +52,9 @@ def rig_slopes(simulation: Simulation, pose: SolvedPose, markers: list[int]) -> 
             rows[count * dim + axis, anchors.stencils[marker] * dim + axis] = anchors.weights[marker]
     own = np.zeros((len(rows), len(tangents)))
     own[len(markers) * dim :] = np.eye(len(tangents))
+    if simulation.friction is not None:
+        found = simulation.rubbing_slopes(pose, (rows, own))
+        return RigSlopes(found.contractions, found.slack, found.ratios, found.points, found.fields)
     rows += (own * tangents) @ columns.T
     fields = simulation.response(pose, rows.T).T
     by_elongation = tangents * (own - fields @ columns)

@@ -9,9 +9,9 @@ from jaxtyping import Float
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors, locate
-from hydrostat.mechanics import Assembly, Energy, NewtonOptions, NewtonResult, Stiffness
+from hydrostat.mechanics import Assembly, Energy, FrictionCableEnergy, NewtonOptions, NewtonResult, Stiffness
 from hydrostat.robot import Robot
-from hydrostat.simulation.adjoint import Sensitivity, sensitivity
+from hydrostat.simulation.adjoint import Sensitivity, cotangents, sensitivity
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
@@ -22,6 +22,7 @@ from hydrostat.simulation.obstacles import obstacles
 from hydrostat.simulation.profile import Profile
 from hydrostat.simulation.response import response
 from hydrostat.simulation.route_points import RoutePoints, route_points
+from hydrostat.simulation.rubbing_slopes import RubbingSlopes, rubbing_sensitivity, rubbing_slopes
 from hydrostat.simulation.solved_pose import Contractions, SolvedPose, check_pose, contraction_values
 from hydrostat.simulation.static_solver import StaticSolver
 
@@ -195,15 +196,14 @@ class Simulation:
         if not self.assembly.has_history:
             right = -self.assembly.near(pose.nodes).control_derivative(pose.nodes, pose.contractions).toarray()
             return self.response(pose, right).reshape(*pose.nodes.shape, -1)
-        if self.friction is None or not self._plain:
-            raise InputError("physics that remember the way have a derivative only for cables with friction alone")
-        stiffness = self._regular(pose)
-        cables = self.friction.resumed(pose.history, pose.nodes, pose.contractions)
+        cables, stiffness = self._rubbing(pose)
         compliance = stiffness.compliance_of(slice(0, len(pose.history)))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
 
     def adjoint(self, pose: SolvedPose, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
         """Sensitivities of a number L of an equilibrium to contractions, slack, routes, material, by one solve (E16).
+
+        Cables with friction slip on or stick as for `jacobian`; what has slipped before the pose was begun from stays.
 
         Args:
             pose: an equilibrium.
@@ -211,9 +211,13 @@ class Simulation:
             tensions: dL / d tensions; none if left out.
 
         Raises:
-            InputError: a cable with friction, whose pose depends on the way there; cotangents of a wrong shape.
+            InputError: other energies that remember the way; cotangents of a wrong shape.
             NotConvergedError: as for `jacobian`.
         """
+        if self.assembly.has_history:
+            right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
+            slopes = self.rubbing_slopes(pose, (right.reshape(1, -1), pulls[None]))
+            return rubbing_sensitivity(self.body, self.route_points, pose, slopes)
         return sensitivity(
             self.body,
             self.assembly,
@@ -225,6 +229,15 @@ class Simulation:
             response=partial(self.response, pose),
         )
 
+    def rubbing_slopes(self, pose: SolvedPose, rows: tuple[np.ndarray, np.ndarray]) -> RubbingSlopes:
+        """Slopes of numbers of a pose whose cables rub: `rows` are by its nodes, then by tensions; as for `adjoint`."""
+        return rubbing_slopes(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
+
+    def _rubbing(self, pose: SolvedPose) -> tuple[FrictionCableEnergy, Stiffness]:
+        if self.friction is None or not self._plain:
+            raise InputError("physics that remember the way have a derivative only for cables with friction alone")
+        return self.friction.resumed(pose.history, pose.nodes, pose.contractions), self._regular(pose)
+
     def response(
         self, pose: SolvedPose, forces: Float[np.ndarray, "dofs columns"]
     ) -> Float[np.ndarray, "dofs columns"]:
@@ -235,14 +248,11 @@ class Simulation:
             forces: on every degree of freedom [N], a column for each case.
 
         Raises:
-            InputError: a cable with friction, whose pose depends on the way there.
+            InputError: physics that remember the way, such as cables with friction.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
         if self.assembly.has_history:
-            raise InputError(
-                "a pose with friction has no adjoint, as it depends on the way there; set friction = 0 and leave out "
-                "other energies that remember the way"
-            )
+            raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
         stiffness = self._regular(pose)
         return response(self.assembly.near(pose.nodes), stiffness, (pose.nodes, pose.contractions), forces)
 

@@ -66,7 +66,7 @@ def solve_torch(
         start: a pose to begin from; the rest pose if left out.
 
     Raises:
-        InputError: values that the robot refuses, a wrong shape, or a cable with friction that needs derivatives.
+        InputError: values that the robot refuses, or a wrong shape.
         NotConvergedError: as for `Simulation.solve`; in `backward` as for `Simulation.jacobian`.
     """
     robot = simulation.robot
@@ -90,8 +90,6 @@ class _Equilibrium(torch.autograd.Function):
     @staticmethod
     def forward(ctx: Any, *given: Any) -> tuple[Tensor, Tensor, SolvedPose]:
         simulation, start, contractions, *others = given
-        if simulation.assembly.has_history and any(ctx.needs_input_grad):
-            raise InputError("a pose with friction has no adjoint, as it depends on the way there; set friction = 0")
         if any(value is not None for value in others):
             numbers = (None if value is None else value.detach().numpy() for value in others)
             robot = _altered(simulation.robot, *numbers)

@@ -321,14 +321,6 @@ def test_only_a_solved_pose_has_an_adjoint(pose: Any, unchecked: None) -> None:
         simulation.adjoint(simulation.rest, words)
 
 
-def test_friction_is_refused() -> None:
-    robot = strip()
-    simulation = Simulation(with_cable(robot, 0, replace(robot.cables[0], friction=0.2)))
-    pose = simulation.solve(np.array([0.01, 0.0]))
-    with pytest.raises(InputError, match="friction has no adjoint"):
-        simulation.adjoint(pose, np.ones_like(pose.nodes))
-
-
 def test_a_robot_without_cables_has_slopes_of_its_weight() -> None:
     robot = replace(heavy_patches(strip()), winches=(), cables=())
     loss = Loss(robot, np.zeros(0))

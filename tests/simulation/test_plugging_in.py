@@ -157,7 +157,7 @@ def test_friction_and_another_memory_go_together() -> None:
 
 
 def test_inverse_kinematics_refuses_what_it_does_not_know() -> None:
-    for name, words in (("magnet", "follows winches"), ("tie", "end in another pose")):
+    for name, words in (("magnet", "follows winches"), ("tie", "remembers the way")):
         with pytest.raises(InputError, match=words):
             solve_ik(Simulation(ROBOT, energies=[toys()[name]]), {"tip": (0.19, 0.02)})
 
