@@ -1,4 +1,4 @@
-// The multifrontal factorisation A = L S L^T of supernodal.py, with products of its own in place of BLAS.
+// The multifrontal factorisation A = L S L^T of mechanics/fronts.py, with products of its own in place of BLAS.
 //
 // Panels are column by column, their columns as high as the front. Vectors read past the end of a column, never past
 // the end of an array, which must have 8 numbers to spare; what they write ends where the column does.

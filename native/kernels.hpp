@@ -13,7 +13,7 @@ struct Elements {
     double mu, lame;
 };
 
-// Where the fronts of a factorisation lie; the columns of `table` are those of `Fronts` in supernodal.py.
+// Where the fronts of a factorisation lie; the columns of `table` are those of `Fronts` in fronts.py.
 struct Fronts {
     int64_t count, dofs;
     const int64_t* table;

@@ -71,6 +71,8 @@ def solve_ik(
         begun = begun if start is None or given.rate is not None else search.begin(None)
     found = _best(search, seek(search, begun), seek)
     reached = reached_pose(search, found, target)
+    if not simulation.assembly.has_history:
+        return reached
     return replace(reached, friction_band=_band(simulation, reached.pose))
 
 

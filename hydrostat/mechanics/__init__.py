@@ -8,8 +8,8 @@ from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
 from hydrostat.mechanics.fibre import FibreEnergy
 from hydrostat.mechanics.friction import FrictionCableEnergy
 from hydrostat.mechanics.neo_hookean import NeoHookean
-from hydrostat.mechanics.newton import minimise
-from hydrostat.mechanics.newton_records import NewtonOptions, NewtonResult, Reason, RoundOff
+from hydrostat.mechanics.newton import NewtonResult, minimise
+from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
 from hydrostat.mechanics.pin import PinEnergy
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.tension_law import TensionLaw

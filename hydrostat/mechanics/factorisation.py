@@ -8,7 +8,7 @@ done once, by the `Analysis`:
 2. The elimination tree (Liu 1990), supernodes, and how much they are merged (`symbolic`).
 3. The place of every number (`supernodal.plan`).
 
-A `Factorisation` is then one call of compiled code: the multifrontal method (Duff and Reid 1983; `supernodal`). There
+A `Factorisation` is then one call of compiled code: the multifrontal method (Duff and Reid 1983; `fronts`). There
 is no pivoting: an indefinite matrix may lose digits, and one that meets a tiny pivot is called singular. That suits
 Newton, which wants to know whether a matrix is definite, and solves mostly with those that are.
 

@@ -1,6 +1,7 @@
 """Projected Newton with a line search: the statics solver."""
 
 import time
+from dataclasses import dataclass, field
 from itertools import count
 from typing import NamedTuple
 
@@ -9,9 +10,45 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.falling_mode import falling_mode
-from hydrostat.mechanics.newton_records import NewtonOptions, NewtonResult, Reason, RoundOff, furthest
+from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.warp import Warp
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NewtonResult:
+    """Where Newton stopped.
+
+    Attributes:
+        nodes: the best positions found [m]; every element has J > 0.
+        reason: why it stopped.
+        residual: largest component of a nodal force [N].
+        allowed: residual [N] at which it counts as converged.
+        energy: total energy [J].
+        iterations: steps taken.
+        stable: whether the full Hessian there is positive definite: a minimum, no saddle.
+        buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
+        stiffness: the Hessian there, factorised, or where the last step began, if that was with less than 1e-5 of the
+            applied force left over, or within the accuracy.
+        error: about how far a node is from equilibrium [m], where an accuracy was asked for, infinite where it was not
+            reached; 0 where none was asked for.
+    """
+
+    nodes: Nodes
+    reason: Reason
+    residual: float
+    allowed: float
+    energy: float
+    iterations: int
+    stable: bool
+    buckled: bool
+    stiffness: Stiffness | None = field(repr=False)
+    error: float = 0.0
+
+    @property
+    def converged(self) -> bool:
+        """Whether the residual is as small as allowed."""
+        return self.reason is Reason.CONVERGED
 
 
 def minimise(
@@ -172,7 +209,7 @@ class _EnergyDescent:
         """Whether a step with the very Hessian of a place tells that it lies as near to equilibrium as was asked."""
         if self.options.accuracy is None or not self.left < _LINEAR:
             return False
-        self.error = _MARGIN * furthest(step.reshape(place.nodes.shape))
+        self.error = _MARGIN * float(np.sqrt((step.reshape(place.nodes.shape) ** 2).sum(axis=1).max()))
         self.sharp = self.sharp or self.error <= self.options.accuracy
         return self.error <= self.options.accuracy
 

@@ -13,11 +13,11 @@ from scipy.sparse import block_diag, coo_array, csc_array, eye_array, kron
 from scipy.spatial import Delaunay
 
 from hydrostat.kernel import Compiled, Kernel
-from hydrostat.mechanics import blas, ordering, supernodal, symbolic
+from hydrostat.mechanics import blas, fronts, ordering, supernodal, symbolic
 from hydrostat.mechanics.factorisation import Analysis, Backend, Factorisation, factorise
 from hydrostat.mechanics.supernodal import SupernodalAnalysis
 
-ROOMS = (blas, ordering, supernodal, symbolic)
+ROOMS = (blas, fronts, ordering, supernodal, symbolic)
 BACKENDS: tuple[Backend, ...] = ("supernodal", "superlu")
 
 
@@ -259,10 +259,10 @@ def test_compiled_code_is_found_again_by_another_process() -> None:
     code = """
 import numpy as np
 from hydrostat.mechanics.factorisation import Analysis
-from hydrostat.mechanics import supernodal
+from hydrostat.mechanics import fronts
 factor = Analysis(np.arange(7, dtype=np.int32), np.arange(6, dtype=np.int32), dim=2).factorise(np.ones(6))
 assert (factor.solve(np.ones(6)) == 1).all()
-stats = supernodal.factorise_fronts.now.stats
+stats = fronts.factorise_fronts.now.stats
 assert stats.cache_hits and not stats.cache_misses, stats
 """
     for _ in range(2):
