@@ -104,8 +104,8 @@ def draw_dirt() -> None:
     corners = np.concatenate([corners, *(ball.vertices[ball.triangles] for ball in balls)]).reshape(-1, 3)
     dirty = Surface(corners, np.arange(len(corners)).reshape(-1, 3))
     healing = heal(dirty, resolution=3e-3)
-    places = np.array([piece.place for piece in healing.removed])
-    save_png(draw_healing(dirty, healing.surface, notes=healing.lines(), places=places), HERE / "healing.png", dpi=80)
+    figure = draw_healing(dirty, healing.surface, notes=healing.lines(), places=healing.places)
+    save_png(figure, HERE / "healing.png", dpi=80)
 
 
 def _ball(middle: tuple[float, float, float], radius: float) -> Surface:

@@ -170,9 +170,8 @@ def _from_gallery(robot: str, folder: Path, wish: _Wish) -> list[str]:
 
 def _from_drawing(path: Path, folder: Path, wish: _Wish) -> list[str]:
     from hydrostat.geometry.files.outline_file import read_drawing
-    from hydrostat.geometry.files.ply_file import write_ply
-    from hydrostat.geometry.inflate import inflate
     from hydrostat.robot import save_robot, sketch_robot
+    from hydrostat.robot.sketch_space import inflated
 
     content, file = path.read_bytes(), _file_name(path.name)
     drawing = read_drawing(content, name=file, size=wish.size)
@@ -184,7 +183,7 @@ def _from_drawing(path: Path, folder: Path, wish: _Wish) -> list[str]:
         save_robot(robot, folder)
         return notes
     wish.refuse("an inflated body is as thick as --inflate says", "thickness")
-    blown = write_ply(inflate(drawing.outline, wish.inflate, spacing=drawing.outline.size / 80))
+    blown = inflated(drawing.outline, wish.inflate)
     return [*notes, *_from_bytes(blown, f"{path.stem}.ply", folder, wish, material, size=None)]
 
 
@@ -197,8 +196,6 @@ def _from_bytes(
     content: bytes, file: str, folder: Path, wish: _Wish, material: str, *, size: float | None
 ) -> list[str]:
     """A robot from a surface; if that had to be healed, with its report and picture."""
-    import numpy as np
-
     from hydrostat.ik.first_pose import with_first_pose
     from hydrostat.plot import draw_healing, save_png
     from hydrostat.robot import replace_file, save_robot, sketch_surface
@@ -209,15 +206,14 @@ def _from_bytes(
         name=wish.robot_name,
         size=size,
         element_size=wish.element_size,
+        nodes=wish.nodes,
         material=material,
-        **({} if wish.nodes is None else {"nodes": wish.nodes}),
     )
     save_robot(with_first_pose(sketch.robot), folder)
     lines = list(sketch.healing.lines())
     if not sketch.healing.clean:
         replace_file(folder / "healing.txt", ("\n".join(lines) + "\n").encode())
-        places = np.array([piece.place for piece in sketch.healing.removed]).reshape(-1, 3)
-        figure = draw_healing(sketch.before, sketch.healing.surface, notes=lines, places=places)
+        figure = draw_healing(sketch.before, sketch.healing.surface, notes=lines, places=sketch.healing.places)
         save_png(figure, folder / "healing.png")
         lines.append(f"see {folder / 'healing.png'}; the file that came is not changed")
     return [f"surface: {line}" for line in lines]

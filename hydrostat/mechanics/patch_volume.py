@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Elements, Nodes, Vector
-from hydrostat.kernel import njit
+from hydrostat.kernel import INNER, KERNEL, njit
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.neo_hookean import NeoHookean, _displacement_gradient, _spatial_gradients
 
@@ -102,7 +102,7 @@ def _stencils(elements: Elements, starts: np.ndarray) -> tuple[np.ndarray, np.nd
     return stencils, places
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _changes(displacements, changes, stencils, starts, places, gradients, shares, axes):
     """J - 1 of each patch: the mean over its elements, by their volumes."""
@@ -117,7 +117,7 @@ def _changes(displacements, changes, stencils, starts, places, gradients, shares
         changes[patch] = mean
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(**INNER)
 @no_type_check
 def _patch_gradient(displacements, stencil, first, end, places, gradients, shares, axes, G, corners, spatials, slope):
     """J - 1 of a patch; dJ/dx at its nodes, and share x J and F^-T grad N of each of its elements."""
@@ -137,7 +137,7 @@ def _patch_gradient(displacements, stencil, first, end, places, gradients, share
     return mean
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _gradient(displacements, moduli, blocks, stencils, starts, places, gradients, shares, axes):
     """V lambda ln J / J dJ/dx of each patch."""
@@ -153,7 +153,7 @@ def _gradient(displacements, moduli, blocks, stencils, starts, places, gradients
         slope *= moduli[patch] * math.log1p(change) / (1.0 + change)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 @no_type_check
 def _hessian(displacements, moduli, projection, blocks, stencils, starts, places, gradients, shares, axes):
     """V lambda ((1 - ln J) / J^2 dJ dJ^T + ln J / J d2J) of each patch.

@@ -13,6 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import clearance, locate
 from hydrostat.geometry.healing.heal import Healing, heal
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.outline import Outline
 from hydrostat.geometry.sizing import size_for
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.robot.body import Body, Source, mesh_body
@@ -46,7 +47,7 @@ def sketch_surface(
     name: str,
     size: float | None = None,
     element_size: float | None = None,
-    nodes: int = NODES,
+    nodes: int | None = None,
     material: str = "flexfoam-it x",
 ) -> SurfaceSketch:
     """Robot from the bytes of a scan or CAD model; coordinates count in mm if the file does not say.
@@ -57,7 +58,7 @@ def sketch_surface(
         name: of the robot.
         size: longest side of the bounding box [m]; None: as the file says.
         element_size: [m]; None: so that there are about as many nodes as asked for.
-        nodes: wanted; not used with an element size.
+        nodes: wanted; None: as many as the thesis's hand has; not used with an element size.
         material: a name from the table.
 
     Raises:
@@ -67,7 +68,7 @@ def sketch_surface(
     from hydrostat.geometry.files.surface_file import read_surface
     from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 
-    known = find_material(material)
+    known, nodes = find_material(material), NODES if nodes is None else nodes
     before = read_surface(content, name=file, size=size)
     _check_scale(before.size, size)
     healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
@@ -91,6 +92,18 @@ def sketch_surface(
         healing=healing,
     )
     return SurfaceSketch(_first_robot(body, name), before, healing)
+
+
+def inflated(outline: Outline, height: float) -> bytes:
+    """Blow an outline up to a body so thick where it is thickest [m], as the bytes of a PLY file for `sketch_surface`.
+
+    Raises:
+        InputError: the height does not fit the outline, or that is too thin somewhere.
+    """
+    from hydrostat.geometry.files.ply_file import write_ply
+    from hydrostat.geometry.inflate import inflate
+
+    return write_ply(inflate(outline, height, spacing=outline.size / 80))
 
 
 def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: str = "flexfoam-it x") -> Robot:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Int
 
+from hydrostat.arrays import Points
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.healing.faults import Piece, crossing_pairs, describe_faults, pieces_of, sliver_count
 from hydrostat.geometry.healing.mend import Holes, Welded, holes_of, members_of, one_way, sides_of, weld, with_closed
@@ -34,6 +35,11 @@ class Healing:
     largest_distance: float  # between input and result [m], where both are there: not over closed holes, nor inside
     patched: float  # share of the result's area that lies over holes of the input
     clean: bool  # nothing was to be done, but for vertices in the same place
+
+    @property
+    def places(self) -> Points:
+        """Where the parts were that are not in the surface any more [m]."""
+        return np.array([piece.place for piece in self.removed]).reshape(-1, 3)
 
     def lines(self) -> tuple[str, ...]:
         """The report in plain words."""

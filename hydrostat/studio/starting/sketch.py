@@ -3,10 +3,9 @@
 from dataclasses import dataclass, replace
 from pathlib import PurePath
 
-import numpy as np
-
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, SurfaceSketch, sketch_robot, sketch_surface
+from hydrostat.robot.sketch_space import inflated
 from hydrostat.studio.jobs import Report
 from hydrostat.studio.starting.draft import BodyDraft
 
@@ -38,35 +37,34 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
 
 
 def _sketch(report: Report, draft: BodyDraft) -> Sketch:
+    from hydrostat.geometry.files.outline_file import read_drawing
+    from hydrostat.ik.first_pose import with_first_pose
+
     report.progress("reading and meshing", 0, 3)
-    if draft.is_drawing and draft.inflate is None:
-        robot, lines = _flat(draft)
-        return _drawn(report, draft, robot, lines, None)
     file, content, size, lines = draft.file, draft.content, draft.size, ()
     if draft.is_drawing:
-        content, lines = _inflated(draft)
-        file, size = f"{PurePath(draft.file).stem}.ply", None
-    nodes = {} if draft.nodes is None else {"nodes": draft.nodes}
+        drawing = read_drawing(content, name=file, size=size)
+        lines = drawing.notes
+        if draft.inflate is None:
+            return _drawn(report, draft, _flat(draft), lines, None)
+        content, file, size = inflated(drawing.outline, draft.inflate), f"{PurePath(file).stem}.ply", None
     sketch = sketch_surface(
         content,
         file=file,
         name=draft.name,
         size=size,
         element_size=draft.element_size,
+        nodes=draft.nodes,
         material=draft.material,
-        **nodes,
     )
     made = _drawn(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
     report.part(made)
     report.progress("finding a first pose", 2, 3)
-    return replace(made, robot=_posed(sketch.robot))
+    return replace(made, robot=with_first_pose(sketch.robot))
 
 
-def _flat(draft: BodyDraft) -> tuple[Robot, tuple[str, ...]]:
-    from hydrostat.geometry.files.outline_file import read_drawing
-
-    notes = read_drawing(draft.content, name=draft.file, size=draft.size).notes
-    robot = sketch_robot(
+def _flat(draft: BodyDraft) -> Robot:
+    return sketch_robot(
         draft.content,
         file=draft.file,
         name=draft.name,
@@ -76,23 +74,6 @@ def _flat(draft: BodyDraft) -> tuple[Robot, tuple[str, ...]]:
         nodes=draft.nodes,
         material=draft.material,
     )
-    return robot, notes
-
-
-def _inflated(draft: BodyDraft) -> tuple[bytes, tuple[str, ...]]:
-    from hydrostat.geometry.files.outline_file import read_drawing
-    from hydrostat.geometry.files.surface_file import write_ply
-    from hydrostat.geometry.inflate import inflate
-
-    assert draft.inflate is not None
-    drawing = read_drawing(draft.content, name=draft.file, size=draft.size)
-    return write_ply(inflate(drawing.outline, draft.inflate, spacing=drawing.outline.size / 80)), drawing.notes
-
-
-def _posed(robot: Robot) -> Robot:
-    from hydrostat.ik.first_pose import with_first_pose
-
-    return with_first_pose(robot)
 
 
 def _drawn(
@@ -105,8 +86,7 @@ def _drawn(
     picture = inline_svg(draw_rest(robot, title="", width=WIDTH), name="sketch", label=f"{draft.name} at rest")
     repair = ""
     if sketch is not None and not sketch.healing.clean:
-        places = np.array([piece.place for piece in sketch.healing.removed]).reshape(-1, 3)
-        figure = draw_healing(sketch.before, sketch.healing.surface, places=places, width=WIDTH)
+        figure = draw_healing(sketch.before, sketch.healing.surface, places=sketch.healing.places, width=WIDTH)
         repair = inline_svg(figure, name="repair", label=f"{draft.file} as it came, and healed")
     clean = not lines if sketch is None else sketch.healing.clean
     return Sketch(draft=draft, robot=robot, lines=tuple(lines), clean=clean, picture=picture, repair=repair)
