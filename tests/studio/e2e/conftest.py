@@ -41,10 +41,10 @@ def browser() -> "Iterator[Browser]":
 
 
 @contextmanager
-def running(*arguments: str, state: Path) -> Iterator[str]:
+def running(*arguments: str, state: Path, cache: Path) -> Iterator[str]:
     """A studio that runs; its address."""
     command = [sys.executable, "-c", RUN, "studio", *arguments, "--no-browser"]
-    environment = {**os.environ, "XDG_STATE_HOME": str(state), "XDG_CACHE_HOME": str(state / "cache")}
+    environment = {**os.environ, "XDG_STATE_HOME": str(state), "XDG_CACHE_HOME": str(cache)}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment, cwd=state) as process:
         assert process.stdout is not None
         line = process.stdout.readline()
@@ -56,10 +56,16 @@ def running(*arguments: str, state: Path) -> Iterator[str]:
             process.wait(timeout=20)
 
 
+@pytest.fixture(scope="session")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where programs keep what can be made again: empty at first, and warm for all but the first studio."""
+    return tmp_path_factory.mktemp("cache")
+
+
 @pytest.fixture
-def studio(tmp_path: Path) -> Callable[..., Any]:
-    """Start a studio with some arguments, as a context that gives its address."""
-    return lambda *arguments: running(*arguments, state=tmp_path)
+def studio(tmp_path: Path, cache: Path) -> Callable[..., Any]:
+    """Start a studio with some arguments and without a past, as a context that gives its address."""
+    return lambda *arguments: running(*arguments, state=tmp_path, cache=cache)
 
 
 @pytest.fixture
