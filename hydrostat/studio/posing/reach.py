@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from math import ceil, log2
 
 import numpy as np
-from scipy.stats import qmc
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import HydrostatError, InputError
@@ -50,6 +49,8 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
 
 def spread(robot: Robot, count: int) -> list[Vector]:
     """Contractions of all winches [m], by Sobol's sequence, each near the one before so that solves are short."""
+    from scipy.stats import qmc  # a quarter of a second, not to be spent before the studio opens
+
     low = np.array([-winch.release for winch in robot.winches])
     high = np.array([winch.travel for winch in robot.winches])
     drawn = qmc.Sobol(len(robot.winches), rng=SEED).random_base2(max(ceil(log2(count)), 1))[:count]
