@@ -4,17 +4,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from io import StringIO
 from threading import Lock
-
-from ezdxf import colors, new, options  # pyright: ignore[reportPrivateImportUsage]
-from ezdxf.document import Drawing
-from ezdxf.layouts.layout import Modelspace
-from ezdxf.units import MM
+from typing import TYPE_CHECKING
 
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 
-_COLOURS = {Layer.MARK: colors.WHITE, Layer.PINHOLE: colors.BLUE, Layer.CUT: colors.RED}
-"""Index 7 is black on paper and white on a dark screen."""
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+    from ezdxf.layouts.layout import Modelspace
+
+_COLOURS = {Layer.MARK: 7, Layer.PINHOLE: 5, Layer.CUT: 1}
+"""By DXF's index of colours: 5 is blue, 1 red, and 7 is black on paper and white on a dark screen."""
 
 _WRITING = Lock()  # dates are switched off for all drawings of a process: one at a time
 
@@ -28,8 +28,11 @@ def pattern_dxf(pattern: Pattern) -> bytes:
         return text.getvalue().encode(document.output_encoding)
 
 
-def pattern_document(pattern: Pattern) -> Drawing:
+def pattern_document(pattern: Pattern) -> "Drawing":
     """The drawing as a document of ezdxf."""
+    from ezdxf import new  # pyright: ignore[reportPrivateImportUsage]
+    from ezdxf.units import MM
+
     document = new("R2010", units=MM)
     document.header["$EXTMIN"] = (0.0, 0.0, 0.0)
     document.header["$EXTMAX"] = (pattern.width, pattern.height, 0.0)
@@ -42,14 +45,14 @@ def pattern_document(pattern: Pattern) -> Drawing:
     return document
 
 
-def _sort_classes(document: Drawing) -> None:
+def _sort_classes(document: "Drawing") -> None:
     """Classes by name: ezdxf takes them from a set, whose order is another one on every run."""
     section = document.classes
     section.add_required_classes(document.dxfversion)
     section.classes = dict(sorted(section.classes.items()))
 
 
-def _draw(space: Modelspace, shape: Shape) -> None:
+def _draw(space: "Modelspace", shape: Shape) -> None:
     layer = {"layer": shape.layer.upper()}
     if isinstance(shape, Circle):
         space.add_circle(shape.centre, shape.radius, dxfattribs=layer)
@@ -60,6 +63,8 @@ def _draw(space: Modelspace, shape: Shape) -> None:
 @contextmanager
 def _without_dates() -> Iterator[None]:
     """No date and no random identity in a drawing, so that one pattern is one file."""
+    from ezdxf import options  # pyright: ignore[reportPrivateImportUsage]
+
     before = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
     try:
