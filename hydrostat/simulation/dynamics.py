@@ -1,6 +1,6 @@
 """`Dynamics`: how a robot moves in time."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import ceil
 
@@ -11,17 +11,18 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry.anchors import Anchors
 from hydrostat.mechanics import (
     Assembly,
-    CableEnergy,
     Energy,
     NewtonOptions,
     NewtonResult,
     RoundOff,
+    Stiffness,
     minimise,
 )
 from hydrostat.mechanics.inertia import InertiaEnergy
 from hydrostat.mechanics.time_scheme import SCHEMES
 from hydrostat.mechanics.viscous import Memory, Metrics
 from hydrostat.robot import Robot
+from hydrostat.simulation.balanced import balanced
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.profile import Profile
@@ -80,32 +81,32 @@ class Dynamics:
         robot: Robot,
         body: BodyPhysics,
         statics: Assembly,
-        cables: CableEnergy,
+        tensions: Callable[[Nodes, Vector, Vector], Vector],
         markers: Anchors,
         options: NewtonOptions,
     ) -> None:
-        """The robot's physics at rest, where its markers are, and how far Newton goes."""
+        """The robot's physics at rest; tensions by nodes, contractions and history; its markers; how Newton goes."""
         mesh, material = robot.body.mesh, robot.body.material
         self.robot, self.masses = robot, body.masses
-        self._statics, self._cables, self._markers, self._options = statics, cables, markers, options
+        self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
         branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
         branches += [(material.viscosity, 0.0)] if material.viscosity else []
         viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
         self.memory = Memory(mesh.nodes, body.elastic, viscosities=viscosities, times=times)
         self._round_off = body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
-        rest = self.still(mesh.nodes, np.zeros(len(robot.winches)), None)
+        rest = self.still(mesh.nodes, np.zeros(len(robot.winches)), None, statics.history)
         begin = _MotionState(rest.nodes, rest.velocities, rest.metrics)
-        moving = self._energies(begin, 1.0, 0.0, rest.pin_shifts)[len(statics.energies) :]
+        moving = self._energies(begin, 1.0, 0.0, list(statics.energies))[len(statics.energies) :]
         self._assembly = statics.extended(moving, control_count=len(robot.winches))
 
-    def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None) -> Motion:
-        """A motion that begins at `nodes`, with all viscous branches settled there."""
+    def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector) -> Motion:
+        """A motion that begins at `nodes`, with all viscous branches settled there, after what `history` remembers."""
         still = np.zeros_like(nodes)
         if velocities is not None and not (velocities.shape == nodes.shape and np.isfinite(velocities).all()):
             raise InputError(f"velocities must be finite, {nodes.shape}, not {velocities.shape}")
         state = _MotionState(nodes, still if velocities is None else velocities, self.memory.settled(nodes))
         shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
-        return self._motion(0.0, contractions, shifts, state, still, None)
+        return self._motion(0.0, (contractions, shifts, history), state, still, None)
 
     def step(
         self, motion: Motion, contractions: Vector, dt: float, options: StepOptions, pin_shifts: PinShifts
@@ -162,6 +163,7 @@ class Dynamics:
         """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
         begin = _MotionState(motion.nodes, motion.velocities, motion.metrics)
         end, rates, acceleration = begin, [], motion.accelerations
+        history, at = motion.history, motion.contractions
         result, iterations = None, 0
         for *weights, diagonal in SCHEMES[options.scheme].table:
             base, step = begin, diagonal * dt
@@ -170,27 +172,31 @@ class Dynamics:
             base = replace(base, metrics=self.memory.sound(base.metrics, end.metrics))
             share = sum(weights) + diagonal
             controls = (1 - share) * motion.contractions + share * goal
-            energies = self._energies(base, step, options.drag, (1 - share) * motion.pin_shifts + share * shifts)
-            result = self._minimise(energies, controls, base, end.nodes, acceleration, step)
+            places = (1 - share) * motion.pin_shifts + share * shifts
+            statics = self._remembering(history, end.nodes, at, places)
+            energies = self._energies(base, step, options.drag, statics)
+            assembly, result = self._minimise(energies, controls, base, end.nodes, acceleration, step)
             iterations += result.iterations
             if not result.converged:
                 return motion, replace(result, iterations=iterations)
+            history, at = assembly.after(result.nodes, controls).history, controls
             velocities = (result.nodes - base.nodes) / step
             end = _MotionState(result.nodes, velocities, self.memory.relaxed(base.metrics, result.nodes, step))
             acceleration = (velocities - base.velocities) / step
             rates.append(_MotionState(velocities, acceleration, (end.metrics - base.metrics) / step))
         assert result is not None
         counted = replace(result, iterations=iterations, stiffness=None)
-        return self._motion(motion.time + dt, goal, shifts, end, acceleration, counted), counted
+        return self._motion(motion.time + dt, (goal, shifts, history), end, acceleration, counted), counted
 
-    def _at_rest(self, shifts: Points) -> list[Energy]:
-        """The energies of statics, with the pins where they are."""
-        energies = self._statics.energies
+    def _remembering(self, history: Vector, nodes: Nodes, contractions: Vector, shifts: Points) -> list[Energy]:
+        """The energies of statics with the pins where they are, after what `history` remembers until a state."""
+        statics = self._statics.resumed(history, nodes, contractions) if len(history) else self._statics
+        energies = statics.energies
         return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else list(energies)
 
-    def _energies(self, base: _MotionState, step: float, drag: float, shifts: Points) -> list[Energy]:
+    def _energies(self, base: _MotionState, step: float, drag: float, statics: list[Energy]) -> list[Energy]:
         """Those of statics, inertia, and the viscous branches if there are any."""
-        energies = self._at_rest(shifts)
+        energies = list(statics)
         braked = 1 + drag * step
         energies.append(InertiaEnergy(base.nodes + step / braked * base.velocities, self.masses * (braked / step**2)))
         if len(self.memory):
@@ -205,21 +211,19 @@ class Dynamics:
         before: Nodes,
         acceleration: Nodes,
         step: float,
-    ) -> NewtonResult:
-        """One stage, from whichever guess has the least energy."""
+    ) -> tuple[Assembly, NewtonResult]:
+        """One stage, from whichever guess has the least energy; and the energies in balance with it."""
         assembly = self._assembly.with_energies(energies)
         flown = base.nodes + step * base.velocities
         guesses = [flown + step**2 * acceleration, flown, before]
         values = [assembly.near(guess).value(guess, controls) for guess in guesses]
         start = guesses[int(np.argmin(values))]
+        noise = self._noise(step)
 
-        return minimise(
-            assembly,
-            start,
-            controls,
-            round_off=self._noise(step),
-            options=self._options,
-        )
+        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
+            return minimise(assembly, nodes, controls, round_off=noise, options=self._options, stiffness=known)
+
+        return balanced(assembly, (start, None), controls, relax, noise.force)
 
     def _noise(self, step: float) -> RoundOff:
         """What rounding hides in a step, inertia and viscous forces included."""
@@ -246,14 +250,15 @@ class Dynamics:
     def _motion(
         self,
         time: float,
-        contractions: Vector,
-        shifts: Points,
+        held: tuple[Vector, Points, Vector],
         state: _MotionState,
         accelerations: Nodes,
         result: NewtonResult | None,
     ) -> Motion:
-        nodes = state.nodes
+        """All of an instant; `held` are contractions, shifts of the pins and the history."""
+        (contractions, shifts, history), nodes = held, state.nodes
         places = self._markers.positions(nodes)
+        statics = self._remembering(history, nodes, contractions, shifts)
         return Motion(
             time=time,
             contractions=contractions,
@@ -263,9 +268,10 @@ class Dynamics:
             accelerations=accelerations,
             metrics=state.metrics,
             markers={marker.name: place for marker, place in zip(self.robot.markers, places, strict=True)},
-            tensions=self._cables.tensions(nodes, contractions),
+            tensions=self._tensions(nodes, contractions, history),
             kinetic=float(0.5 * self.masses @ (state.velocities**2).sum(axis=1)),
-            potential=sum(energy.near(nodes).value(nodes, contractions) for energy in self._at_rest(shifts))
+            potential=sum(energy.near(nodes).value(nodes, contractions) for energy in statics)
             + self.memory.stored(state.metrics, nodes),
+            history=history,
             result=result,
         )

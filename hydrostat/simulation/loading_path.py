@@ -6,8 +6,9 @@ from math import ceil
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import Assembly, NewtonResult, Reason
+from hydrostat.mechanics import Assembly, NewtonResult, Stiffness
 from hydrostat.robot import Robot
+from hydrostat.simulation.balanced import balanced
 from hydrostat.simulation.solved_pose import SolvedPose
 from hydrostat.simulation.static_solver import StaticSolver
 
@@ -100,35 +101,19 @@ class LoadingPath:
 
     def _solve(self, state: _PathState, goal: Vector) -> _PathState:
         """Equilibrium at `goal` after one increment, in balance with what depends on the path."""
-        assembly, nodes = state.assembly, state.nodes
         stiffness = None if state.result is None else state.result.stiffness
-        iterations = corrections = 0
-        while True:
-            result = replace(self._solver, assembly=assembly).relax(nodes, goal, stiffness)
-            nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
-            assembly = assembly.near(nodes)
-            allowed = max(_TOLERANCE * assembly.largest_force(nodes, goal), self._solver.round_off.force)
-            if assembly.imbalance(nodes, goal) <= allowed or not result.converged:
-                break
-            if corrections == _CORRECTIONS:
-                result = replace(result, reason=Reason.NO_BALANCE)
-                break
-            sharp = corrections < _NEWTON and stiffness is not None and not stiffness.singular
-            assembly, corrections = assembly.corrected(nodes, goal, stiffness if sharp else None), corrections + 1
-        after = assembly.after(nodes, goal)
-        energy = after.value(nodes, goal)
-        return _PathState(nodes, goal, after, replace(result, iterations=iterations, energy=energy))
+
+        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
+            return replace(self._solver, assembly=assembly).relax(nodes, goal, known)
+
+        start = state.nodes, stiffness
+        assembly, result = balanced(state.assembly, start, goal, relax, self._solver.round_off.force)
+        after = assembly.after(result.nodes, goal)
+        return _PathState(result.nodes, goal, after, replace(result, energy=after.value(result.nodes, goal)))
 
 
 _INCREMENT = 0.05
 """Largest increment of a contraction, as a share of that which would take in a whole cable of the winch."""
 
-_TOLERANCE = 1e-8
-"""Forces in balance to this share of the largest one are right."""
-
 _GUESSES = 5
 """Corrections of a first guess, while nothing moves."""
-
-_CORRECTIONS = 40
-_NEWTON = 12
-"""Most corrections in one increment, and how many of these by Newton's method."""

@@ -1,7 +1,9 @@
 """`Motion`: a robot at one instant of its motion."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics import NewtonResult
@@ -25,6 +27,8 @@ class Motion:
         tensions: of each cable [N], in cable order.
         kinetic: energy of the motion [J].
         potential: energy of body, cables, pins, weight and branches [J].
+        history: what the physics remember of the way: how much cable has slipped over each point with friction [m];
+            empty without.
         result: how the last minimisation of the step ended; its energy is that of the step, its iterations are of all.
     """
 
@@ -39,6 +43,7 @@ class Motion:
     tensions: Vector
     kinetic: float
     potential: float
+    history: Vector = field(default_factory=lambda: np.zeros(0))
     result: NewtonResult | None = None
 
     @property
@@ -62,4 +67,5 @@ class Motion:
             tensions=self.tensions,
             energy=self.potential,
             result=self.result,
+            history=self.history,
         )

@@ -263,8 +263,11 @@ class Simulation:
             pose: where the nodes are, and the contractions there.
             velocities: of the nodes [m/s]; none if left out.
         """
-        rest = self.robot.body.mesh.nodes, self.contractions({})
-        return self.dynamics.still(*(rest if pose is None else (pose.nodes, pose.contractions)), velocities)
+        self.check_start(pose)
+        if pose is None:
+            idle, history = self.contractions({}), self.assembly.history
+            return self.dynamics.still(self.robot.body.mesh.nodes, idle, velocities, history)
+        return self.dynamics.still(pose.nodes, pose.contractions, velocities, pose.history)
 
     def step(
         self,
@@ -317,14 +320,8 @@ class Simulation:
 
     @cached_property
     def dynamics(self) -> Dynamics:
-        """Steps in time.
-
-        Raises:
-            InputError: a cable with friction, which has no steps in time yet.
-        """
-        if self.assembly.has_history:
-            raise InputError("cables with friction cannot move in time yet; set friction = 0, or solve for poses")
-        return Dynamics(self.robot, self.body, self.assembly, self.cables, self.marker_anchors, self.options)
+        """Steps in time."""
+        return Dynamics(self.robot, self.body, self.assembly, self.tensions, self.marker_anchors, self.options)
 
     @cached_property
     def marker_anchors(self) -> Anchors:

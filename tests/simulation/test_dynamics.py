@@ -341,10 +341,6 @@ def test_what_cannot_be_is_refused(viscous_strip: hs.Simulation) -> None:
             viscous_strip.step(still, {}, dt)
     with pytest.raises(hs.InputError, match="duration and time step"):
         list(viscous_strip.play(hs.Profile.ramp(np.zeros(2), 1.0), 1.0, 0.0))
-    rough = replace(viscous_strip.robot.cables[0], friction=0.2)
-    rubbing = replace(viscous_strip.robot, cables=(rough, viscous_strip.robot.cables[1]))
-    with pytest.raises(hs.InputError, match="friction cannot move in time yet"):
-        hs.Simulation(rubbing).still()
     with pytest.raises(hs.InputError, match="no pin 3"):
         viscous_strip.step(still, {}, 0.01, pin_shifts={3: np.zeros(2)})
     with pytest.raises(hs.InputError, match="shift of pin 0"):

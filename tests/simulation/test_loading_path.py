@@ -11,7 +11,6 @@ from builders import box_robot, mesh_body, strip_mesh, strip_robot
 from typer.testing import CliRunner
 
 from hydrostat.cli.main import app
-from hydrostat.errors import InputError
 from hydrostat.mechanics import FrictionCableEnergy
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, load_robot, save_robot
 from hydrostat.simulation import Simulation, SolvedPose, loading_path
@@ -173,12 +172,6 @@ def test_a_pose_is_kept_when_nothing_changes() -> None:
     again = simulation.solve(PULL, start=pose)
     assert np.abs(again.nodes - pose.nodes).max() < 1e-9
     assert again.tensions == pytest.approx(pose.tensions, rel=1e-6)
-
-
-def test_motion_in_time_is_refused() -> None:
-    simulation = Simulation(wavy_strip(0.3))
-    with pytest.raises(InputError, match="cables with friction cannot move in time yet"):
-        simulation.step(simulation.still(), PULL, 0.01)
 
 
 @pytest.mark.slow
