@@ -86,7 +86,7 @@ class Tracker:
         """The state after the first step that is accepted, and what to say of it."""
         problem, largest = search.problem, self._options.largest_step
         least = self._options.progress * problem.objective(state, weight)
-        first = self._radius
+        first, found = self._radius, False
         for _ in range(_TRIES):
             step = problem.step(state, weight, self._radius)
             if ends(problem, state, step, least, first):
@@ -96,8 +96,9 @@ class Tracker:
             if tried.accepted and tried.trial is not None:
                 self._radius = min(2.0 * self._radius, largest)
                 return tried.trial, InverseReason.ITERATION_LIMIT
+            found = found or tried.trial is not None
             self._radius = max(0.25 * self._radius, _SMALLEST)
-        return state, InverseReason.NO_EQUILIBRIUM
+        return state, InverseReason.STUCK if found else InverseReason.NO_EQUILIBRIUM
 
     def _search(self, target: Pose | None, seconds: float, objectives: Sequence[Objective]) -> InverseSearch:
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
