@@ -9,6 +9,7 @@ from builders import strip_robot
 import hydrostat as hs
 from hydrostat import friction_band
 from hydrostat.ik.objectives.objective import moves_at
+from hydrostat.ik.reached_pose import InverseReason
 
 SIZE = 0.2  # about that of the strip [m]
 WAVY = (0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
@@ -85,6 +86,17 @@ def test_a_tracker_goes_on_from_pose_to_pose() -> None:
         pose = simulation.solve(reached.pose.contractions, start=pose)
         assert np.abs(pose.nodes - reached.pose.nodes).max() < 1e-7
     assert np.linalg.norm(pose.markers["tip"] - target) < 0.01 * SIZE
+
+
+def test_a_tracker_that_must_turn_back_never_says_that_there_is_no_equilibrium() -> None:
+    """Oracle: every pose of the way back is solved from the one before."""
+    simulation = rubbing(0.3)
+    tracker = hs.Tracker(simulation)
+    there, back = (simulation.solve(np.array([pull, 0.0])).markers["tip"] for pull in (0.012, 0.0117))
+    reasons = [tracker.update({"tip": tuple(there)}, seconds=0.03).reason for _ in range(6)]
+    reasons += [tracker.update({"tip": tuple(back)}, seconds=0.03).reason for _ in range(8)]
+    assert InverseReason.STUCK in reasons
+    assert InverseReason.NO_EQUILIBRIUM not in reasons
 
 
 def test_a_trajectory_remembers_its_way() -> None:
