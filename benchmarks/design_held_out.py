@@ -83,7 +83,8 @@ def _hidden(robot: Robot, body: Body, cables: int, draw: np.random.Generator) ->
     Raises:
         RuntimeError: none is found.
     """
-    dense = replace(body.constraints, mount=Mount.BODY, winch_gap=0.0, hole_gap=0.0, travel=1.0)
+    crossing = replace(body.constraints, winch_gap=0.0, hole_gap=0.0, cable_gap=0.0, turn=75.0)
+    dense = replace(crossing, mount=Mount.BODY, travel=1.0)
     found = random_network(ground(robot, dense), cables, cables, draw)
     if found is None:
         raise RuntimeError(f"no hidden network of {cables} cables")

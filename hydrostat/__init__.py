@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hydrostat.design import Constraints, Network, RouteOptions, TreeOptions, Zone, design_cables
+    from hydrostat.design import Constraints, Network, RouteOptions, TreeOptions, Uncertainty, Zone, design_cables
     from hydrostat.errors import HydrostatError, InputError, NotConvergedError
     from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, build_kit, export_kit
     from hydrostat.ik import (
@@ -102,6 +102,7 @@ __all__ = [
     "TrajectoryOptions",
     "TreeOptions",
     "UnbuildableError",
+    "Uncertainty",
     "Winch",
     "Zone",
     "__version__",
@@ -164,6 +165,7 @@ _HOMES = {
     "TreeOptions": "design",
     "UnbuildableError": "fabrication",
     "Winch": "robot",
+    "Uncertainty": "design",
     "Zone": "design",
     "build_kit": "fabrication",
     "design_cables": "design",

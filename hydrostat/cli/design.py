@@ -64,6 +64,20 @@ LockCable = Annotated[
     typer.Option(metavar="NAME", help="A cable that stays, by its name or its number from 1; may be repeated."),
 ]
 Improve = Annotated[bool, typer.Option("--improve", help="Begin with the robot's own network.")]
+Simplicity = Annotated[
+    float | None,
+    typer.Option(
+        help="How much fewer winches, cables and holes are worth: 1 if left out, 0 for all that help, 10 for a network "
+        "that is quickly sewn."
+    ),
+]
+AsModelled = Annotated[
+    bool,
+    typer.Option(
+        "--as-modelled",
+        help="Design for a robot that is built just as its model, with no hole beside its mark and no friction.",
+    ),
+]
 Tolerance = Annotated[
     str | None,
     typer.Option(
@@ -94,6 +108,8 @@ def design(
     lock_cable: LockCable = None,
     improve: Improve = False,
     tolerance: Tolerance = None,
+    simplicity: Simplicity = None,
+    as_modelled: AsModelled = False,
     fibres: Fibres = None,
     kit: WithKit = False,
 ) -> None:
@@ -114,6 +130,8 @@ def design(
         method=method,
         improve=improve,
         tolerance=tolerance,
+        simplicity=simplicity,
+        as_modelled=as_modelled,
         fibres=fibres,
         file=constraints,
         cables_per_winch=cables_per_winch,

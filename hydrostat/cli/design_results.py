@@ -54,7 +54,8 @@ def print_poses(network: "Network", seconds: float) -> None:
         table.add_row(*_pose_row(robot, reached))
     Console(markup=False).print(table)
     print(
-        f"rms error: {1e3 * rest_error(network):.2f} mm at rest -> {1e3 * network.rms_error:.2f} mm reached; "
+        f"rms error: {1e3 * rest_error(network):.2f} mm at rest -> {1e3 * network.rms_error:.2f} mm reached in the "
+        f"model, {1e3 * network.built:.2f} mm to be expected once built; "
         f"{counted(network.tried, 'network')} tried in {seconds:.1f} s"
     )
 
@@ -67,7 +68,7 @@ def print_front(network: "Network") -> None:
     from hydrostat.design.network import best_errors, on_front, size_of
 
     errors = best_errors(network.alternatives, network)
-    table = Table(title="error against winches and cables", title_justify="left")
+    table = Table(title="error expected once built, against winches and cables", title_justify="left")
     for name in ("winches", "cables", "rms error"):
         table.add_column(name, justify="right")
     table.add_column("")

@@ -24,6 +24,8 @@ class TypedRequest:
     method: str | None = None
     improve: bool = False
     tolerance: str | None = None
+    simplicity: float | None = None
+    as_modelled: bool = False
     fibres: str | None = None
     file: Path | None = None  # of constraints; what follows comes before it
     cables_per_winch: int | None = None
@@ -38,7 +40,7 @@ class TypedRequest:
 
 def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
     """The request that was typed, for a robot (InputError: what cannot be asked, of anyone or of this robot)."""
-    from hydrostat.design import DesignMethod, DesignRequest
+    from hydrostat.design import DesignMethod, DesignRequest, Uncertainty
 
     winches = _winch_count(typed.winches)
     method = None if typed.method is None else member(DesignMethod, typed.method, what="method")
@@ -51,6 +53,7 @@ def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
         constraints=_constraints(robot, typed),
         options=_options(typed, trees=trees, open_winches=isinstance(winches, str)),
         improve=typed.improve,
+        uncertainty=Uncertainty.none() if typed.as_modelled else None,
         **given,
     )
     request.fitted(robot)  # what does not fit is told before anything begins
@@ -96,9 +99,13 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
         if not trees:
             raise InputError("--fibres is for --method trees; routes need no muscle fibres")
         return TreeOptions(fibres=kind)
-    if typed.tolerance is not None and not trees:
-        return RouteOptions(tolerance=positive("--tolerance", typed.tolerance, LENGTH))
-    return None
+    if typed.simplicity is not None and trees:
+        raise InputError("--simplicity is for routes; method trees leaves out cables by a rule of its own")
+    if trees:
+        return None
+    tolerance = None if typed.tolerance is None else positive("--tolerance", typed.tolerance, LENGTH)
+    simplicity = RouteOptions.simplicity if typed.simplicity is None else typed.simplicity
+    return RouteOptions(tolerance=tolerance, simplicity=simplicity)
 
 
 def _winch(name: str, robot: "Robot") -> str:

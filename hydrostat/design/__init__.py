@@ -1,17 +1,20 @@
 """Which winches and cables reach given poses."""
 
+from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.design_cables import design_cables, find_network
 from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, TreeTrace
 from hydrostat.design.request import AUTO, DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.score_card import rest_error, score_card
+from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.design.zone import Zone
 
 __all__ = [
     "AUTO",
     "Activation",
     "Alternative",
+    "BuiltErrors",
     "Certificate",
     "Constraints",
     "DesignMethod",
@@ -24,11 +27,14 @@ __all__ = [
     "RouteTrace",
     "TreeOptions",
     "TreeTrace",
+    "Uncertainty",
     "Zone",
     "activate",
+    "built_errors",
     "design_cables",
     "edge_fibres",
     "element_fibres",
+    "expected_error",
     "find_network",
     "rest_error",
     "score_card",

@@ -4,7 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.design.checks.cables import bend_violations, clearance_violations, hole_violations
+from hydrostat.design.checks.cables import (
+    bend_violations,
+    clearance_violations,
+    gap_violations,
+    hole_violations,
+)
 from hydrostat.design.checks.parts import LENGTH, Parts, mm
 from hydrostat.design.checks.winches import mirror_violations, winch_violations
 from hydrostat.design.constraints import Constraints
@@ -26,6 +31,9 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
       for `still` alone.
     - Holes are all points of cables but the first. Two that coincide are one. In the body, winches keep two spool
       radii from holes of cables that others pull.
+    - Cables keep the `cable_gap` from each other all along, and two spool radii from winches of others. Two of one
+      winch may be nearer within two spool radii of it.
+    - The turn where a cable enters from the world does not count: its tube hangs there as it likes.
     - The bend at a point is the arc that touches both segments half-way along the shorter.
     - Whether a winch in the world stands where one may is not looked at.
     """
@@ -34,6 +42,7 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
         *winch_violations(parts),
         *clearance_violations(parts),
         *hole_violations(parts),
+        *gap_violations(parts),
         *bend_violations(parts),
         *mirror_violations(parts),
     ]

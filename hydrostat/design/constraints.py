@@ -61,11 +61,16 @@ class Constraints:
         still: cables run in sheaths here, so that they move nothing (R14).
         mount: winches in the body, or beside it; None: as the robot's own winches are, in the body if it has none.
             Winches in the world stand at places of the robot's own winches.
+        built_in: whether new winches in a flat body stand only where motor, spool and housing fit, if they fit
+            anywhere; those of a network to be improved stay about where they are.
         cables_per_winch: most cables of one winch (R44).
         clearance: least distance of a cable from the edge of the body.
         winch_clearance: least distance of a winch in the body from its edge.
         winch_gap: least distance between two winches, unless both stand in the world.
         hole_gap: least distance between two holes through which cables pass the cloth.
+        cable_gap: least distance between two cables, or two parts of one, so that none cross or run side by side
+            within a stitch; and of cables from winches that do not pull them beyond two spool radii. Cables of one
+            winch may be nearer within two spool radii of it. 0: cables may cross.
         turn: largest turn of a cable at a via point [degrees].
         bend_radius: least radius of the arc that fits a turn between the middles of its two segments.
         longest: greatest length of a cable from winch to stopper; None: any.
@@ -90,12 +95,14 @@ class Constraints:
     keep_out: tuple[Zone, ...] = ()
     still: tuple[Zone, ...] = ()
     mount: Mount | None = None
+    built_in: bool = True
     cables_per_winch: int = 6
     clearance: float = 0.005
     winch_clearance: float = 0.012
     winch_gap: float = 0.025
     hole_gap: float = 0.004
-    turn: float = 75.0
+    cable_gap: float = 0.004
+    turn: float = 30.0
     bend_radius: float = 0.0
     longest: float | None = None
     tension: float = 20.0
@@ -119,8 +126,9 @@ class Constraints:
                     _refuse(f"{field}[{place}]", zone, "a Zone, such as Zone(at=(0.0, 0.0), radius=0.01)")
         if self.mount is not None:
             make_member(self, "mount", Mount, what="constraints: mount")
-        if not isinstance(self.leads, bool):
-            _refuse("leads", self.leads, "True or False")
+        for field in ("leads", "built_in"):
+            if not isinstance(getattr(self, field), bool):
+                _refuse(field, getattr(self, field), "True or False")
         if self.mirror not in (None, "x", "y", "z"):
             _refuse("mirror", self.mirror, '"x", "y", "z", or None for no symmetry')
         self._check_numbers()
@@ -218,6 +226,7 @@ RANGES = {
     "winch_clearance": _GAP,
     "winch_gap": _GAP,
     "hole_gap": _GAP,
+    "cable_gap": _GAP,
     "turn": Range(above=True, most=180.0, unit="degrees"),
     "bend_radius": _GAP,
     "longest": Range(above=True, optional=True, unit="m"),

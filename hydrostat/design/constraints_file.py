@@ -53,11 +53,13 @@ class ConstraintsTable(TomlTable):
     keep_out: list[ZoneTable] = Field(default_factory=list)
     still: list[ZoneTable] = Field(default_factory=list)
     mount: Mount | None = None
+    built_in: Choice | None = None
     cables_per_winch: Count | None = None
     clearance: Length | None = None
     winch_clearance: Length | None = None
     winch_gap: Length | None = None
     hole_gap: Length | None = None
+    cable_gap: Length | None = None
     turn: Angle | None = None
     bend_radius: Length | None = None
     longest: Length | None = None

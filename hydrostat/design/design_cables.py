@@ -1,6 +1,7 @@
 """`design_cables`, `find_network`: from poses to winches and cables."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TypedDict, Unpack
 
 from hydrostat.closed_set import member
@@ -8,9 +9,12 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Network
 from hydrostat.design.progress import Progress, Watch, silent, unseen
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
-from hydrostat.design.routes.design_routes import design_fewest, design_routes
+from hydrostat.design.routes.design_fewest import design_fewest
+from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.trees.design_trees import design_trees
+from hydrostat.errors import HydrostatError
 from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import BodyPhysics
 
 
 class Asked(TypedDict, total=False):
@@ -65,5 +69,21 @@ def find_network(
     fitted, told, seen = request.fitted(robot), progress or silent, watch or unseen
     if fitted.method is DesignMethod.TREES:
         return design_trees(robot, fitted, progress=told, watch=seen)
-    find = design_routes if isinstance(fitted.winches, int) else design_fewest
-    return find(robot, fitted, progress=told, watch=seen)
+    if not isinstance(fitted.winches, int):
+        return design_fewest(robot, fitted, progress=told, watch=seen)
+    return design_routes(robot, fitted, progress=told, watch=seen, hints=lambda body: _trees(robot, fitted, body))
+
+
+def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robot]:
+    """What the thesis's way finds for a flat body: another beginning for routes, in a second or two."""
+    if robot.body.mesh.dim != 2 or request.improve:
+        return []
+    usual = Constraints(clearance=request.constraints.clearance, tension=request.constraints.tension)
+    asked = replace(request, method=DesignMethod.TREES, constraints=usual, options=TreeOptions(trials=_TREES))
+    try:
+        return [design_trees(robot, asked, progress=silent, body=body).robot]
+    except HydrostatError:  # none can be built
+        return []
+
+
+_TREES = 16  # networks of winch trees whose poses are solved

@@ -36,7 +36,7 @@ class DesignStage:
 
     words: str  # what was done, such as "a cable added to winch_1"
     robot: Robot  # with the network as it was then
-    error: float  # root of the mean squared marker error over all poses [m]
+    error: float  # rms marker error over all poses: for routes that expected once built, for trees in the model [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +64,7 @@ class Alternative:
 
     robot: Robot  # with that network
     reached: tuple[ReachedPose, ...]  # what it reaches of each pose
+    built: float  # rms error expected of a robot as it is built, its commands played open loop [m]
 
     @property
     def rms_error(self) -> float:
@@ -80,6 +81,8 @@ class Network:
         source: the robot that it was designed for.
         request: what was asked, with the constraints that it keeps.
         reached: what the new network reaches of each pose by its own winches; the true score (E24).
+        built: rms error over markers and poses expected of a robot as it is built, its commands played open loop [m]:
+            `hydrostat.design.expected_error` with the uncertainty of the request.
         alternatives: other networks, the best first; by counts where the number of winches was found.
         trace: what led to it.
         tried: networks whose poses were solved.
@@ -91,6 +94,7 @@ class Network:
     source: Robot
     request: DesignRequest
     reached: tuple[ReachedPose, ...]
+    built: float
     alternatives: tuple[Alternative, ...] = ()
     trace: TreeTrace | RouteTrace
     tried: int
@@ -117,11 +121,11 @@ def size_of(network: Alternative | Network) -> Size:
 
 
 def best_errors(alternatives: Iterable[Alternative], chosen: Network) -> dict[Size, float]:
-    """The least error of each size [m], in order of the sizes; where the chosen network is, its own."""
+    """The least error as built of each size [m], in order of the sizes; where the chosen network is, its own."""
     found: dict[Size, float] = {}
     for network in alternatives:
-        found[size_of(network)] = min(network.rms_error, found.get(size_of(network), float("inf")))
-    found[size_of(chosen)] = chosen.rms_error
+        found[size_of(network)] = min(network.built, found.get(size_of(network), float("inf")))
+    found[size_of(chosen)] = chosen.built
     return dict(sorted(found.items()))
 
 

@@ -1,4 +1,4 @@
-"""`resample`, `length`, `turns`, `least_along`: routes as polylines, and what lies along straight segments."""
+"""`resample`, `length`, `turns`, `least_along`, `nearest_shares`: routes as polylines, what lies along segments."""
 
 from collections.abc import Callable
 
@@ -73,3 +73,23 @@ def least_along(
         np.minimum.at(least, owner, found)
         owner, low, high = np.tile(owner, 2), np.concatenate([low, middle]), np.concatenate([middle, high])
         first, last = np.concatenate([first, found]), np.concatenate([found, last])
+
+
+def nearest_shares(
+    first: Float[np.ndarray, "pairs 2 dim"], second: Float[np.ndarray, "pairs 2 dim"]
+) -> tuple[Float[np.ndarray, " pairs"], Float[np.ndarray, " pairs"]]:
+    """Where two segments come nearest to each other, as shares of the way along each (Ericson 2005, 5.1.9).
+
+    In the plane segments that cross meet: their shares are of the same place.
+    """
+    ways, others = first[:, 1] - first[:, 0], second[:, 1] - second[:, 0]
+    between = first[:, 0] - second[:, 0]
+    square, square_other = (ways**2).sum(axis=1), (others**2).sum(axis=1)
+    along, along_other = (ways * between).sum(axis=1), (others * between).sum(axis=1)
+    both = (ways * others).sum(axis=1)
+    tiny = np.finfo(float).tiny ** 0.5
+    slanted = square * square_other - both**2
+    share = np.where(slanted > 1e-12 * square * square_other, both * along_other - along * square_other, 0.0)
+    share = np.clip(share / np.maximum(slanted, tiny), 0.0, 1.0)
+    other = np.clip((both * share + along_other) / np.maximum(square_other, tiny), 0.0, 1.0)
+    return np.clip((both * other - along) / np.maximum(square, tiny), 0.0, 1.0), other

@@ -16,6 +16,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
     request = network.request.as_values()
     return {
         "rms_error": network.rms_error,
+        "rms_error_as_built": network.built,
         "rms_error_at_rest": rest_error(network),
         "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
         "winches": _winches(robot),
@@ -95,6 +96,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "winches": len(other.robot.winches),
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
+        "rms_error_as_built": other.built,
         "poses": {pose.wanted.name: pose.rms_error for pose in other.reached},
         "robot": robot_hash(other.robot),
     }

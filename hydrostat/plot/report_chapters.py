@@ -170,7 +170,7 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
         figure = draw_stage(stage.robot, like=network.robot, frame=frame)
         head = f"{index + 1}. {stage.words[:1].upper()}{stage.words[1:]}"
         pictures.append(picture(figure, f"stage-{index}", head, f": {_rms_text(stage.error)}"))
-    curve = draw_growth(trace.stages, rest=rest_error(network), final=network.rms_error, marked=shown, width=CHART)
+    curve = draw_growth(trace.stages, rest=rest_error(network), final=network.built, marked=shown, width=CHART)
     note = f" over {counted(len(trace.stages), 'stage')}; those with a picture above are filled dots"
     parts = [grid(*pictures, kind="tiny"), grid(picture(curve, "growth", "The error", note))]
     return [Chapter("How it grew", words, [*parts, _certificate(network, trace.certificate)])]

@@ -142,7 +142,8 @@ def test_everything_is_written_and_can_be_read(run: Run, strip: Path, search: Se
     assert card["robot"] == robot_hash(hs.load_robot(out / "robot")) == robot_hash(network.robot)
     for other, folder in zip(card["alternatives"], sorted((out / "alternatives").iterdir()), strict=True):
         assert other["robot"] == robot_hash(hs.load_robot(folder))
-    assert f"{1e3 * network.rms_error:.2f} mm reached; 4 networks tried in " in told
+    assert f"-> {1e3 * network.rms_error:.2f} mm reached in the model, {1e3 * network.built:.2f} mm to be" in told
+    assert "expected once built; 4 networks tried in " in told
     assert "rms error: 31.62 mm at rest -> " in told
     assert f"Open {out / 'report.html'}" in told
     assert "How it grew" in (out / "report.html").read_text()
@@ -207,13 +208,13 @@ def test_auto_tells_the_error_against_winches_and_cables(
     run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path
 ) -> None:
     network = plain_network()
-    worse = Alternative(robot=network.robot, reached=(replace(network.reached[0], errors={"tip": 0.05}),))
+    worse = Alternative(robot=network.robot, reached=(replace(network.reached[0], errors={"tip": 0.05}),), built=0.05)
     search.answer = replace(network, alternatives=(*network.alternatives, worse))
     _, told, _ = run("design", strip, "--winches", "auto", "--out", tmp_path / "out")
     rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in told.splitlines() if line.startswith("│")]
     assert ["1", "1", "45.60 mm", ""] in rows
-    assert ["2", "2", f"{1e3 * network.rms_error:.2f} mm", "chosen"] in rows
-    assert "error against" not in run("design", strip, "--out", tmp_path / "out")[1]
+    assert ["2", "2", f"{1e3 * network.built:.2f} mm", "chosen"] in rows
+    assert "against winches" not in run("design", strip, "--out", tmp_path / "out")[1]
 
 
 STARTS = 'method "trees" starts from nothing with a number of winches; use method "routes"'

@@ -22,6 +22,8 @@ from hydrostat.robot import Body, Cable, Mount, Pin, Pose, Robot, Winch
 UP = ((0.03, 0.03), (0.06, 0.03), (0.1, 0.03), (0.15, 0.03))
 DOWN = ((0.03, -0.03), (0.06, -0.03), (0.1, -0.03), (0.15, -0.03))
 HAIR = 1e-4
+STRAIGHT_UP, STRAIGHT_DOWN = (UP[0], UP[3]), (DOWN[0], DOWN[3])
+FAN = 2 * float(np.arcsin(0.01 / 0.024))  # between two cables that are 10 mm apart 12 mm from their winch
 
 Points = tuple[tuple[float, ...], ...]
 
@@ -61,7 +63,7 @@ def network(
 
 
 def broken(robot: Robot, **limits: Any) -> list[str]:
-    constraints = Constraints(**limits)
+    constraints = Constraints(**{"cable_gap": 0.0, "turn": 75.0, **limits})
     constraints.check(robot)
     return violations(robot, constraints, body_region(robot.body, constraints.clearance))
 
@@ -216,6 +218,30 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
         {"more": [("down", (DOWN[0], (0.03, 0.018 + HAIR)))]},
         "cable[2].points[1] is 11.9 mm from winch[0] up, which pulls other cables, less than two spool radii of 12 mm",
     ),
+    "cable_gap": (
+        {"cable_gap": 0.01},
+        {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.05, 0.0), (0.15, 0.02 - HAIR)))]},
+        {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.05, 0.0), (0.15, 0.02 + HAIR)))]},
+        "cable[2] between points 1 and 2 is 9.9 mm from cable[0] between points 0 and 1, less than",
+    ),
+    "cable_gap where cables cross": (
+        {"cable_gap": 0.004},
+        {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.09, 0.026 - HAIR)))]},
+        {"up": STRAIGHT_UP, "down": STRAIGHT_DOWN, "more": [("down", (DOWN[0], (0.09, 0.045)))]},
+        "cable[2] between points 0 and 1 crosses cable[0] between points 0 and 1, less than the cable_gap of 4 mm",
+    ),
+    "cable_gap beside a winch of others": (
+        {"cable_gap": 0.004},
+        {"more": [("down", (DOWN[0], (0.018 - HAIR, 0.0), (0.018 - HAIR, 0.044)))]},
+        {"more": [("down", (DOWN[0], (0.018 + HAIR, 0.0), (0.018 + HAIR, 0.044)))]},
+        "cable[2] between points 1 and 2 passes 11.9 mm from winch[0] up, which pulls other cables, less than",
+    ),
+    "cable_gap of two cables of a winch": (  # by the angle between them, two spool radii from it
+        {"cable_gap": 0.01},
+        {"more": [("up", (UP[0], (UP[0][0] + 0.04 * np.cos(FAN + 0.01), UP[0][1] - 0.04 * np.sin(FAN + 0.01))))]},
+        {"more": [("up", (UP[0], (UP[0][0] + 0.04 * np.cos(FAN - 0.01), UP[0][1] - 0.04 * np.sin(FAN - 0.01))))]},
+        "cable[2] between points 0 and 1 is 9.8",
+    ),
     "turn": ({}, {"up": corner(74.8)}, {"up": corner(75.2)}, "cable[0].points[1] turns by 75.2 degrees, more than"),
     "turn in space": (
         {},
@@ -271,9 +297,9 @@ def test_each_constraint_is_kept_or_broken(case: str) -> None:
 
 
 def test_every_constraint_has_a_case() -> None:
-    """But the forces, which `pulls` looks at, the mirror, and what is locked: these have tests of their own."""
+    """But the forces, which `pulls` looks at, the mirror, what is locked, and room for units: these have their own."""
     tested = {name.split()[0] for name in CASES} | {"hole_gap", "leads"}
-    others = {"tension", "torque", "mirror", "locked_winches", "locked_cables"}
+    others = {"tension", "torque", "mirror", "locked_winches", "locked_cables", "built_in"}
     assert set(Constraints.__dataclass_fields__) - others <= tested
 
 

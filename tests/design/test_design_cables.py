@@ -199,4 +199,4 @@ def test_no_cable_turns_sharply(case: str, unchecked: None) -> None:
     for cable in designed(case).robot.cables:
         spans = np.diff(np.array(cable.points), axis=0)
         turns = np.diff(np.unwrap(np.arctan2(spans[:, 1], spans[:, 0])))
-        assert np.abs(turns).max(initial=0.0) <= np.radians(Constraints().turn) + 1e-3
+        assert np.abs(turns).max(initial=0.0) <= np.radians(TreeOptions().turn) + 1e-3

@@ -11,6 +11,7 @@ from hydrostat.cli.design_wishes import TypedRequest, asked_of
 from hydrostat.design import Constraints, DesignMethod, DesignRequest, FibreKind, RouteOptions, TreeOptions
 from hydrostat.design.constraints import RANGES, Range
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
+from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 from hydrostat.studio.designing.run import wished_request
@@ -89,4 +90,5 @@ def test_improving_allows_what_the_robot_has(unchecked: None) -> None:
     own = strip_robot()
     request = DesignRequest(poses=(UP,), improve=True, constraints=Constraints(travel=0.001)).fitted(own)
     assert request.constraints.travel == max(winch.travel for winch in own.winches)
-    assert DesignRequest(poses=(UP,)).fitted(own) == DesignRequest(poses=(UP,))
+    usual = Uncertainty.of(own.body)
+    assert DesignRequest(poses=(UP,)).fitted(own) == DesignRequest(poses=(UP,), uncertainty=usual)

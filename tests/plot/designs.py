@@ -91,6 +91,7 @@ def _network(robot: Robot, target: Pose, tree: np.ndarray) -> Network:
         source=robot,
         request=DesignRequest(poses=(target,), method=DesignMethod.TREES),
         reached=(reached,),
+        built=0.006,
         trace=TreeTrace(activations=(activation,), candidates=(np.argsort(-tensions)[:12],), trees=(tree,), score=0.5),
         tried=4,
         seconds=1.5,
@@ -115,8 +116,8 @@ def grown(network: Network, stages: int = 11) -> Network:
             certificate=Certificate(further=0.0021, paths=12345, slope=0.0123),
         ),
         alternatives=(
-            Alternative(robot=robot, reached=(replace(reached, errors={"tip": 0.0345}),)),
-            Alternative(robot=begun, reached=(replace(less, errors={"tip": 0.0456}),)),
+            Alternative(robot=robot, reached=(replace(reached, errors={"tip": 0.0345}),), built=0.0345),
+            Alternative(robot=begun, reached=(replace(less, errors={"tip": 0.0456}),), built=0.0456),
         ),
     )
 

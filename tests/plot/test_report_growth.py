@@ -23,7 +23,9 @@ def sized(winches: int, cables: int, error: float) -> Alternative:
     robot, (reached, *_) = network.robot, network.reached
     parts = [replace(robot.winches[0], name=f"w{index}") for index in range(winches)]
     lines = [replace(robot.cables[0], name="", winch=parts[index % winches].name) for index in range(cables)]
-    return Alternative(robot=robot.with_network(parts, lines), reached=(replace(reached, errors={"tip": error}),))
+    return Alternative(
+        robot=robot.with_network(parts, lines), reached=(replace(reached, errors={"tip": error}),), built=error
+    )
 
 
 @pytest.mark.parametrize(("count", "most"), [(1, 8), (2, 8), (8, 8), (9, 8), (40, 8), (5, 2)])

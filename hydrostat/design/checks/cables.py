@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.design.checks.parts import ANGLE, LENGTH, Parts, mm, place
-from hydrostat.design.polyline import least_along
+from hydrostat.design.polyline import least_along, nearest_shares
 from hydrostat.design.zone import Zone
 from hydrostat.robot import Mount
 
@@ -167,6 +167,70 @@ def _hole_name(hole: Hole) -> str:
     return f"cable[{hole[0]}].points[{hole[1]}]"
 
 
+def gap_violations(parts: Parts) -> Iterator[str]:
+    """Cables that cross or come near each other or a winch of others; beside their own winch they may."""
+    least = parts.constraints.cable_gap
+    if least == 0.0 or not parts.new_cables:
+        return
+    runs = [
+        (index, at)
+        for index, (cable, points) in enumerate(zip(parts.robot.cables, parts.points, strict=True))
+        for at in range(int(parts.outside(cable)), len(points) - 1)
+    ]
+    for number, (index, at) in enumerate(runs):
+        yield from _over_winches(parts, index, at)
+        for other, there in runs[number + 1 :]:
+            if (other == index and there <= at + 1) or not {index, other} & set(parts.new_cables):
+                continue
+            gap = _gap(parts, (index, at), (other, there))
+            if gap < least - LENGTH:
+                told = "crosses" if gap < SAME else f"is {mm(gap)} from"
+                yield (
+                    f"cable[{other}] between points {there} and {there + 1} {told} cable[{index}] between points {at} "
+                    f"and {at + 1}, less than the cable_gap of {mm(least)}"
+                )
+
+
+def _gap(parts: Parts, one: Hole, other: Hole) -> float:
+    """Least distance of two segments [m]; infinite where they meet beside the winch of both."""
+    cables = parts.robot.cables[one[0]], parts.robot.cables[other[0]]
+    ends = [_behind_winch(parts, *one), _behind_winch(parts, *other)]
+    shares = nearest_shares(ends[0][None], ends[1][None])
+    places = [run[0] + share[0] * (run[1] - run[0]) for run, share in zip(ends, shares, strict=True)]
+    if one[0] != other[0] and cables[0].winch == cables[1].winch:
+        winch = parts.winch_of(cables[0])
+        away = [float(np.linalg.norm(place - winch.at)) for place in places]
+        if max(away) < 2 * winch.spool_radius - SAME:
+            return float("inf")
+    return float(np.linalg.norm(places[0] - places[1]))
+
+
+def _behind_winch(parts: Parts, index: int, at: int) -> Float[np.ndarray, "2 dim"]:
+    """The ends of a segment; the first one of a cable begins two spool radii from its winch."""
+    ends, winch = parts.points[index][at : at + 2].copy(), parts.winch_of(parts.robot.cables[index])
+    if at == 0 and winch.mount is Mount.BODY:
+        span = ends[1] - ends[0]
+        ends[0] += min(1.0, 2 * winch.spool_radius / float(np.linalg.norm(span))) * span
+    return ends
+
+
+def _over_winches(parts: Parts, index: int, at: int) -> Iterator[str]:
+    ends = parts.points[index][at : at + 2]
+    for number, winch in enumerate(parts.robot.winches):
+        if winch.mount is Mount.WORLD or winch.name == parts.robot.cables[index].winch:
+            continue
+        if index not in parts.new_cables and number not in parts.new_winches:
+            continue
+        centre = np.array(winch.at)
+        share = nearest_shares(ends[None], np.stack([centre, centre])[None])[0][0]
+        gap = float(np.linalg.norm(ends[0] + share * (ends[1] - ends[0]) - centre))
+        if gap < 2 * winch.spool_radius - LENGTH:
+            yield (
+                f"cable[{index}] between points {at} and {at + 1} passes {mm(gap)} from {parts.winch_name(number)}, "
+                f"which pulls other cables, less than two spool radii of {mm(2 * winch.spool_radius)}"
+            )
+
+
 def bend_violations(parts: Parts) -> Iterator[str]:
     """Turns and arcs that are too sharp, cables that are too long or too loose, spools that differ too much."""
     for index in parts.new_cables:
@@ -189,7 +253,8 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
     gentler = np.tan(0.5 * np.maximum(turns - np.radians(ANGLE), 0.0))
     for corner, (turn, arc) in enumerate(zip(np.degrees(turns), arcs, strict=True)):
         name = f"cable[{index}].points[{corner + 1}]"
-        if turn > limits.turn + ANGLE:
+        enters = corner == 0 and parts.outside(parts.robot.cables[index])
+        if turn > limits.turn + ANGLE and not enters:
             yield f"{name} turns by {turn:.4g} degrees, more than the turn of {limits.turn:g}"
         if limits.bend_radius * gentler[corner] > tangents[corner] + LENGTH:
             yield f"{name} bends with a radius of {mm(arc)}, less than the bend_radius of {mm(limits.bend_radius)}"

@@ -10,10 +10,12 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.layout import Layout
-from hydrostat.errors import NotConvergedError
+from hydrostat.design.spread import Columns, spread_columns
+from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
 from hydrostat.robot import Pose, Robot
-from hydrostat.simulation import BodyPhysics, Simulation, SolvedPose
+from hydrostat.simulation import BodyPhysics, RigSlopes, Simulation, SolvedPose, rig_slopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,14 +25,22 @@ class Trial:
     layout: Layout  # winches and cables
     simulation: Simulation  # of the robot with them
     poses: tuple[SolvedPose, ...]  # at equilibrium, one for each target
+    slopes: tuple[RigSlopes, ...]  # of the markers of each pose and of all tensions there
+    columns: tuple[Columns, ...]  # what each tolerance does to the markers of each pose: see `spread_columns` [m]
     error: float  # root of the mean squared marker error over all poses [m]
+    spread: float  # root of the mean variance of the markers as built, over all poses [m]
     pull: float  # the largest tension, as a share of what a cable bears
     from_rest: bool = False  # whether its poses were found from rest, to the end
 
     @property
+    def built(self) -> float:
+        """The error expected of a robot as it is built: root of the mean square, to second moments [m]."""
+        return float(np.hypot(self.error, self.spread))
+
+    @property
     def cost(self) -> float:
-        """The error, more where cables bear too much [m]."""
-        return self.error * max(self.pull, 1.0)
+        """The error as built, more where cables bear too much [m]."""
+        return self.built * max(self.pull, 1.0)
 
 
 @dataclass(eq=False)
@@ -40,6 +50,7 @@ class Bench:
     source: Robot  # the robot that is designed for
     targets: Sequence[Pose]  # poses to reach
     constraints: Constraints  # limits on tensions and contractions
+    uncertainty: Uncertainty = field(default_factory=Uncertainty.none)  # what differs in a robot as it is built
     body: BodyPhysics | None = None  # physics of the body, which all layouts share; each has its own if left out
     solves: int = field(default=0)  # layouts tried
 
@@ -96,7 +107,7 @@ class Bench:
                 return None
             if self._error(simulation, found) > worst:
                 return None
-        return self.trial(layout, simulation, found)
+        return self._within(layout, simulation, found, worst)
 
     def held(
         self, layout: Layout, contractions: Sequence[Vector], before: Trial, *, worst: float = np.inf
@@ -115,7 +126,30 @@ class Bench:
             found.append(simulation.posed(pulled, result))
             if self._error(simulation, found) > worst:
                 return None
-        return self.trial(layout, simulation, found)
+        return self._within(layout, simulation, found, worst)
+
+    def _within(
+        self, layout: Layout, simulation: Simulation, poses: Sequence[SolvedPose], worst: float
+    ) -> Trial | None:
+        try:
+            trial = self.trial(layout, simulation, poses)
+        except NotConvergedError:  # about to snap
+            return None
+        return trial if trial.built <= worst else None
+
+    def scattered(
+        self, layout: Layout, near: SolvedPose, contractions: Vector, index: int
+    ) -> tuple[Simulation, Nodes, RigSlopes] | None:
+        """A layout built otherwise, near a pose: its nodes there [m], and slopes; None where it has no equilibrium."""
+        try:
+            simulation = Simulation(layout.robot(), body=self.body)
+            result = simulation.solver.relax(near.nodes, contractions, iterations=15)
+            if not (result.converged and result.stable):
+                return None
+            pose = simulation.posed(contractions, result)
+            return simulation, pose.nodes, rig_slopes(simulation, pose, self.markers[index])
+        except (InputError, NotConvergedError):  # a hole outside the body, or about to snap
+            return None
 
     def _missed(self, simulation: Simulation, index: int, pose: SolvedPose) -> float:
         return float(np.linalg.norm(self.residual(simulation, index, pose.nodes)))
@@ -136,7 +170,14 @@ class Bench:
     def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[SolvedPose]) -> Trial:
         """The trial of poses that were solved."""
         pull = max(float(pose.tensions.max(initial=0.0)) for pose in poses) / self.constraints.tension_limit
-        return Trial(layout, simulation, tuple(poses), self._error(simulation, poses), pull)
+        slopes = tuple(rig_slopes(simulation, pose, markers) for pose, markers in zip(poses, self.markers, strict=True))
+        columns = tuple(
+            spread_columns(simulation, pose, slope, self.uncertainty, len(markers) * layout.dim)
+            for pose, slope, markers in zip(poses, slopes, self.markers, strict=True)
+        )
+        spread = np.sqrt(sum((w * w * (one**2).sum() for w, one in zip(self.weights, columns, strict=True)), 0.0))
+        error = self._error(simulation, poses)
+        return Trial(layout, simulation, tuple(poses), slopes, columns, error, float(spread), pull)
 
     def _error(self, simulation: Simulation, poses: Sequence[SolvedPose]) -> float:
         """Root of the mean squared marker error [m], of the first poses as if the others were reached."""

@@ -1,7 +1,7 @@
 """`design_routes`: routes priced by the pose error, added one by one, and moved to where it is least (F1, F2)."""
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
 
@@ -10,10 +10,11 @@ from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
 from hydrostat.design.buildable import pulls, violations
-from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, Size, size_of
-from hydrostat.design.progress import Better, Progress, Watch, unseen
+from hydrostat.design.built_error import expected_error
+from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
+from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import Region, body_region
-from hydrostat.design.request import COUNTS, DesignRequest
+from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.growth import Growth
@@ -21,10 +22,15 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import linear_model, pushed_back
 from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.design.winch_room import winch_room
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, solve_ik
-from hydrostat.robot import Robot
+from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import BodyPhysics, Simulation
+
+Hints = Callable[[BodyPhysics], Iterable[Robot]]
+"""Finds networks to begin with, when it is their turn, by the physics of the body."""
 
 
 def certify(proposals: Proposals, trial: Trial) -> Certificate:
@@ -59,7 +65,14 @@ def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) 
 _HOLDS = 1e-4  # a limit with a smaller margin than this [m] holds
 
 
-def design_routes(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
+def design_routes(
+    robot: Robot,
+    request: DesignRequest,
+    *,
+    progress: Progress,
+    watch: Watch = unseen,
+    hints: Hints = lambda _: (),
+) -> Network:
     """Cables added where the adjoint of the pose error prices them best, and moved to where it is least.
 
     At the equilibria of all poses the adjoint field prices every run between two via points; a dynamic program finds
@@ -67,13 +80,14 @@ def design_routes(robot: Robot, request: DesignRequest, *, progress: Progress, w
     all via points are moved downhill; so it goes on (column generation). Several networks are grown from different
     first cables; the best is refined, and its cables are exchanged one by one where another path does better.
 
-    Interrupted (KeyboardInterrupt), it returns the best network so far.
+    `hints` finds robots with networks of the same body, which are refined beside those that are grown. Interrupted
+    (KeyboardInterrupt), it returns the best network so far.
 
     Raises:
         InputError: a body too thin for the constraints.
         HydrostatError: no network can be built.
     """
-    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch).run()
+    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch, hints).run()
 
 
 class RouteSearch:
@@ -86,12 +100,22 @@ class RouteSearch:
     """
 
     def __init__(
-        self, robot: Robot, request: DesignRequest, body: BodyPhysics, progress: Progress, watch: Watch = unseen
+        self,
+        robot: Robot,
+        request: DesignRequest,
+        body: BodyPhysics,
+        progress: Progress,
+        watch: Watch = unseen,
+        hints: Hints = lambda _: (),
     ) -> None:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
+        self.hints, self.physics = hints, body
         self.winches, self.cables = int(request.winches), request.cables
         self.constraints, self.options = request.constraints, request.route_options
-        self.bench = Bench(robot, request.poses, request.constraints, body)
+        if self.constraints.built_in and not request.improve and self.constraints.mount is not Mount.WORLD:
+            room = winch_room(robot, self.constraints, -(-self.cables // self.winches))
+            self.constraints = replace(self.constraints, winch_zones=room)
+        self.bench = Bench(robot, request.poses, self.constraints, request.uncertainty or Uncertainty.none(), body)
         self.stages: list[DesignStage] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
@@ -119,6 +143,7 @@ class RouteSearch:
             source=self.robot,
             request=self.request,
             reached=network.reached,
+            built=network.built,
             alternatives=tuple(alternatives),
             trace=RouteTrace(stages=tuple(self.stages), certificate=certificate),
             tried=self.bench.solves,
@@ -139,12 +164,15 @@ class RouteSearch:
             raise HydrostatError("the network to begin with has no equilibrium in reach of its poses; start without it")
         if begun.layout.routes:
             self._noted("as it was", begun)
-        for seed in growth.seeds(begun, winches=self.winches, cables=self.cables):
-            self._noted("the first cable", seed)
-            trial = growth.truly(growth.grown(seed, winches=self.winches, cables=self.cables))
-            self.found.append(trial)
-            if growth.enough(trial, self.winches):
+        grown = []
+        for effort in _EFFORTS[: self.options.starts_for(self.robot.body.mesh.dim)]:
+            growth.proposals = replace(self.proposals, effort=effort)
+            grown += growth.grown(begun, winches=self.winches, cables=self.cables)
+            if any(growth.enough(trial, self.winches) for trial in grown):
                 break
+        grown = sorted([*grown, *self._hinted(growth)], key=lambda trial: trial.cost)
+        whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
+        self.found = [growth.truly(trial) for trial in whole[: _REFINED + 1]]
         if not self.found:
             raise HydrostatError(
                 "no network could be built: no cable keeps clear of the edge, of forbidden zones and of other cables; "
@@ -169,7 +197,35 @@ class RouteSearch:
             if self.found[0].cost > (1 - _ANOTHER) * best.cost:
                 break
         self.progress("Exchanging cables", 1, 1)
-        self.found[0] = growth.pruned(self.found[0])
+        self.found[0] = self._thinned(growth, growth.pruned(self.found[0]))
+        self._noted("holes left out", self.found[0])
+
+    def _hinted(self, growth: Growth) -> list[Trial]:
+        """Networks that others found, moved to where they can be built, and refined."""
+        trials = []
+        for hint in (
+            self.hints(self.physics)
+            if not self.request.improve and not any(self.constraints.staying(self.robot))
+            else ()
+        ):
+            pushed = pushed_back(layout_of(hint, self.constraints), self.region, 0.03 * self.robot.body.mesh.size)
+            fits = len(hint.winches) <= self.winches and len(hint.cables) <= self.cables
+            if not fits or pushed is None or violations(pushed.robot(digits=_DIGITS), self.constraints, self.region):
+                continue
+            trial = self.bench.reached(pushed, None)
+            if trial is not None:
+                trials.append(growth.polished(trial))
+                self._noted("winch trees, their via points moved", trials[-1])
+        return trials
+
+    @staticmethod
+    def _thinned(growth: Growth, trial: Trial) -> Trial:
+        """A network with no more holes than it needs, refined once more."""
+        thinner = growth.thinned(trial)
+        if thinner is trial:
+            return trial
+        thinner = growth.polished(growth.truly(thinner))
+        return thinner if thinner.cost < (1 + _LOOSER) * trial.cost else trial
 
     @cached_property
     def region(self) -> Region:
@@ -178,7 +234,8 @@ class RouteSearch:
 
     @property
     def _total(self) -> int:
-        return self.options.starts_for(self.robot.body.mesh.dim) * self.cables
+        starts = self.options.starts_for(self.robot.body.mesh.dim)
+        return len(_EFFORTS[:starts]) * starts * self.cables
 
     def _beginning(self) -> Layout:
         """What the search begins with: nothing, what is locked, or all that there is."""
@@ -221,7 +278,7 @@ class RouteSearch:
         size = len(trial.layout.sites), len(trial.layout.routes)
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
-        stage = DesignStage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.error)
+        stage = DesignStage(words=words, robot=trial.layout.robot(digits=_DIGITS), error=trial.built)
         self.stages.append(stage)
         if self.best is None or trial.cost < self.best.cost:
             self.best = trial
@@ -235,12 +292,12 @@ class RouteSearch:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
             )
-        judged.sort(key=lambda network: network.rms_error)
+        judged.sort(key=lambda network: network.built)
         return judged[0], judged[1:]
 
     def judged(self, trial: Trial) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
-        robot = trial.layout.robot(digits=_DIGITS)
+        robot = self._numbered(trial.layout).robot(digits=_DIGITS)
         if violations(robot, self.constraints, self.region):
             return None
         simulation = Simulation(robot, body=self.bench.body)
@@ -251,7 +308,20 @@ class RouteSearch:
             ]
         except NotConvergedError:
             return None
-        return None if pulls(robot, reached, self.constraints) else Alternative(robot=robot, reached=tuple(reached))
+        if pulls(robot, reached, self.constraints):
+            return None
+        built = expected_error(simulation, reached, self.bench.uncertainty)
+        return Alternative(robot=robot, reached=tuple(reached), built=built)
+
+    def _numbered(self, layout: Layout) -> Layout:
+        """The layout with its new winches numbered in their order; those of the robot keep their names."""
+        own = {winch.name for winch in self.robot.winches}
+        free = (name for number in range(1, 99) if (name := f"winch_{number}") not in own)
+        sites = tuple(
+            site if site.winch.name in own else replace(site, winch=replace(site.winch, name=next(free)))
+            for site in layout.sites
+        )
+        return replace(layout, sites=sites)
 
     def _certificate(self, network: Alternative) -> Certificate | None:
         layout = layout_of(network.robot, self.constraints)
@@ -261,84 +331,6 @@ class RouteSearch:
 
 _DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a cable finer
 _ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
+_EFFORTS = (0.1, 0.3)  # networks are grown with strong paths, and again with weaker ones
+_LOOSER = 0.02  # fewer holes may cost so much
 _REFINED = 2  # networks that are refined to the end
-
-
-def design_fewest(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
-    """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
-
-    Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
-    that miss the tolerance the best one is returned. Locked winches count; `watch` is told each better network on the
-    way, whatever its number of winches.
-    """
-    size = robot.body.mesh.size
-    constraints, options, cables = request.constraints, request.route_options, request.cables
-    tolerance = _SHARE * size if options.tolerance is None else options.tolerance
-    sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
-    found: list[Network] = []
-    body, better = BodyPhysics(robot), Better(watch)
-    front: dict[Size, Alternative] = {}
-    interrupted = False
-    least = _fewest(robot, request)
-    largest = min(cables, int(COUNTS["winches"].most))
-    for winches in range(least, largest + 1):
-        most = min(cables, winches * constraints.cables_per_winch)
-        asked = replace(request, winches=winches, cables=most, options=sought)
-        search = RouteSearch(robot, asked, body, progress, watch=better)
-        try:
-            found.append(search.run())
-        except KeyboardInterrupt:
-            if not found:
-                raise
-            interrupted = True
-            break
-        except InputError:
-            raise
-        except HydrostatError:
-            if winches == largest and not found:
-                raise
-            continue
-        judged = (search.judged(trial) for trial in search.sizes.values())
-        _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
-        if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
-            break
-    best = found[-1]
-    if any(reached.rms_error > tolerance for reached in best.reached):
-        best = min(found, key=lambda network: network.rms_error)
-    return replace(
-        best,
-        alternatives=tuple(front[counts] for counts in sorted(front)),
-        request=request,
-        tried=sum(network.tried for network in found),
-        seconds=sum(network.seconds for network in found),
-        complete=not interrupted and all(network.complete for network in found),
-    )
-
-
-def _fewest(robot: Robot, request: DesignRequest) -> int:
-    """The number of winches to begin with: those that stay, two where a mirrored network has a cable on each."""
-    constraints, cables = request.constraints, request.cables
-    least = max(1, len(constraints.staying(robot)[0]))
-    if constraints.mirror is not None and constraints.cables_per_winch == 1:
-        least = max(least, 2)
-    if least > cables:
-        raise InputError(
-            f"{least} winches are needed at the least, for what is locked or mirrored, but there may be {cables} cables"
-        )
-    return least
-
-
-def _keep_best(front: dict[Size, Alternative], networks: Iterable[Alternative]) -> None:
-    """Put networks in place of those of their size that have a larger error."""
-    for network in networks:
-        size = size_of(network)
-        if size not in front or network.rms_error < front[size].rms_error:
-            front[size] = network
-
-
-def _all(network: Network) -> tuple[Alternative, ...]:
-    return Alternative(robot=network.robot, reached=network.reached), *network.alternatives
-
-
-_SHARE = 0.01  # the tolerance where none is given, as a share of the body's size
-_SAFE = 0.6  # share of the tolerance at which no more cables are added: the mean over poses hides the worst

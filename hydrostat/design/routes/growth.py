@@ -9,7 +9,7 @@ from hydrostat.design.polyline import turns
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.refine import RefineOptions, refine
+from hydrostat.design.routes.refine import RefineOptions, pushed_back, refine
 from hydrostat.robot import Mount
 from hydrostat.simulation import Simulation
 
@@ -35,29 +35,42 @@ class Growth:
         simulation = Simulation(layout.robot(), body=self.bench.body)
         return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
 
-    def seeds(self, trial: Trial, *, winches: int, cables: int) -> list[Trial]:
-        """Networks with one cable more, unlike one another, the best first."""
-        options = self.proposals.options
-        needed = cables - len(trial.layout.routes)
-        if needed <= 0:
-            return [trial]
-        starts = options.starts_for(trial.layout.dim)
-        found = self._tried(trial, winches, needed, count=max(options.trials, _SEEDS * starts), best=_SEEDS * starts)
-        refined = [self._short(seed) for seed in found]
-        return sorted(refined, key=self._rated)[:starts]
+    def grown(self, begun: Trial, *, winches: int, cables: int) -> list[Trial]:
+        """Networks with one cable more, and more again, the best first (beam search).
 
-    def grown(self, trial: Trial, *, winches: int, cables: int) -> Trial:
-        """The network with as many cables; fewer where no more can be built, or none is needed, or none helps."""
-        best = trial
-        while len(trial.layout.routes) < cables and not self.enough(trial, winches):
-            found = self.with_one_more(trial, winches=winches, needed=cables - len(trial.layout.routes))
-            if found is None:
+        Of all networks with a cable more than those that are kept the best few are refined, and the best of these kept.
+        It ends with as many cables as there may be, or when enough is reached, or cables no longer help.
+        """
+        options = self.proposals.options
+        width = options.starts_for(begun.layout.dim)
+        front, found = [begun], [begun] if begun.layout.routes else []
+        idle = 0
+        while front and idle < _PATIENCE:
+            first = not front[0].layout.routes
+            count, best = (max(options.trials, _SEEDS * width), _SEEDS * width) if first else (options.trials, width)
+            more: list[Trial] = []
+            for trial in front:
+                needed = cables - len(trial.layout.routes)
+                if needed > 0:
+                    more += self._tried(trial, winches, needed, count=count, best=best)
+            front = self._unlike([self._short(one) for one in self._unlike(more, _SEEDS * width)], width)
+            for trial in front:
+                self.noted(_words(trial), trial)
+            least = min((trial.cost for trial in found), default=np.inf)
+            found += front
+            if any(self.enough(trial, winches) for trial in front):
                 break
-            trial = found
-            if trial.cost <= _SPOILT * best.cost or len(best.layout.sites) < winches:
-                best = trial
-            self.noted(_words(trial), trial)
-        return best
+            short = front and len(front[0].layout.sites) < winches
+            idle = 0 if short or (front and front[0].cost < (1 - _HELPS) * least) else idle + 1
+        return sorted(found, key=lambda trial: trial.cost)
+
+    def _unlike(self, trials: list[Trial], count: int) -> list[Trial]:
+        """The first few, the best first, no two of the same cost."""
+        kept: list[Trial] = []
+        for trial in sorted(trials, key=self._rated):
+            if len(kept) < count and all(abs(trial.cost - other.cost) > 1e-3 * trial.cost for other in kept):
+                kept.append(trial)
+        return kept
 
     def with_one_more(self, trial: Trial, *, winches: int, needed: int) -> Trial | None:
         """The best network with one cable more (two where it is mirrored); None if there is none."""
@@ -78,7 +91,7 @@ class Growth:
             if found.cost < best.cost:
                 gain = 1.0 - found.cost / best.cost
                 best = found
-                if gain < _IDLE or best.error <= options.enough:
+                if gain < _IDLE or best.built <= options.enough:
                     break
             else:
                 effort, round_size = 4.0 * effort, max(round_size // 2, 1)
@@ -114,16 +127,71 @@ class Growth:
         """The network less cables that do not earn their place: without them the cost stays the same, or enough."""
         for number in reversed(range(len(trial.layout.routes))):
             route = trial.layout.routes[number]
-            others = [other for other in trial.layout.routes if other is not route and other.winch == route.winch]
-            if route.kept is not None or route.twin is not None or not others:
+            if route.kept is not None or route.twin is not None or len(trial.layout.routes) < 2:
                 continue
             rest = without(trial.layout, number)
-            allowed = max((1 + _LOSS) * trial.cost, self._options(0).enough)
+            allowed = max((1 + self._worth(trial, rest)) * trial.cost, self._options(0).enough)
             found = None if rest is None else self.bench.reached(rest, None, worst=allowed)
             if found is not None and found.cost <= allowed:
                 trial = found
                 self.noted("a cable that does nothing left out", trial)
         return trial
+
+    def _worth(self, trial: Trial, rest: Layout | None) -> float:
+        """The share of the cost that a cable must save to be kept, more where its winch goes too."""
+        winch = rest is not None and len(rest.sites) < len(trial.layout.sites)
+        return self.proposals.options.simplicity * (_MOTOR if winch else _CABLE)
+
+    def thinned(self, trial: Trial) -> Trial:
+        """The network less via points that do not earn their stitch, those first whose place matters most as built.
+
+        Each hole is sewn a little beside its mark, and each rubs: with fewer, less goes wrong.
+        """
+        kept: set[tuple[int, int]] = set()
+        while True:
+            holes = [hole for hole in self._holes(trial) if hole not in kept]
+            if not holes:
+                return trial
+            route, point = holes[0]
+            found = self._less_a_hole(trial, route, point)
+            if found is None:
+                kept.add((route, point))
+                continue
+            trial = found
+            kept = {(r, p - (r == route and p > point)) for r, p in kept}
+
+    def _holes(self, trial: Trial) -> list[tuple[int, int]]:
+        """Via points that may go: route and number of each, by their share of the variance."""
+        layout, shares = trial.layout, np.zeros(trial.layout.size)
+        for weight, columns in zip(self.bench.weights, trial.columns, strict=True):
+            places = layout.starts[-2]
+            shares[:places] += (weight * columns[:, :places] ** 2).sum(axis=0)
+        found = [
+            (float(shares[layout.place_of(number, point)].sum()), number, point)
+            for number, route in enumerate(layout.routes)
+            if route.kept is None and route.twin is None
+            for point in range(max(route.lead, 0) + 1, len(route.points) - 1)
+        ]
+        twins = {route.twin for route in layout.routes}
+        return [(number, point) for _, number, point in sorted(found, reverse=True) if number not in twins]
+
+    def _less_a_hole(self, trial: Trial, number: int, point: int) -> Trial | None:
+        layout = trial.layout
+        route = layout.routes[number]
+        points = np.delete(route.points, point, axis=0)
+        if (
+            len(points) - route.lead < _FEWEST
+            or not self.proposals.graph.region.sees(points[point - 1 : point], points[point : point + 1]).all()
+        ):
+            return None
+        routes = (*layout.routes[:number], replace(route, points=points), *layout.routes[number + 1 :])
+        region = self.proposals.graph.region
+        less = pushed_back(replace(layout, routes=routes), region, _NUDGE * self.proposals.graph.size)
+        if less is None:
+            return None
+        allowed = (1 + self.proposals.options.simplicity * _HOLE) * trial.cost
+        found = self.bench.reached(less, trial, iterations=_GLANCE, worst=allowed)
+        return found if found is not None and found.cost <= allowed else None
 
     def enough(self, trial: Trial, winches: int) -> bool:
         """Whether nothing more is needed."""
@@ -136,7 +204,10 @@ class Growth:
         Marker errors add up over the poses, so those of the first poses bound them from below.
         """
         kept: list[Trial] = []
-        for layout in self.proposals.grown(trial, winches=winches, needed=needed, count=count):
+        layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=count)
+        if not layouts:  # the best paths cannot be built: look at others
+            layouts = self.proposals.grown(trial, winches=winches, needed=needed, count=_FURTHER * count)
+        for layout in layouts:
             worst = self._rated(kept[-1]) / self._weighed(layout) if len(kept) == best else np.inf
             found = self.bench.reached(layout, trial, iterations=_GLANCE, worst=worst)
             if found is not None:
@@ -194,12 +265,18 @@ def _words(trial: Trial) -> str:
     return f"cable {len(layout.routes)}, pulled by {name}"
 
 
+_FURTHER = 4  # times as many paths are looked at where none of the best can be built
+_PATIENCE = 2  # so many rounds of cables that do not help end the growth
+_HELPS = 0.02  # a cable that lowers the cost by less than this share does not help
 _SEEDS = 3  # first cables that are refined for each that a network is grown from
 _GLANCE = 5  # steps of inverse kinematics that tell which of several networks is the best
 _ROUND = 8  # steps of refinement before the poses are found from rest again
 _IDLE = 0.02  # a round that gains less ends the refinement
 _SHALLOW = 0.5  # how much more a network costs whose winches are at the edge
 _TURNED = 0.2  # how much more a network costs whose cables turn by 1 rad
-_SPOILT = 3.0  # a cable may raise the error so many times, for refinement to bring it down again; else it is left out
-_LOSS = 0.005  # a cable whose loss costs less than this share does not earn its place
+_HOLE = 0.003  # a hole without which the cost is larger by less than this share does not earn its stitch
+_FEWEST = 2  # points of the bare part of a cable
+_NUDGE = 0.005  # limits are felt within this share of the body's size where a hole was left out
+_CABLE = 0.02  # a cable whose loss costs less than this share does not earn its place
+_MOTOR = 0.04  # nor a winch whose loss does
 _WORTH = 0.01  # an exchange must gain so much

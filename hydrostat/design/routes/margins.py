@@ -8,8 +8,10 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Vector
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.polyline import nearest_shares
 from hydrostat.design.region import Region
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.runs import Runs, runs_of
 from hydrostat.design.zone import Zone
 from hydrostat.robot import Mount
 
@@ -37,6 +39,7 @@ class _MarginRows:
         self._winches()
         self._edges()
         self._gaps()
+        self._crossings()
         self._turns()
         self._lengths()
         self._bounds()
@@ -137,6 +140,49 @@ class _MarginRows:
             for hole in np.flatnonzero(free & (np.linalg.norm(places - centre, axis=1) < needs + self.reach)):
                 self._apart(places[hole], where[hole], centre, own, float(needs[hole]))
 
+    def _crossings(self) -> None:
+        """Cables apart from each other and from winches of others, all along: none cross, none lie side by side."""
+        gap = self.constraints.cable_gap
+        if gap == 0.0:
+            return
+        layout, runs = self.layout, runs_of(self.layout)
+        one, other = np.triu_indices(len(runs.routes), 1)
+        asked = ((runs.routes[one] != runs.routes[other]) | (other > one + 1)) & ~(runs.kept[one] & runs.kept[other])
+        one, other = one[asked], other[asked]
+        middles, halves = runs.ends.mean(axis=1), 0.5 * np.linalg.norm(np.diff(runs.ends, axis=1)[:, 0], axis=1)
+        near = np.linalg.norm(middles[one] - middles[other], axis=1) < halves[one] + halves[other] + gap + self.reach
+        one, other = one[near], other[near]
+        shares = nearest_shares(runs.ends[one], runs.ends[other])
+        places = [runs.at(which, share) for which, share in zip((one, other), shares, strict=True)]
+        shared = (runs.winches[one] == runs.winches[other]) & (runs.routes[one] != runs.routes[other])
+        radii = np.array([2 * site.winch.spool_radius for site in layout.sites])
+        centres = np.array([site.winch.at for site in layout.sites])
+        for places_of in places:
+            away = np.linalg.norm(places_of - centres[runs.winches[one]], axis=1)
+            shared &= away < radii[runs.winches[one]] - 1e-6
+        for k in np.flatnonzero(~shared & (np.linalg.norm(places[0] - places[1], axis=1) < gap + self.reach)):
+            self._runs_apart(runs, (int(one[k]), places[0][k]), (int(other[k]), places[1][k]), gap)
+        for number, site in enumerate(layout.sites):
+            if site.winch.mount is Mount.WORLD:
+                continue
+            foreign = np.flatnonzero((runs.winches != number) & ~(runs.kept & site.fixed))
+            spot = np.repeat(centres[number][None, None], len(foreign), axis=0).repeat(2, axis=1)
+            nearest = runs.at(foreign, nearest_shares(runs.ends[foreign], spot)[0])
+            own = slice(layout.dim * number, layout.dim * (number + 1))
+            for run, place in zip(foreign.tolist(), nearest, strict=True):
+                self._runs_apart(runs, (run, place), (own, centres[number]), float(radii[number]))
+
+    def _runs_apart(self, runs: "Runs", one: tuple[int, Vector], other: tuple[int | slice, Vector], gap: float) -> None:
+        """Two places of cables, or of a cable and a winch, at least a gap apart."""
+        span = one[1] - other[1]
+        distance = float(np.linalg.norm(span))
+        if distance - gap - _HAIR > self.reach:
+            return
+        way = span / distance if distance > 1e-9 else np.eye(len(span))[0]
+        parts = runs.parts(one[0], one[1], -way)
+        parts += [(other[0], way)] if isinstance(other[0], slice) else runs.parts(other[0], other[1], way)
+        self._add(distance - gap - _HAIR, *parts)
+
     def _apart(self, one: Vector, where: slice, other: Vector, there: slice, gap: float) -> None:
         span = one - other
         distance = float(np.linalg.norm(span))
@@ -153,6 +199,8 @@ class _MarginRows:
             for kind in ("turn", "radius") if radius > 0 else ("turn",):
                 margin, limit = (_turn_margin, turn) if kind == "turn" else (_radius_margin, radius)
                 values = margin(corners, limit)
+                if kind == "turn" and self.layout.sites[route.winch].winch.mount is Mount.WORLD:
+                    values[0] = np.inf  # where it enters: the tube outside hangs as it likes
                 near = np.flatnonzero(values <= self.reach)
                 slopes = _sloped(corners[near], margin, limit)
                 for corner, slope in zip(near.tolist(), slopes, strict=True):

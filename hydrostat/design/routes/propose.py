@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.design.polyline import Route, resample
+from hydrostat.design.polyline import Route, nearest_shares, resample
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import mirrored
 from hydrostat.design.routes.bench import Bench, Trial
@@ -16,7 +17,6 @@ from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.robot import Mount, Winch
-from hydrostat.simulation import rig_slopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +27,7 @@ class Proposals:
     graph: RouteGraph  # of via points
     options: RouteOptions  # of the search
     spacing: float  # of via points [m]
+    effort: float = 0.1  # share of the residual that the tension limit is worth where paths are priced
 
     @cached_property
     def deepest(self) -> float:
@@ -34,33 +35,44 @@ class Proposals:
         inner = self.graph.points[~self.graph.world]
         return max(float(self.graph.region.depths(inner).max(initial=0.0)), 1e-9)
 
-    def priced(self, trial: Trial, *, count: int, winches: Sequence[int] | None = None) -> list[PricedPath]:
+    def priced(
+        self, trial: Trial, *, count: int, winches: Sequence[int] | None = None, shared: int | None = None
+    ) -> list[PricedPath]:
         """Paths that promise most beside the network there is, at the equilibria where it is.
 
         What the present winches can do by themselves is taken out of residual and moves, as they are free to follow.
+        A cable of its own winch has a tension for each pose; one of the `shared` winch is pulled in all of them as that
+        winch is, in proportion to its contractions.
         """
-        bench = self.bench
+        bench, graph = self.bench, self._free_of(trial.layout)
         moves, residuals, owners, ridges = [], [], [], []
         for index, pose in enumerate(trial.poses):
-            slopes = rig_slopes(trial.simulation, pose, bench.markers[index])
+            slopes = trial.slopes[index]
             rows = len(bench.markers[index]) * trial.layout.dim
             fields = np.moveaxis(slopes.fields[:rows], 0, 2)
-            own = bench.weights[index] * self.graph.edge_moves(pose.nodes, fields)
+            own = bench.weights[index] * graph.edge_moves(pose.nodes, fields)
             residual = bench.residual(trial.simulation, index, pose.nodes)
             free = _span(bench.weights[index] * slopes.contractions[:rows])
             moves.append(own - (own @ free) @ free.T)
             residuals.append(residual - free @ (free.T @ residual))
             owners.append(np.full(rows, index))
-            if self.graph.still.any():
-                moves.append(self._never(moves[-1]))
+            if graph.still.any():
+                moves.append(_NEVER * np.abs(moves[-1]).max(initial=1e-12) * graph.still[:, None])
                 residuals.append(np.zeros(1))
                 owners.append(np.array([index]))
-            ridges.append((_EFFORT * float(np.linalg.norm(residual)) / bench.constraints.tension_limit) ** 2)
+            ridges.append((self.effort * float(np.linalg.norm(residual)) / bench.constraints.tension_limit) ** 2)
         constraints, options = bench.constraints, self.options
+        pulled = np.ones(len(ridges))
+        taken = np.array([0.0 if shared is None else max(float(p.contractions[shared]), 0.0) for p in trial.poses])
+        follows = float(taken.max()) > _STILL
+        if follows:
+            pulled = taken / taken.max()
+            ridges = [float((pulled**2 * ridges).sum())]
+        rows = np.concatenate(owners)
         missed = Missed(
             residual=np.concatenate(residuals),
-            moves=np.concatenate(moves, axis=1),
-            pose_of_row=np.concatenate(owners),
+            moves=np.concatenate(moves, axis=1) * pulled[rows],
+            pose_of_row=np.zeros_like(rows) if follows else rows,
             ridge=np.maximum(ridges, 1e-24),
             most=constraints.tension_limit,
         )
@@ -71,19 +83,50 @@ class Proposals:
             leads=constraints.leads,
             lead_penalty=options.lead_penalty,
         )
-        return price_paths(self.graph, missed, limits, count=count, winches=winches)
+        return price_paths(graph, missed, limits, count=count, winches=winches)
 
     @property
     def _turn(self) -> float:
         """The sharpest turn that via points at their spacing may have [degrees]."""
         constraints = self.bench.constraints
+        turn = max(constraints.turn, _COARSE)
         if constraints.bend_radius == 0.0:
-            return constraints.turn
-        return min(constraints.turn, float(np.degrees(2 * np.arctan(0.5 * self.spacing / constraints.bend_radius))))
+            return turn
+        return min(turn, float(np.degrees(2 * np.arctan(0.5 * self.spacing / constraints.bend_radius))))
 
-    def _never(self, moves: np.ndarray) -> np.ndarray:
-        """A row in which still edges move so much that no bare part runs there: only leads may."""
-        return (_NEVER * np.abs(moves).max(initial=1e-12) * self.graph.still)[:, None]
+    def _free_of(self, layout: Layout) -> RouteGraph:
+        """The graph without the runs that would cross the cables there are, or come too near to them."""
+        gap = self.bench.constraints.cable_gap
+        if gap == 0.0:
+            return self.graph
+        runs = self.graph.points[self.graph.edges]
+        free = self._one_side(runs, gap)
+        for route in layout.routes:
+            winch = layout.sites[route.winch].winch
+            points = route.points[int(winch.mount is Mount.WORLD) :]
+            for start, end in pairwise(points):
+                near = np.flatnonzero(free & self._reaches(runs, start, end, gap))
+                own = np.repeat(np.stack([start, end])[None], len(near), axis=0)
+                share, other = nearest_shares(runs[near], own)
+                here = runs[near, 0] + share[:, None] * (runs[near, 1] - runs[near, 0])
+                there = start + other[:, None] * (end - start)
+                beside = np.linalg.norm(there - winch.at, axis=1) <= _BESIDE * winch.spool_radius
+                free[near] = beside | (np.linalg.norm(here - there, axis=1) >= gap)
+        return replace(self.graph, edges=self.graph.edges[free], still=self.graph.still[free])
+
+    def _one_side(self, runs: np.ndarray, gap: float) -> np.ndarray:
+        """Which runs do not meet mirror images: they are on one side of the mirror, and none runs along it."""
+        mirror = self.bench.constraints.mirror
+        if mirror is None:
+            return np.ones(len(runs), dtype=bool)
+        off = runs[:, :, "xyz".index(mirror)]
+        return (off.min(axis=1) > -_ON_MIRROR) & (off.max(axis=1) > 0.5 * gap)
+
+    @staticmethod
+    def _reaches(runs: np.ndarray, start: Vector, end: Vector, gap: float) -> np.ndarray:
+        """Which runs have a box that comes within a gap of a segment's."""
+        low, high = np.minimum(start, end) - gap, np.maximum(start, end) + gap
+        return ((runs.max(axis=1) >= low) & (runs.min(axis=1) <= high)).all(axis=1)
 
     def grown(self, trial: Trial, *, winches: int, needed: int, count: int) -> list[Layout]:
         """Layouts with one cable more, that can be built, the most promising first.
@@ -101,10 +144,11 @@ class Proposals:
             others = [path for path in paths if path not in deep][: count // 2]
             found += [(path, None) for path in (*deep, *others)]
         if needed > missing:
-            free = {self._near(site): index for index, site in enumerate(layout.sites) if self._has_room(layout, index)}
-            if free:
-                paths = self.priced(trial, count=count, winches=list(free))
-                found += [(path, free[path.winch]) for path in paths]
+            free = [index for index in range(len(layout.sites)) if self._has_room(layout, index)]
+            for index in free:
+                place = [self._near(layout.sites[index])]
+                paths = self.priced(trial, count=-(-count // len(free)), winches=place, shared=index)
+                found += [(path, index) for path in paths]
         found.sort(key=lambda pair: -pair[0].gain)
         layouts = [self._with(layout, path, winch) for path, winch in found]
         most = len(layout.routes) + needed
@@ -187,12 +231,16 @@ def _span(moves: np.ndarray) -> np.ndarray:
     return left[:, values > _WEAK * max(values.max(initial=0.0), 1e-12)]
 
 
-_EFFORT = 0.1  # share of the residual that the tension limit is worth
 _CHOICE = 4  # so many paths are priced for each that is tried, for the winches of some are deeper in the body
 _EDGE = 0.1  # what the gain of a path counts whose winch is at the edge of the body
 _WEAK = 0.02  # winches that move the rows less than this share of the strongest are not counted on
 
 
+# runs of the graph go few ways: so sharply may a path turn that is smoothed afterwards [degrees]
+_COARSE = 60.0
+_ON_MIRROR = 1e-3  # so near to the mirror a point stands in it [m]
+_STILL = 1e-6  # a winch that takes in less [m] in every pose is as good as a new one
+_BESIDE = 2.5  # within so many spool radii of its winch a cable may be near another, which may be of the same winch
 _NEVER = 1e5  # so many times the largest move of an edge
 _REACH = 0.03  # what is farther than this share of the body's size from a limit does not feel it
 

@@ -1,5 +1,6 @@
 """`refine`: winches, via points, stoppers and spools, moved to where the pose error is least."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,6 @@ from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.margins import margins
 from hydrostat.ik.search.linear_model import least_squares
-from hydrostat.simulation import rig_slopes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,12 +57,12 @@ class _Refinement:
     def run(self, trial: Trial) -> Trial:
         idle = 0
         for _ in range(self.options.iterations):
-            if trial.error <= self.options.enough:
+            if trial.built <= self.options.enough:
                 break
             effort = (
-                self.options.effort * trial.error / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.routes)))
+                self.options.effort * trial.built / (self.limit * np.sqrt(len(trial.poses) * len(trial.layout.routes)))
             )
-            bend = self.options.straightness * trial.error / np.sqrt(max(len(turns(trial.layout)), 1))
+            bend = self.options.straightness * trial.built / np.sqrt(max(len(turns(trial.layout)), 1))
             found = self._step(trial, effort, bend)
             if found is None:
                 break
@@ -74,8 +74,8 @@ class _Refinement:
         return trial
 
     def _merit(self, trial: Trial, effort: float, bend: float) -> float:
-        """Squares of error, effort and turns, and of what tensions exceed."""
-        total = trial.error**2 + float(((bend * turns(trial.layout)) ** 2).sum())
+        """Squares of the error as built, effort and turns, and of what tensions exceed."""
+        total = trial.built**2 + float(((bend * turns(trial.layout)) ** 2).sum())
         for pose in trial.poses:
             over = np.maximum(pose.tensions - self.limit, 0.0)
             total += float((effort**2) * (pose.tensions**2).sum() + (_OVER * effort) ** 2 * (over**2).sum())
@@ -142,7 +142,7 @@ def linear_model(
     count = free + winches * len(trial.poses)
     matrix, right, rows, lefts = [], [], [], []
     for index, pose in enumerate(trial.poses):
-        slopes = rig_slopes(trial.simulation, pose, bench.markers[index])
+        slopes = trial.slopes[index]
         own = np.zeros((len(slopes.contractions), count))
         own[:, :free] = _by_numbers(layout, slopes) @ layout.ties
         begin = free + winches * index
@@ -150,6 +150,12 @@ def linear_model(
         markers = len(own) - len(layout.routes)
         matrix += [-bench.weights[index] * own[:markers], effort * own[markers:]]
         right += [bench.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
+        for moved, changed in _scattered(bench, trial, index):
+            scattered = np.zeros((markers, count))
+            scattered[:, :free] = changed[:, winches:] @ layout.ties
+            scattered[:, begin : begin + winches] = changed[:, :winches]
+            matrix.append(scattered)
+            right.append(moved)
         near = pose.tensions > 0.5 * limit
         rows.append(own[markers:][near])
         lefts.append(limit - pose.tensions[near])
@@ -163,6 +169,9 @@ def linear_model(
                 rows.append(row)
                 lefts.append(np.array([left]))
     bends, slopes = turns(layout), turn_slopes(layout)
+    # What friction adds to the variance falls with the turns, as if in proportion: so many times do they weigh more.
+    rubbed = sum(float((w * w * one[:, -1] ** 2).sum()) for w, one in zip(bench.weights, trial.columns, strict=True))
+    bend = float(np.hypot(bend, np.sqrt(rubbed) / max(float(np.linalg.norm(bends)), 1e-9)))
     straight = np.zeros((len(bends), count))
     straight[:, :free] = bend * slopes @ layout.ties
     matrix.append(straight)
@@ -176,6 +185,39 @@ def linear_model(
         np.vstack(matrix), np.concatenate(right), np.vstack([*rows, tied]),
         np.concatenate([*lefts, geometry.left]), scale, free,
     )  # fmt: skip
+
+
+def _scattered(bench: Bench, trial: Trial, index: int) -> Iterator[tuple[Vector, np.ndarray]]:
+    """Moves of the markers of a pose as built otherwise, and their slopes by contractions, then numbers of the layout.
+
+    The variance is the sum of squares of the singular values of the tolerances' columns. Its slope is exact where each
+    right singular vector is held: then it is that of the move from here to a robot built with these tolerances. Only
+    the strongest few are looked at, and of the tolerances only those of holes and spools.
+    """
+    layout, pose, weight = trial.layout, trial.poses[index], bench.weights[index]
+    places, cables, winches = layout.starts[-2], len(layout.routes), len(layout.sites)
+    which = np.r_[0:places, places + cables : places + cables + winches]
+    columns = weight * trial.columns[index][:, which]
+    _, values, right = np.linalg.svd(columns, full_matrices=False)
+    most = _SCATTERED * trial.built
+    for direction in range(min(_DIRECTIONS, int((values > most).sum()))):
+        numbers = layout.numbers.copy()
+        numbers[:places] += bench.uncertainty.sewing * right[direction, :places]
+        scale = 1.0 + bench.uncertainty.spool * right[direction, places:]
+        found = bench.scattered(layout.at(numbers), pose, scale * pose.contractions, index)
+        if found is None:
+            continue
+        simulation, nodes, slopes = found
+        here = bench.residual(trial.simulation, index, pose.nodes)
+        moved = here - bench.residual(simulation, index, nodes)
+        markers = len(moved)
+        own, other = (
+            np.hstack([by[:markers], _by_numbers(layout, slope)[:markers]])
+            for by, slope in (
+                (trial.slopes[index].contractions, trial.slopes[index]), (slopes.contractions * scale, slopes),
+            )
+        )  # fmt: skip
+        yield moved, weight * (other - own)
 
 
 def turns(layout: Layout) -> Vector:
@@ -264,5 +306,8 @@ _LIGHT = 0.1  # damping of contractions against that of the numbers of the layou
 _OVER = 30.0  # how much more the part of a tension beyond its limit weighs
 
 _PUSHES = 8
+
+_DIRECTIONS = 2  # so many singular vectors of the tolerances are followed
+_SCATTERED = 0.1  # those that add less than this share of the error are not
 
 _CLOSE = 2e-5  # what may be left of a limit [m]

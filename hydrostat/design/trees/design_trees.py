@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, islice, product
 from math import comb
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.design.buildable import violations
+from hydrostat.design.built_error import expected_error
 from hydrostat.design.muscles.activation import (
     Activation,
     FibreKind,
@@ -26,26 +27,29 @@ from hydrostat.design.region import body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
+from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
 from hydrostat.robot import Cable, Pose, Robot, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
 
 
-def design_trees(robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen) -> Network:
+def design_trees(
+    robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen, body: BodyPhysics | None = None
+) -> Network:
     """Winch trees: the network of the thesis's method that reaches the poses best.
 
     Muscle fibres reach each pose; the strongest are joined to routes; a winch is put where the routes it pulls score
     best; what it uses is removed and the next winch is placed (E25). This is done for every combination of thresholds,
     distances, weights and shares of the options, and of all these networks the one is returned that reaches the poses
     best by its own winches (E24) without pulling too hard, less the cables that it does as well without. Nothing is
-    drawn at random.
+    drawn at random. `body` is the physics of the body, if it is made already.
 
     Raises:
         InputError: a body that is not flat or too thin.
         HydrostatError: no network can be built from the muscles that were found.
     """
-    return _TreeDesign(robot, request, progress, watch).run()
+    return _TreeDesign(robot, request, progress, watch, body or BodyPhysics(robot)).run()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,11 +76,15 @@ class _TreePlan:
 class _TreeDesign:
     """One run."""
 
-    def __init__(self, robot: Robot, request: DesignRequest, progress: Progress, watch: Watch) -> None:
+    def __init__(
+        self, robot: Robot, request: DesignRequest, progress: Progress, watch: Watch, body: BodyPhysics
+    ) -> None:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
-        self.constraints, self.options = request.constraints, request.tree_options
+        self.options = request.tree_options
+        # The thesis knows no distance between cables, and its routes turn as its options say.
+        self.constraints = replace(request.constraints, cable_gap=0.0, turn=self.options.turn)
         self.winches, self.cables = int(request.winches), request.cables
-        self.body, self.mesh = BodyPhysics(robot), robot.body.mesh
+        self.body, self.mesh = body, robot.body.mesh
         self.region = body_region(robot.body, self.constraints.clearance)
         self.spacing = float(self.mesh.edge_lengths.mean())
 
@@ -112,12 +120,17 @@ class _TreeDesign:
             source=self.robot,
             request=self.request,
             reached=reached,
+            built=expected_error(Simulation(designed, body=self.body), reached, self._uncertainty),
             trace=TreeTrace(
                 activations=activations, candidates=plan.candidates, trees=tuple(plan.trees.routes), score=plan.score
             ),
             tried=len(built),
             seconds=time.process_time() - began,
         )
+
+    @property
+    def _uncertainty(self) -> Uncertainty:
+        return self.request.uncertainty or Uncertainty.of(self.robot.body)
 
     def _build_all(self, plans: Iterable["_TreePlan"]) -> list[tuple["_TreePlan", Robot]]:
         """The first of the plans that can be built, with their robots."""
@@ -207,7 +220,7 @@ class _TreeDesign:
         )
         if laid is None or not all(self.region.holds(points) for points in laid):
             return None
-        if max(map(sharpest_turn, laid)) > self.constraints.turn:
+        if max(map(sharpest_turn, laid)) > self.options.turn:
             return None
         winches = [self._winch(index, tree) for index, tree in enumerate(chosen)]
         cables = []

@@ -220,6 +220,12 @@ def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[Winch
     return tuple(draft.unit(robot, parts, laid.get(draft.winch.name)) for draft in drafts)
 
 
+def unit_room(robot: Robot, winch: Winch, options: PartOptions, motor: Motor) -> Cuboid:
+    """Box round the unit of a winch before it is laid, shaft along z, face of the motor at z = 0 [mm]."""
+    cables = tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name)
+    return _UnitDraft.of(robot, winch, cables, options, motor).housing.room
+
+
 def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
     """Sentences for units in a body of space that stand closer than they are wide; flat ones are laid one by one."""
     inside = [unit for unit in units if unit.mount is Mount.BODY and unit.place is None]

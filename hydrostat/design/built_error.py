@@ -1,0 +1,104 @@
+"""`built_errors`, `expected_error`: pose errors of a design as it may be built, its commands played open loop."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.design.spread import spread_columns
+from hydrostat.design.uncertainty import Uncertainty
+from hydrostat.errors import NotConvergedError
+from hydrostat.ik import ReachedPose
+from hydrostat.robot import Pose, Robot
+from hydrostat.simulation import Simulation, rig_slopes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BuiltErrors:
+    """Rms errors over markers and poses of robots as they may be built [m].
+
+    Attributes:
+        drawn: of each draw, (draws,); infinite where a pose has no equilibrium.
+        model: of the design itself, by the commands it was given.
+    """
+
+    drawn: Vector
+    model: float
+
+    @property
+    def median(self) -> float:
+        """Half of the robots are as good as this [m]."""
+        return float(np.median(self.drawn))
+
+    @property
+    def most(self) -> float:
+        """Nine of ten robots are as good as this: the 90 % quantile [m]."""
+        return float(np.quantile(self.drawn, 0.9, method="higher"))
+
+
+def built_errors(
+    robot: Robot,
+    poses: Sequence[Pose],
+    commands: Sequence[Vector],
+    uncertainty: Uncertainty,
+    *,
+    draws: int = 40,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> BuiltErrors:
+    """Play the same contractions on robots drawn at random, and measure how far their markers are from the targets.
+
+    Each is solved from rest along the straight loading path, friction included. The draws are the same for the same
+    seed.
+
+    Args:
+        robot: as it was designed.
+        poses: the targets.
+        commands: contractions of each pose [m].
+        uncertainty: what differs.
+        draws: how many robots.
+        seed: of the draws.
+        progress: told how many robots are done, and of how many.
+    """
+    found = []
+    for number in range(draws):
+        built = uncertainty.draw(robot, np.random.default_rng([seed, number]))
+        found.append(played_error(built, poses, commands))
+        if progress is not None:
+            progress(number + 1, draws)
+    return BuiltErrors(drawn=np.array(found), model=played_error(robot, poses, commands))
+
+
+def played_error(robot: Robot, poses: Sequence[Pose], commands: Sequence[Vector]) -> float:
+    """Rms error over markers and poses of contractions played from rest [m]; infinite without an equilibrium."""
+    simulation = Simulation(robot)
+    squares = []
+    for pose, command in zip(poses, commands, strict=True):
+        solved = simulation.solve(np.asarray(command), strict=False)
+        if not solved.result.converged:
+            return float("inf")
+        misses = [np.subtract(solved.markers[name], target) for name, target in pose.targets.items()]
+        squares.append(np.mean(np.sum(np.square(misses), axis=1)))
+    return float(np.sqrt(np.mean(squares)))
+
+
+def expected_error(simulation: Simulation, reached: Sequence[ReachedPose], uncertainty: Uncertainty) -> float:
+    """Root mean square of the marker error over poses and over robots as they may be built [m].
+
+    By first-order second moments (`spread_columns`): squares of the error in the model and of what each tolerance adds.
+    Infinite at a pose that is about to snap.
+    """
+    names = [marker.name for marker in simulation.robot.markers]
+    squares = []
+    for one in reached:
+        targets = one.wanted.targets
+        markers = [names.index(name) for name in targets]
+        try:
+            slopes = rig_slopes(simulation, one.pose, markers)
+        except NotConvergedError:
+            return float("inf")
+        rows = len(markers) * simulation.robot.body.mesh.dim
+        columns = spread_columns(simulation, one.pose, slopes, uncertainty, rows)
+        squares.append(one.rms_error**2 + float((columns**2).sum()) / len(markers))
+    return float(np.sqrt(np.mean(squares)))

@@ -1,0 +1,99 @@
+"""`design_fewest`: the fewest winches that bring every pose within a tolerance (F1, F2)."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from hydrostat.design.network import Alternative, Network, Size, size_of
+from hydrostat.design.progress import Better, Progress, Watch, unseen
+from hydrostat.design.request import COUNTS, DesignRequest
+from hydrostat.design.routes.design_routes import Hints, RouteSearch
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Robot
+from hydrostat.simulation import BodyPhysics
+
+
+def design_fewest(
+    robot: Robot,
+    request: DesignRequest,
+    *,
+    progress: Progress,
+    watch: Watch = unseen,
+    hints: Hints = lambda _: (),
+) -> Network:
+    """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
+
+    Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
+    that miss the tolerance the best one is returned. Locked winches count; `watch` is told each better network on the
+    way, whatever its number of winches.
+    """
+    size = robot.body.mesh.size
+    constraints, options, cables = request.constraints, request.route_options, request.cables
+    tolerance = _SHARE * size if options.tolerance is None else options.tolerance
+    sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
+    found: list[Network] = []
+    body, better = BodyPhysics(robot), Better(watch)
+    front: dict[Size, Alternative] = {}
+    interrupted = False
+    least = _fewest(robot, request)
+    largest = min(cables, int(COUNTS["winches"].most))
+    for winches in range(least, largest + 1):
+        most = min(cables, winches * constraints.cables_per_winch)
+        asked = replace(request, winches=winches, cables=most, options=sought)
+        search = RouteSearch(robot, asked, body, progress, watch=better, hints=hints)
+        try:
+            found.append(search.run())
+        except KeyboardInterrupt:
+            if not found:
+                raise
+            interrupted = True
+            break
+        except InputError:
+            raise
+        except HydrostatError:
+            if winches == largest and not found:
+                raise
+            continue
+        judged = (search.judged(trial) for trial in search.sizes.values())
+        _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
+        if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
+            break
+    best = found[-1]
+    if any(reached.rms_error > tolerance for reached in best.reached):
+        best = min(found, key=lambda network: network.built)
+    return replace(
+        best,
+        alternatives=tuple(front[counts] for counts in sorted(front)),
+        request=request,
+        tried=sum(network.tried for network in found),
+        seconds=sum(network.seconds for network in found),
+        complete=not interrupted and all(network.complete for network in found),
+    )
+
+
+def _fewest(robot: Robot, request: DesignRequest) -> int:
+    """The number of winches to begin with: those that stay, two where a mirrored network has a cable on each."""
+    constraints, cables = request.constraints, request.cables
+    least = max(1, len(constraints.staying(robot)[0]))
+    if constraints.mirror is not None and constraints.cables_per_winch == 1:
+        least = max(least, 2)
+    if least > cables:
+        raise InputError(
+            f"{least} winches are needed at the least, for what is locked or mirrored, but there may be {cables} cables"
+        )
+    return least
+
+
+def _keep_best(front: dict[Size, Alternative], networks: Iterable[Alternative]) -> None:
+    """Put networks in place of those of their size that have a larger error."""
+    for network in networks:
+        size = size_of(network)
+        if size not in front or network.built < front[size].built:
+            front[size] = network
+
+
+def _all(network: Network) -> tuple[Alternative, ...]:
+    return Alternative(robot=network.robot, reached=network.reached, built=network.built), *network.alternatives
+
+
+_SHARE = 0.01  # the tolerance where none is given, as a share of the body's size
+_SAFE = 0.6  # share of the tolerance at which no more cables are added: the mean over poses hides the worst

@@ -1,0 +1,46 @@
+"""Where a winch can be built in. Oracle: the ways to lie that the kit tries for a unit."""
+
+import numpy as np
+import pytest
+from builders import gallery_robot
+
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.winch_room import _example, winch_room
+from hydrostat.design.zone import Zone
+from hydrostat.fabrication.kit_options import PartOptions
+from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
+from hydrostat.fabrication.parts.winch_unit import unit_room
+
+
+@pytest.mark.parametrize("name", ["starfish", "letter_e"])
+def test_a_unit_lies_within_the_seam_wherever_there_is_room(name: str, unchecked: None) -> None:
+    """Of the strongest motor that fits; and nowhere 8 mm outside the room: the kit slides a unit by 6."""
+    robot, limits = gallery_robot(name), Constraints()
+    zones = winch_room(robot, limits, 2)
+    assert zones
+    box = unit_room(*_example(robot, limits, 2), PartOptions(), MOTORS[-1])
+    seam, thick = seam_of(robot.body), 1e3 * robot.body.thickness
+    nodes = robot.body.mesh.nodes
+    away = np.min([zone.distances(nodes) for zone in zones], axis=0)
+
+    def fits(at: np.ndarray) -> bool:
+        unit = UnitBox(winch="w", at=(1e3 * at[0], 1e3 * at[1]), low=box.low, high=box.high, along=0.0)
+        return any(place.outside <= TOUCHES and place.depth <= (1 + GIVES) * thick for place in ways_to_lie(unit, seam))
+
+    inside, outside = nodes[away < -5e-4][::4], nodes[away > 8e-3][::6]
+    assert len(inside) > 3
+    assert all(map(fits, inside))
+    assert not any(map(fits, outside))
+
+
+def test_zones_of_ones_own_count(unchecked: None) -> None:
+    robot = gallery_robot("starfish")
+    small = Zone(at=(0.0, 0.0), radius=0.02)
+    zones = winch_room(robot, Constraints(winch_zones=(small,)), 2)
+    corners = np.array([corner for zone in zones for corner in zone.outline])
+    assert np.linalg.norm(corners, axis=1).max() <= 0.0201
+
+
+def test_in_space_zones_are_left_as_they_are(unchecked: None) -> None:
+    assert winch_room(gallery_robot("cupping_hand"), Constraints(), 2) == ()
