@@ -53,6 +53,7 @@ TWO_FINGERS = {
 
 BODIES = {
     "starfish": Body(winches=2, cables=6),
+    "starfish_3": Body(winches=3, cables=5, example="starfish"),
     "robot": Body(winches=2, cables=6, fibres=414),
     "pig": Body(winches=1, cables=2, fibres=571),
     "letter_e": Body(winches=1, cables=3, fibres=442),
@@ -65,7 +66,8 @@ BODIES = {
     ),
     "trunk": Body(winches=4, cables=6, constraints=Constraints(clearance=0.003, travel=0.15)),
 }
-"""The designs of the thesis with its numbers of winches and cables (N1), the starfish, and two bodies in space.
+"""The designs of the thesis with its numbers of winches and cables (N1), the starfish with two winches and with the three
+of its own network, and two bodies in space.
 
 The poses of the examples in space are what their own networks reach, to the millimetre; `five_poses` is the cupping
 hand with one more of that kind. It keeps its ten winches, so its own network can hardly be beaten. The trunk gets four

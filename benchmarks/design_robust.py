@@ -31,7 +31,7 @@ from hydrostat.simulation import Simulation
 
 METHODS = ("hand", "trees", "exact", "routes")
 
-EVERY = ("starfish", "robot", "pig", "letter_e", "letter_s", "puppy", "squid", "cupping_hand", "trunk")
+EVERY = ("starfish", "starfish_3", "robot", "pig", "letter_e", "letter_s", "puppy", "squid", "five_poses", "trunk")
 
 
 def network(method: str, robot: Robot, body: Body, poses: Sequence[Pose]) -> Robot | None:

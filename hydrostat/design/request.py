@@ -38,7 +38,7 @@ class RouteOptions:
         hops: most edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
         trials: paths whose networks are solved before one is added.
-        starts: networks that are grown, each from another first cable; if left out two for a flat body, one in space.
+        starts: networks that are grown side by side along priced paths; one more is grown from sketches.
         exchanges: most cables that are taken out, one at a time, for the best to be put in their place; the last round
             of all cables is followed by another where it gained a fifth.
         steps: of refinement after each cable.
@@ -53,7 +53,7 @@ class RouteOptions:
     hops: int = 14
     lead_penalty: float = 0.3
     trials: int = 4
-    starts: int | None = None
+    starts: int = 2
     exchanges: int = 12
     steps: int = 5
     polish: int = 60
@@ -64,10 +64,6 @@ class RouteOptions:
             if not allowed.holds(getattr(self, name)):
                 raise InputError(f"RouteOptions.{name} must be {allowed}, not {getattr(self, name)!r}")
 
-    def starts_for(self, dim: int) -> int:
-        """Networks that are grown for a body of so many dimensions."""
-        return self.starts if self.starts is not None else {2: 2, 3: 2}[dim]
-
 
 ROUTE_RANGES = {
     "enough": Range(),
@@ -76,7 +72,7 @@ ROUTE_RANGES = {
     "hops": Range(whole=True, least=1),
     "lead_penalty": Range(),
     "trials": Range(whole=True, least=1),
-    "starts": Range(whole=True, least=1, optional=True),
+    "starts": Range(whole=True, least=1),
     "exchanges": Range(whole=True),
     "steps": Range(whole=True),
     "polish": Range(whole=True),

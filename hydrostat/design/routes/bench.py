@@ -13,7 +13,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import InverseOptions, Limits, solve_ik
+from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics, RigSlopes, Simulation, SolvedPose, rig_slopes
 
@@ -97,11 +97,14 @@ class Bench:
         for index, target in enumerate(self.targets):
             start = None if before is None else self._begun(simulation, before, index)
             try:
-                pose = solve_ik(simulation, target, start=start, limits=limits, options=options).pose
+                if start is None:
+                    pose = reached_from_rest(simulation, target, limits, options).pose
+                else:
+                    pose = solve_ik(simulation, target, start=start, limits=limits, options=options).pose
                 if hoped is not None and self._missed(simulation, index, pose) > self._short_of(hoped, index):
                     more = replace(options, restarts=_RESTARTS)
                     with suppress(NotConvergedError):  # then the first one stands
-                        pose = solve_ik(simulation, target, start=start, limits=limits, options=more).pose
+                        pose = reached_from_rest(simulation, target, limits, more, start=start).pose
                 found.append(pose)
             except NotConvergedError:
                 return None
@@ -185,5 +188,32 @@ class Bench:
         return float(np.sqrt(sum(squares)))
 
 
+def reached_from_rest(
+    simulation: Simulation,
+    target: Pose,
+    limits: Limits,
+    options: InverseOptions,
+    *,
+    start: SolvedPose | None = None,
+) -> ReachedPose:
+    """The pose that is reached when its contractions are played from rest on, as the robot will.
+
+    Inverse kinematics may end on a branch of equilibria that the straight way from rest does not lead to. Then it
+    begins again where that leads, a few times. Raises NotConvergedError where there is no equilibrium on the way.
+    """
+    found = solve_ik(simulation, target, start=start, limits=limits, options=options)
+    for _ in range(_REPLAYS):
+        played = simulation.solve(found.pose.contractions)
+        apart = max(float(np.linalg.norm(played.markers[name] - place)) for name, place in found.pose.markers.items())
+        if apart <= _SAME * simulation.robot.body.mesh.size:
+            return found
+        found = solve_ik(simulation, target, start=played, limits=limits, options=options)
+    played = simulation.solve(found.pose.contractions)
+    errors = {name: float(np.linalg.norm(played.markers[name] - place)) for name, place in target.targets.items()}
+    return replace(found, pose=played, errors=errors)
+
+
+_REPLAYS = 2  # so often is a pose sought that is also what its contractions lead to from rest
+_SAME = 1e-3  # markers nearer than this share of the body's size are at the same place
 _RESTARTS = 1  # from where the first search ended, as rest leads to it at once
 _SHORT = 0.05  # a pose that misses more than hoped by this share of the whole error is sought again

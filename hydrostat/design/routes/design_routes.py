@@ -16,16 +16,17 @@ from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import Region, body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
-from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.bench import Bench, Trial, reached_from_rest
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import linear_model, pushed_back
 from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.design.winch_room import winch_room
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
-from hydrostat.ik import InverseOptions, Limits, solve_ik
+from hydrostat.ik import InverseOptions, Limits
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 
@@ -77,8 +78,9 @@ def design_routes(
 
     At the equilibria of all poses the adjoint field prices every run between two via points; a dynamic program finds
     the paths along which one more cable lowers the error most. The best few are solved, the best of these is kept, and
-    all via points are moved downhill; so it goes on (column generation). Several networks are grown from different
-    first cables; the best is refined, and its cables are exchanged one by one where another path does better.
+    all via points are moved downhill; so it goes on (column generation). Several networks are grown side
+    by side, others from sketches along the limbs (`sketches`); the best are refined, and the best one's cables
+    exchanged one by one where another path does better.
 
     `hints` finds robots with networks of the same body, which are refined beside those that are grown. Interrupted
     (KeyboardInterrupt), it returns the best network so far.
@@ -164,13 +166,10 @@ class RouteSearch:
             raise HydrostatError("the network to begin with has no equilibrium in reach of its poses; start without it")
         if begun.layout.routes:
             self._noted("as it was", begun)
-        grown = []
-        for effort in _EFFORTS[: self.options.starts_for(self.robot.body.mesh.dim)]:
-            growth.proposals = replace(self.proposals, effort=effort)
-            grown += growth.grown(begun, winches=self.winches, cables=self.cables)
-            if any(growth.enough(trial, self.winches) for trial in grown):
-                break
-        grown = sorted([*grown, *self._hinted(growth)], key=lambda trial: trial.cost)
+        grown = growth.grown(begun, winches=self.winches, cables=self.cables)
+        if not any(growth.enough(trial, self.winches) for trial in grown):
+            grown += [*self._sketched(growth, begun), *self._hinted(growth)]
+        grown.sort(key=lambda trial: trial.cost)
         whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
         self.found = [growth.truly(trial) for trial in whole[: _REFINED + 1]]
         if not self.found:
@@ -199,6 +198,18 @@ class RouteSearch:
         self.progress("Exchanging cables", 1, 1)
         self.found[0] = self._thinned(growth, growth.pruned(self.found[0]))
         self._noted("holes left out", self.found[0])
+
+    def _sketched(self, growth: Growth, bare: Trial) -> list[Trial]:
+        """Networks drawn along the limbs, the best of them with the further cables that help."""
+        count = self.options.starts + 1
+        drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=_DRAWN * count)
+        trials = [growth.short(trial) for layout in drawn if (trial := self.bench.reached(layout, None)) is not None]
+        found = []
+        helpful = [trial for trial in trials if trial.cost < (1 - _HELPS) * bare.cost]
+        for trial in sorted(helpful, key=lambda trial: trial.cost)[:count]:
+            self._noted("drawn along the limbs", trial)
+            found += growth.grown(trial, winches=self.winches, cables=self.cables)[:1]
+        return found
 
     def _hinted(self, growth: Growth) -> list[Trial]:
         """Networks that others found, moved to where they can be built, and refined."""
@@ -234,8 +245,7 @@ class RouteSearch:
 
     @property
     def _total(self) -> int:
-        starts = self.options.starts_for(self.robot.body.mesh.dim)
-        return len(_EFFORTS[:starts]) * starts * self.cables
+        return (2 * self.options.starts + 1) * self.cables
 
     def _beginning(self) -> Layout:
         """What the search begins with: nothing, what is locked, or all that there is."""
@@ -303,9 +313,7 @@ class RouteSearch:
         simulation = Simulation(robot, body=self.bench.body)
         limits = Limits(tension=self.constraints.tension_limit)
         try:
-            reached = [
-                solve_ik(simulation, pose, limits=limits, options=InverseOptions()) for pose in self.request.poses
-            ]
+            reached = [reached_from_rest(simulation, pose, limits, InverseOptions()) for pose in self.request.poses]
         except NotConvergedError:
             return None
         if pulls(robot, reached, self.constraints):
@@ -331,6 +339,7 @@ class RouteSearch:
 
 _DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a cable finer
 _ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
-_EFFORTS = (0.1, 0.3)  # networks are grown with strong paths, and again with weaker ones
 _LOOSER = 0.02  # fewer holes may cost so much
+_HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
+_DRAWN = 6  # sketches that are solved for each that is grown
 _REFINED = 2  # networks that are refined to the end

@@ -42,7 +42,7 @@ class Growth:
         It ends with as many cables as there may be, or when enough is reached, or cables no longer help.
         """
         options = self.proposals.options
-        width = options.starts_for(begun.layout.dim)
+        width = options.starts
         front, found = [begun], [begun] if begun.layout.routes else []
         idle = 0
         while front and idle < _PATIENCE:
@@ -53,7 +53,7 @@ class Growth:
                 needed = cables - len(trial.layout.routes)
                 if needed > 0:
                     more += self._tried(trial, winches, needed, count=count, best=best)
-            front = self._unlike([self._short(one) for one in self._unlike(more, _SEEDS * width)], width)
+            front = self._unlike([self.short(one) for one in self._unlike(more, _SEEDS * width)], width)
             for trial in front:
                 self.noted(_words(trial), trial)
             least = min((trial.cost for trial in found), default=np.inf)
@@ -75,7 +75,7 @@ class Growth:
     def with_one_more(self, trial: Trial, *, winches: int, needed: int) -> Trial | None:
         """The best network with one cable more (two where it is mirrored); None if there is none."""
         tried = self._tried(trial, winches, needed, count=self.proposals.options.trials, best=1)
-        return self._short(tried[0]) if tried else None
+        return self.short(tried[0]) if tried else None
 
     def polished(self, trial: Trial) -> Trial:
         """The network refined in rounds, each of which must hold from rest on."""
@@ -226,7 +226,8 @@ class Growth:
         turned = np.mean([turns(route.points).sum() for route in layout.routes])
         return 1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned)
 
-    def _short(self, trial: Trial) -> Trial:
+    def short(self, trial: Trial) -> Trial:
+        """The network after a few steps of refinement."""
         return refine(self.bench, self.proposals.graph.region, trial, self._options(self.proposals.options.steps))
 
     def _options(self, steps: int) -> RefineOptions:

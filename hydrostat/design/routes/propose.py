@@ -27,7 +27,7 @@ class Proposals:
     graph: RouteGraph  # of via points
     options: RouteOptions  # of the search
     spacing: float  # of via points [m]
-    effort: float = 0.1  # share of the residual that the tension limit is worth where paths are priced
+    effort: float = 0.3  # share of the residual that the tension limit is worth where paths are priced
 
     @cached_property
     def deepest(self) -> float:
@@ -204,6 +204,14 @@ class Proposals:
             added = image
         return pushed_back(added, self.graph.region, _REACH * self.graph.size)
 
+    def with_line(self, layout: Layout, place: int, points: Route) -> Layout:
+        """A layout with a cable along given points [m], of the winch at a graph point, made if there is none."""
+        at = self.graph.points[place]
+        there = [number for number, site in enumerate(layout.sites) if np.linalg.norm(at - site.winch.at) < _SAME]
+        winch = there[0] if there else len(layout.sites)
+        sites = layout.sites if there else (*layout.sites, self._new_site(layout, place))
+        return replace(layout, sites=sites, routes=(*layout.routes, CableRoute(winch, points)))
+
     def _new_site(self, layout: Layout, place: int) -> WinchSite:
         constraints = layout.constraints
         names = {site.winch.name for site in layout.sites}
@@ -239,6 +247,7 @@ _WEAK = 0.02  # winches that move the rows less than this share of the strongest
 # runs of the graph go few ways: so sharply may a path turn that is smoothed afterwards [degrees]
 _COARSE = 60.0
 _ON_MIRROR = 1e-3  # so near to the mirror a point stands in it [m]
+_SAME = 1e-9  # winches nearer than this [m] are one
 _STILL = 1e-6  # a winch that takes in less [m] in every pose is as good as a new one
 _BESIDE = 2.5  # within so many spool radii of its winch a cable may be near another, which may be of the same winch
 _NEVER = 1e5  # so many times the largest move of an edge
