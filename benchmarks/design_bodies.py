@@ -66,8 +66,8 @@ BODIES = {
     ),
     "trunk": Body(winches=4, cables=6, constraints=Constraints(clearance=0.003, travel=0.15)),
 }
-"""The designs of the thesis with its numbers of winches and cables (N1), the starfish with two winches and with the three
-of its own network, and two bodies in space.
+"""The designs of the thesis with its numbers of winches and cables (N1), the starfish with two winches and with three,
+and two bodies in space.
 
 The poses of the examples in space are what their own networks reach, to the millimetre; `five_poses` is the cupping
 hand with one more of that kind. It keeps its ten winches, so its own network can hardly be beaten. The trunk gets four

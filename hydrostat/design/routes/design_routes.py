@@ -168,7 +168,7 @@ class RouteSearch:
             self._noted("as it was", begun)
         grown = growth.grown(begun, winches=self.winches, cables=self.cables)
         if not any(growth.enough(trial, self.winches) for trial in grown):
-            grown += [*self._sketched(growth, begun), *self._hinted(growth)]
+            grown += [*(self._sketched(growth, begun) or self._by_force(growth, begun)), *self._hinted(growth)]
         grown.sort(key=lambda trial: trial.cost)
         whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
         self.found = [growth.truly(trial) for trial in whole[: _REFINED + 1]]
@@ -210,6 +210,11 @@ class RouteSearch:
             self._noted("drawn along the limbs", trial)
             found += growth.grown(trial, winches=self.winches, cables=self.cables)[:1]
         return found
+
+    def _by_force(self, growth: Growth, begun: Trial) -> list[Trial]:
+        """Networks grown along stronger paths, where none can be drawn."""
+        strong = Growth(replace(growth.proposals, effort=_STRONG), self._noted)
+        return strong.grown(begun, winches=self.winches, cables=self.cables)
 
     def _hinted(self, growth: Growth) -> list[Trial]:
         """Networks that others found, moved to where they can be built, and refined."""
@@ -341,5 +346,6 @@ _DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a ca
 _ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
 _LOOSER = 0.02  # fewer holes may cost so much
 _HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
+_STRONG = 0.1  # what the effort of stronger paths counts
 _DRAWN = 6  # sketches that are solved for each that is grown
 _REFINED = 2  # networks that are refined to the end
