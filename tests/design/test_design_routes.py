@@ -22,6 +22,7 @@ from hydrostat.simulation import BodyPhysics, Simulation
 UP = Pose(name="up", targets={"tip": (0.18, 0.06)})
 DOWN = Pose(name="down", targets={"tip": (0.185, -0.05)})
 PINCH = Pose(name="pinch", targets={"tip": (0.085, 0.045), "low": (0.085, -0.045)})
+SPREAD = Pose(name="spread", targets={"tip": (0.095, 0.055), "low": (0.095, -0.055)})
 SMALL = RouteOptions(starts=1, exchanges=0, polish=4, trials=2, steps=3, hops=8)
 
 
@@ -86,7 +87,7 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "no leads": (Case(2, 3), {"leads": False}),
     "cables per winch": (Case(2, 4), {"cables_per_winch": 2}),
     "mirror, one winch": (Case(1, 2, (PINCH,), plate()), {"mirror": "y"}),
-    "mirror, two winches": (Case(2, 4, (PINCH,), plate()), {"mirror": "y", "cables_per_winch": 2}),
+    "mirror, two winches": (Case(2, 4, (PINCH, SPREAD), plate()), {"mirror": "y", "cables_per_winch": 2}),
     "locked winch": (Case(2, 2, robot=strip()), {"locked_winches": ("up",)}),
     "locked winch at the edge": (Case(1, 1, (UP,), near_the_edge()), {"locked_winches": ("mine",)}),
     "locked cable": (Case(2, 3, robot=strip()), {"locked_cables": ("down 1",)}),
