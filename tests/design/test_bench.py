@@ -1,5 +1,6 @@
 """What is cut short on the bench. Oracle: the same work without the cut."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
-from hydrostat.robot import Pose
+from hydrostat.robot import Marker, Pose
+from hydrostat.simulation import Simulation
 
 LIMITS = Constraints(winch_clearance=0.006, leads=False)
 POSES = [Pose(name="up", targets={"tip": (0.18, 0.06)}), Pose(name="down", targets={"tip": (0.18, -0.06)})]
@@ -100,3 +102,18 @@ def test_poses_from_rest_are_told(unchecked: None) -> None:
     assert not found.from_rest
     assert growth.truly(found).from_rest
     assert growth.truly(found, worst=0.5 * found.error).error == np.inf
+
+
+def test_markers_that_a_pose_does_not_name_count_a_hundredth(unchecked: None) -> None:
+    """Oracle: the sum written out."""
+    layout, _ = robot_and_bench()
+    low = Marker(name="low", at=(0.1, 0.005))
+    robot = replace(layout.source, markers=(*layout.source.markers, low))
+    bench = Bench(robot, [Pose(name="up", targets={"tip": (0.19, 0.04)})], LIMITS)
+    simulation = Simulation(replace(layout, source=robot).robot())
+    pose = simulation.solve(np.array([0.01, 0.0]))
+    tip, others = pose.markers["tip"], pose.markers["low"]
+    found = bench.residual(simulation, 0, pose.nodes)
+    expected = np.sum((tip - (0.19, 0.04)) ** 2) + 0.01 * np.sum((others - low.at) ** 2)
+    assert found @ found == pytest.approx(expected)
+    assert np.linalg.norm(others - low.at) > 1e-4

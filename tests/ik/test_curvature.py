@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrostat.ik.solve_ik import Curvature
+from hydrostat.ik.search.descend import Curvature
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

@@ -128,6 +128,8 @@ def test_values_of_the_others() -> None:
     assert np.linalg.norm(
         Closeness(pose=BEFORE[2], of="nodes", weight=2.0).on(FLAT).residual(shifted)
     ) == pytest.approx(2 * 0.005)
+    top = Closeness(pose=BEFORE[2], of="markers", markers=("top",), weight=2.0).on(FLAT).residual(shifted)
+    np.testing.assert_allclose(top, [0.006, 0.008])
 
 
 WRONG: Mapping[str, tuple[Simulation, Objective, str]] = {
@@ -195,7 +197,16 @@ MISTYPED: Mapping[str, tuple[type[Objective], dict[str, Any], str]] = {
     "word for a scale": (Effort, {"scale": "1"}, "scale of an effort must be a number above 0, not '1'"),
     "effort of nothing": (Effort, {"of": None}, "contraction, tension, slack"),
     "kind of effort": (Effort, {"of": "power"}, 'an effort must be one of contraction, tension, slack, not "power"'),
-    "kind of closeness": (Closeness, {"pose": BEFORE[2], "of": "time"}, 'one of nodes, contractions, not "time"'),
+    "kind of closeness": (
+        Closeness,
+        {"pose": BEFORE[2], "of": "time"},
+        'one of nodes, markers, contractions, not "time"',
+    ),
+    "marker that is none": (
+        Closeness,
+        {"pose": BEFORE[2], "of": "markers", "markers": ("nose",)},
+        "a closeness names 'nose', which is no marker of the robot",
+    ),
     "near nothing": (Closeness, {"pose": None}, "must be a SolvedPose, not None"),
     "near an answer": (
         Closeness,

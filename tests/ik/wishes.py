@@ -91,6 +91,8 @@ PLANE: Mapping[str, Objective] = {
     "as before": Closeness(pose=BEFORE[2]),
     "contractions as before": Closeness(pose=BEFORE[2], of="contractions"),
     "body as before": Closeness(pose=BEFORE[2], of="nodes", weight=0.3),
+    "markers as before": Closeness(pose=BEFORE[2], of="markers", weight=0.3),
+    "a marker as before": Closeness(pose=BEFORE[2], of="markers", markers=("top",)),
 }
 BODIES: Mapping[str, Objective] = {
     "markers": MarkerGoal(targets={"tip": (0.1, 0.03, 0.05), "top": (0.05, 0.02, 0.05)}),

@@ -56,19 +56,32 @@ class Bench:
 
     @cached_property
     def markers(self) -> list[list[int]]:
-        """Numbers of the markers of each pose."""
+        """Numbers of the markers of each pose: those that it names, then all others, which should rather stay."""
         names = [marker.name for marker in self.source.markers]
-        return [[names.index(name) for name in pose.targets] for pose in self.targets]
+        named = [[names.index(name) for name in pose.targets] for pose in self.targets]
+        return [[*own, *(index for index in range(len(names)) if index not in own)] for own in named]
 
     @cached_property
     def goals(self) -> list[np.ndarray]:
         """Where these markers should be, (markers, dim) [m]."""
-        return [np.array(list(pose.targets.values()), dtype=float) for pose in self.targets]
+        rests = [marker.at for marker in self.source.markers]
+        return [
+            np.array([*pose.targets.values(), *(rests[index] for index in markers[len(pose.targets) :])], dtype=float)
+            for pose, markers in zip(self.targets, self.markers, strict=True)
+        ]
 
     @cached_property
-    def weights(self) -> list[float]:
-        """Weights of the residuals of each pose: with these the sum of squares is the squared rms error."""
-        return [1.0 / np.sqrt(len(self.targets) * len(markers)) for markers in self.markers]
+    def weights(self) -> list[Vector]:
+        """Weights of the residuals of each pose, one for each row.
+
+        Where poses name all markers the sum of squares is the squared rms error. A marker that a pose does not name
+        counts a hundredth of one that it names, so that it wanders only for a good reason.
+        """
+        dim, weights = self.source.body.mesh.dim, []
+        for pose, markers in zip(self.targets, self.markers, strict=True):
+            shares = np.where(np.arange(len(markers)) < len(pose.targets), 1.0, _STAYS)
+            weights.append(np.repeat(shares, dim) / np.sqrt(len(self.targets) * len(pose.targets)))
+        return weights
 
     def residual(self, simulation: Simulation, pose: int, nodes: Nodes) -> Vector:
         """Target less marker of one pose, weighted [m]."""
@@ -178,7 +191,8 @@ class Bench:
             spread_columns(simulation, pose, slope, self.uncertainty, len(markers) * layout.dim)
             for pose, slope, markers in zip(poses, slopes, self.markers, strict=True)
         )
-        spread = np.sqrt(sum((w * w * (one**2).sum() for w, one in zip(self.weights, columns, strict=True)), 0.0))
+        variances = [((w[:, None] * one) ** 2).sum() for w, one in zip(self.weights, columns, strict=True)]
+        spread = np.sqrt(sum(variances, 0.0))
         error = self._error(simulation, poses)
         return Trial(layout, simulation, tuple(poses), slopes, columns, error, float(spread), pull)
 
@@ -215,5 +229,6 @@ def reached_from_rest(
 
 _REPLAYS = 2  # so often is a pose sought that is also what its contractions lead to from rest
 _SAME = 1e-3  # markers nearer than this share of the body's size are at the same place
+_STAYS = 0.1  # what a metre of a marker that a pose does not name counts beside one of a marker that it names
 _RESTARTS = 1  # from where the first search ended, as rest leads to it at once
 _SHORT = 0.05  # a pose that misses more than hoped by this share of the whole error is sought again

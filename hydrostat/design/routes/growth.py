@@ -165,7 +165,7 @@ class Growth:
         layout, shares = trial.layout, np.zeros(trial.layout.size)
         for weight, columns in zip(self.bench.weights, trial.columns, strict=True):
             places = layout.starts[-2]
-            shares[:places] += (weight * columns[:, :places] ** 2).sum(axis=0)
+            shares[:places] += ((weight[:, None] * columns[:, :places]) ** 2).sum(axis=0)
         found = [
             (float(shares[layout.place_of(number, point)].sum()), number, point)
             for number, route in enumerate(layout.routes)

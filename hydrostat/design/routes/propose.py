@@ -52,7 +52,7 @@ class Proposals:
             fields = np.moveaxis(slopes.fields[:rows], 0, 2)
             own = bench.weights[index] * graph.edge_moves(pose.nodes, fields)
             residual = bench.residual(trial.simulation, index, pose.nodes)
-            free = _span(bench.weights[index] * slopes.contractions[:rows])
+            free = _span(bench.weights[index][:, None] * slopes.contractions[:rows])
             moves.append(own - (own @ free) @ free.T)
             residuals.append(residual - free @ (free.T @ residual))
             owners.append(np.full(rows, index))

@@ -148,7 +148,7 @@ def linear_model(
         begin = free + winches * index
         own[:, begin : begin + winches] = slopes.contractions
         markers = len(own) - len(layout.routes)
-        matrix += [-bench.weights[index] * own[:markers], effort * own[markers:]]
+        matrix += [-bench.weights[index][:, None] * own[:markers], effort * own[markers:]]
         right += [bench.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
         for moved, changed in _scattered(bench, trial, index):
             scattered = np.zeros((markers, count))
@@ -170,7 +170,7 @@ def linear_model(
                 lefts.append(np.array([left]))
     bends, slopes = turns(layout), turn_slopes(layout)
     # What friction adds to the variance falls with the turns, as if in proportion: so many times do they weigh more.
-    rubbed = sum(float((w * w * one[:, -1] ** 2).sum()) for w, one in zip(bench.weights, trial.columns, strict=True))
+    rubbed = sum(float(((w * one[:, -1]) ** 2).sum()) for w, one in zip(bench.weights, trial.columns, strict=True))
     bend = float(np.hypot(bend, np.sqrt(rubbed) / max(float(np.linalg.norm(bends)), 1e-9)))
     straight = np.zeros((len(bends), count))
     straight[:, :free] = bend * slopes @ layout.ties
@@ -197,7 +197,7 @@ def _scattered(bench: Bench, trial: Trial, index: int) -> Iterator[tuple[Vector,
     layout, pose, weight = trial.layout, trial.poses[index], bench.weights[index]
     places, cables, winches = layout.starts[-2], len(layout.routes), len(layout.sites)
     which = np.r_[0:places, places + cables : places + cables + winches]
-    columns = weight * trial.columns[index][:, which]
+    columns = weight[:, None] * trial.columns[index][:, which]
     _, values, right = np.linalg.svd(columns, full_matrices=False)
     most = _SCATTERED * trial.built
     for direction in range(min(_DIRECTIONS, int((values > most).sum()))):
@@ -217,7 +217,7 @@ def _scattered(bench: Bench, trial: Trial, index: int) -> Iterator[tuple[Vector,
                 (trial.slopes[index].contractions, trial.slopes[index]), (slopes.contractions * scale, slopes),
             )
         )  # fmt: skip
-        yield moved, weight * (other - own)
+        yield moved, weight[:, None] * (other - own)
 
 
 def turns(layout: Layout) -> Vector:

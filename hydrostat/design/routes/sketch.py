@@ -183,7 +183,7 @@ class _Choice:
         for index, pose in enumerate(self.bare.poses):
             rows = len(bench.markers[index]) * mesh.dim
             fields = self.bare.slopes[index].fields[:rows].reshape(rows, -1)
-            self.moves.append(-bench.weights[index] * fields @ slopes)
+            self.moves.append(-bench.weights[index][:, None] * (fields @ slopes))
             self.missed.append(bench.residual(simulation, index, pose.nodes))
             self.ridges.append(_EFFORT * float(np.linalg.norm(self.missed[-1])) / bench.constraints.tension_limit)
         self.scale = float(np.linalg.norm(np.concatenate(self.missed)))

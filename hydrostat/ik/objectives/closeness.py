@@ -8,6 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import Anchors
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term, describe, not_negative
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -16,6 +17,7 @@ class ClosenessKind(StrEnum):
     """What should stay as it was."""
 
     NODES = "nodes"
+    MARKERS = "markers"
     CONTRACTIONS = "contractions"
 
 
@@ -25,13 +27,15 @@ class Closeness(Objective):
 
     Attributes:
         pose: the previous one.
-        of: what should stay: the whole body (root of the mean square over its nodes), or the contractions.
+        of: what should stay: the whole body (root of the mean square over its nodes), markers, or the contractions.
         weight: how much a metre away from it counts beside a metre of a marker's error.
+        markers: names of the markers that should stay; all if left out.
     """
 
     pose: SolvedPose
     of: ClosenessKind | str = ClosenessKind.CONTRACTIONS
     weight: float = 1e-2
+    markers: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
         make_member(self, "of", ClosenessKind, what="the kind of a closeness")
@@ -47,6 +51,15 @@ class Closeness(Objective):
             raise InputError("the pose to stay close to is one of another robot")
         if self.of is ClosenessKind.NODES:
             return _Nodes(weight / np.sqrt(len(mesh.nodes)), self.pose.nodes)
+        if self.of is ClosenessKind.MARKERS:
+            names = [marker.name for marker in simulation.robot.markers]
+            unknown = sorted(set(self.markers or ()) - set(names))
+            if unknown:
+                raise InputError(f"a closeness names {unknown[0]!r:.60}, which is no marker of the robot")
+            which = np.array(
+                [index for index, name in enumerate(names) if self.markers is None or name in self.markers]
+            )
+            return _Markers(weight, simulation.marker_anchors, which.astype(int), self.pose.nodes)
         return _Contractions(weight, self.pose.contractions)
 
 
@@ -59,6 +72,20 @@ class _Nodes(Term):
 
     def slopes(self, posture: Posture, moves: Moves) -> Slopes:
         return self._weight * moves.nodes.reshape(posture.nodes.size, -1)
+
+
+class _Markers(Term):
+    def __init__(self, weight: float, anchors: Anchors, which: np.ndarray, nodes: Nodes) -> None:
+        self._weight, self._anchors, self._which = weight, anchors, which
+        self._places = anchors.positions(nodes)[which]
+
+    def residual(self, posture: Posture) -> Rows:
+        return self._weight * (self._anchors.positions(posture.nodes)[self._which] - self._places).ravel()
+
+    def slopes(self, posture: Posture, moves: Moves) -> Slopes:
+        stencils, weights = self._anchors.stencils[self._which], self._anchors.weights[self._which]
+        moved = np.einsum("mk,mkdc->mdc", weights, moves.nodes[stencils])
+        return self._weight * moved.reshape(-1, moved.shape[2])
 
 
 class _Contractions(Term):

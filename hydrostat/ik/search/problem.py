@@ -29,6 +29,9 @@ class InverseOptions:
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
         unique: where the goals leave a choice, take the contractions that pull least, whatever the start.
         restarts: how often to begin elsewhere while a goal is not reached; none where time matters more.
+        stay: whether markers that the targets do not name should rather stay. Where a target is in reach that changes
+            nothing. Where it is out of reach they go a distance d from rest only if that gains about d^2 over four
+            times the body's size.
     """
 
     effort: float = 1e-3
@@ -38,6 +41,7 @@ class InverseOptions:
     largest_step: float = 0.3
     unique: bool = True
     restarts: int = 3
+    stay: bool = True
 
     def __post_init__(self) -> None:
         for name, least in (("effort", 0.0), ("tolerance", 0.0), ("progress", 0.0), ("iterations", 0), ("restarts", 0)):
@@ -119,6 +123,10 @@ class InverseProblem:
         self._worth = np.full(len(robot.cables), size / _full_tension(simulation))
         self._size = size
         self._ready = ready
+
+    def with_term(self, term: Term) -> "InverseProblem":
+        """The same with one term more."""
+        return InverseProblem(self.simulation, [*self.terms, term], self.bounds, self.options, ready=self._ready)
 
     def state(
         self, values: Vector, result: NewtonResult, history: Vector | None = None, *, whole: bool = True

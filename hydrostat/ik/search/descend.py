@@ -1,0 +1,200 @@
+"""`descend`, `least_effort`: from a state to an optimum of an inverse problem, by trust-region steps."""
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.ik.reached_pose import InverseReason
+from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, try_step
+from hydrostat.ik.search.linear_model import LinearModel
+from hydrostat.ik.search.problem import InverseState, ModelStep
+
+Square = Float[np.ndarray, "channels channels"]
+
+
+class Curvature:
+    """An estimate of sum r_i d2r_i, which counts where a target is out of reach (Dennis, Gay and Welsch 1981).
+
+    It follows from how the slopes of the residual change along a step. It is used only while it tells the objective
+    better than Gauss-Newton alone does and that falls slowly, and forgotten when a cable becomes taut or slack.
+    """
+
+    def __init__(self) -> None:
+        self._matrix: Square | None = None
+        self._trusted = False
+
+    @property
+    def matrix(self) -> Square | None:
+        """The estimate, if it is to be used."""
+        return self._matrix if self._trusted else None
+
+    def doubt(self) -> bool:
+        """Whether it had been used; it will not be for the next step."""
+        used, self._trusted = self._trusted and self._matrix is not None, False
+        return used
+
+    def learn(self, old: LinearModel, new: LinearModel) -> None:
+        """Take in a step from one model to the next."""
+        if not old.alike(new):
+            self._matrix, self._trusted = None, False
+            return
+        step = new.values - old.values
+        plain = old.residual + old.matrix @ step
+        missed = 0.5 * float(new.residual @ new.residual - plain @ plain)
+        known = np.zeros((len(step), len(step))) if self._matrix is None else self._matrix
+        if self._matrix is None:
+            fallen = 0.5 * abs(float(old.residual @ old.residual - new.residual @ new.residual))
+            self._trusted = abs(missed) > _POOR * fallen
+        else:
+            self._trusted = abs(missed - 0.5 * float(step @ known @ step)) < abs(missed)
+        if new.residual @ new.residual < _FALLS * (old.residual @ old.residual):
+            self._trusted = False
+        self._matrix = _updated(
+            known, step, new.gradient() - old.gradient(new.residual), new.gradient() - old.gradient()
+        )
+
+
+def _updated(known: Square, step: np.ndarray, change: np.ndarray, total: np.ndarray) -> Square:
+    """The least change of an estimate, scaled down if too large, that makes it true along a step of the channels.
+
+    The estimate times the step should be `change`; `total` is the change of the whole gradient.
+    """
+    along = float(step @ total)
+    if not along > 0.0:
+        return known
+    bent = float(step @ known @ step)
+    if bent != 0.0:
+        known = known * min(1.0, abs(float(step @ change)) / abs(bent))
+    miss = change - known @ step
+    outer = np.outer(miss, total)
+    return known + (outer + outer.T) / along - float(step @ miss) / along**2 * np.outer(total, total)
+
+
+_FALLS = 0.25  # where squares fall to less than this share in a step, Gauss-Newton is on its way to a target in reach
+_POOR = 0.1  # Gauss-Newton is poor if it misses the fall of the objective by this share
+
+
+def descend(search: InverseSearch, state: InverseState, *, weight: float | None = None) -> Descent:
+    """Trust-region steps until a goal is reached or nothing is left to gain.
+
+    A weight of the effort that is given stays, and the end is an optimum of both; else it falls with the error.
+    """
+    return _TrustRegionDescent(search, state, weight).run()
+
+
+def least_effort(search: InverseSearch, state: InverseState) -> Descent:
+    """Approach the goal with least squared tensions, where it leaves a choice (E18).
+
+    With a heavy effort the optimum is near rest. It is followed while the weight of the effort falls. Walking along the
+    poses that reach the goal would be slow, as these are curved.
+    """
+    spent = 0
+    for weight in _WEIGHTS:
+        lighter = descend(search, state, weight=weight)
+        state, spent = lighter.state, spent + lighter.iterations
+    found = descend(search, state)
+    return found.after(spent + found.iterations)
+
+
+class _TrustRegionDescent:
+    """One run: trust radius, weight of the effort, curvature, the last state to fall back on."""
+
+    def __init__(self, search: InverseSearch, state: InverseState, weight: float | None) -> None:
+        self.search, self.problem, self.state = search, search.problem, state
+        self.rested = state if state.sharp else None
+        self.radius = search.problem.options.largest_step
+        self.fixed = weight is not None
+        self.weight = search.problem.weight(state) if weight is None else weight
+        self.curvature = Curvature()
+        self.model: LinearModel | None = None
+
+    def run(self) -> Descent:
+        problem, options = self.problem, self.problem.options
+        for iteration in range(options.iterations):
+            if not self.fixed:
+                if self.state.error <= problem.reached and self._sharpen() and self._reached():
+                    return self._end(InverseReason.REACHED, iteration)
+                self.weight = min(self.weight, problem.weight(self.state))
+            step = self._step()
+            progress = _ROUGH if self.fixed else options.progress
+            least = progress * problem.objective(self.state, self.weight)
+            if ends(problem, self.state, step, least, self.radius):
+                if self.state.sharp or not self._sharpen():
+                    return self._end(InverseReason.OPTIMAL, iteration)
+                continue
+            tried = try_step(problem, self.state, step, self.weight, self.search.approach, _RULES)
+            if tried.accepted and tried.trial is not None:
+                if self.state.excess <= EXCESS:
+                    self._resize(tried.ratio, step.values)
+                self._move(tried.trial)
+            elif not self._reconsider():
+                self._resize(-np.inf, step.values)
+                if self.radius < _SMALLEST_RADIUS:
+                    reason = InverseReason.NO_EQUILIBRIUM if tried.trial is None else InverseReason.OPTIMAL
+                    return self._end(reason, iteration + 1)
+        return self._end(InverseReason.ITERATION_LIMIT, options.iterations)
+
+    def _step(self) -> ModelStep:
+        step = self.problem.step(self.state, self.weight, self.radius, self.curvature.matrix)
+        if self.model is not None and step.model.values is not self.model.values:
+            self.curvature.learn(self.model, step.model)
+            if self.curvature.matrix is not None:
+                step = self.problem.step(self.state, self.weight, self.radius, self.curvature.matrix)
+        self.model = step.model
+        return step
+
+    def _reconsider(self) -> bool:
+        """After a step that failed: whether there is more to try than a shorter one."""
+        if not self.state.sharp and self._sharpen():
+            return True  # what a state that does not rest yet promised may have been too good
+        return self.curvature.doubt()
+
+    def _resize(self, ratio: float, step: Vector) -> None:
+        """The trust radius after a step that gained `ratio` times what it promised."""
+        used = float((np.abs(step - self.state.values) / self.problem.bounds.span).max(initial=0.0))
+        self.radius = min(_next_radius(self.radius, ratio, used), self.problem.options.largest_step)
+
+    def _move(self, state: InverseState) -> None:
+        self.state = state
+        if state.sharp and state.excess <= EXCESS:
+            self.rested = state
+
+    def _reached(self) -> bool:
+        return self.state.error <= self.problem.reached and self.state.excess <= EXCESS
+
+    def _sharpen(self) -> bool:
+        """Whether the state rests, now."""
+        sharp = self.search.sharpened(self.state)
+        if sharp is None:
+            return False
+        self._move(sharp)
+        return True
+
+    def _end(self, reason: InverseReason, iterations: int) -> Descent:
+        """The state if it rests within its limits, else the last one that did."""
+        if not self._sharpen() or self.state.excess > EXCESS:
+            self.state = self.rested or self.state
+        if self._reached():
+            reason = InverseReason.REACHED
+            self.state = self.search.tidied(self.state)
+        elif self.state.excess > EXCESS:
+            reason = InverseReason.TOO_TIGHT
+        elif reason is InverseReason.OPTIMAL and self.problem.slope(self.state, self.weight) > _STEEP:
+            reason = InverseReason.STUCK
+        return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
+
+
+_STEEP = 1e-3  # where the residual's length still falls faster than this [m/m], it is no optimum
+_ROUGH = 1e-2  # progress at which a descent with a fixed weight of the effort ends: it is a stage on the way
+_RULES = StepRules(mends=0.995, far=0.1)  # when a descent takes a step
+_SMALLEST_RADIUS = 1e-7  # steps of less than this fraction of the range are not worth a solve
+
+
+def _next_radius(radius: float, ratio: float, used: float) -> float:
+    """Trust radius after a step that gained `ratio` times what it promised and used `used` of the range."""
+    if ratio < 0.25:
+        return 0.25 * min(radius, max(used, 1e-12))
+    return 2 * radius if ratio > 0.75 and used > 0.9 * radius else radius
+
+
+_WEIGHTS = (1.0, 0.1, 1e-2, 1e-3)  # of the effort, one after the other
