@@ -87,6 +87,13 @@ Tolerance = Annotated[
 Fibres = Annotated[
     str | None, typer.Option(metavar="edges|elements", help="Muscles of trees; on mesh edges if left out.")
 ]
+Knobs = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=VALUE",
+        help="Of trees: threshold, distance, steps or phi as in the thesis, one value each; may be repeated.",
+    ),
+]
 WithKit = Annotated[bool, typer.Option("--kit", help="Also write the fabrication kit.")]
 
 
@@ -111,6 +118,7 @@ def design(
     simplicity: Simplicity = None,
     as_modelled: AsModelled = False,
     fibres: Fibres = None,
+    knob: Knobs = None,
     kit: WithKit = False,
 ) -> None:
     """Find winches and cables that reach a robot's poses.
@@ -133,6 +141,7 @@ def design(
         simplicity=simplicity,
         as_modelled=as_modelled,
         fibres=fibres,
+        knobs=knob or [],
         file=constraints,
         cables_per_winch=cables_per_winch,
         clearance=clearance,

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hydrostat.cli.options import asked, positive
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions
+    from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions, Uncertainty
     from hydrostat.robot import Robot
 
 
@@ -27,6 +27,7 @@ class TypedRequest:
     simplicity: float | None = None
     as_modelled: bool = False
     fibres: str | None = None
+    knobs: Sequence[str] = ()
     file: Path | None = None  # of constraints; what follows comes before it
     cables_per_winch: int | None = None
     clearance: str | None = None
@@ -40,7 +41,7 @@ class TypedRequest:
 
 def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
     """The request that was typed, for a robot (InputError: what cannot be asked, of anyone or of this robot)."""
-    from hydrostat.design import DesignMethod, DesignRequest, Uncertainty
+    from hydrostat.design import DesignMethod, DesignRequest
 
     winches = _winch_count(typed.winches)
     method = None if typed.method is None else member(DesignMethod, typed.method, what="method")
@@ -53,7 +54,7 @@ def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
         constraints=_constraints(robot, typed),
         options=_options(typed, trees=trees, open_winches=isinstance(winches, str)),
         improve=typed.improve,
-        uncertainty=Uncertainty.none() if typed.as_modelled else None,
+        uncertainty=_uncertainty(robot, typed),
         **given,
     )
     request.fitted(robot)  # what does not fit is told before anything begins
@@ -63,6 +64,16 @@ def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
 def _winch_count(text: str | None) -> int | str | None:
     """A number of winches, or what else was typed."""
     return int(text) if text is not None and text.isascii() and text.isdigit() and len(text) < 4 else text
+
+
+def _uncertainty(robot: "Robot", typed: TypedRequest) -> "Uncertainty | None":
+    """The tolerances that are asked for; None for the usual ones."""
+    from hydrostat.design import Uncertainty
+    from hydrostat.design.constraints_file import read_uncertainty
+
+    if typed.as_modelled:
+        return Uncertainty.none()
+    return None if typed.file is None else read_uncertainty(typed.file, robot)
 
 
 def _constraints(robot: "Robot", typed: TypedRequest) -> "Constraints":
@@ -94,18 +105,30 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
 
     if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
-    if typed.fibres is not None:
-        kind = member(FibreKind, typed.fibres, what="--fibres")
-        if not trees:
-            raise InputError("--fibres is for --method trees; routes need no muscle fibres")
-        return TreeOptions(fibres=kind)
+    for name, given in (("fibres", typed.fibres), ("knob", typed.knobs)):
+        if given and not trees:
+            raise InputError(f"--{name} is for --method trees; routes are priced by the pose error")
     if typed.simplicity is not None and trees:
         raise InputError("--simplicity is for routes; method trees leaves out cables by a rule of its own")
     if trees:
-        return None
+        options = TreeOptions.single(**dict(map(_knob, typed.knobs))) if typed.knobs else TreeOptions()
+        kind = options.fibres if typed.fibres is None else member(FibreKind, typed.fibres, what="--fibres")
+        return replace(options, fibres=kind)
     tolerance = None if typed.tolerance is None else positive("--tolerance", typed.tolerance, LENGTH)
     simplicity = RouteOptions.simplicity if typed.simplicity is None else typed.simplicity
     return RouteOptions(tolerance=tolerance, simplicity=simplicity)
+
+
+def _knob(text: str) -> tuple[str, Any]:
+    """A knob of trees and its value."""
+    name, _, value = text.partition("=")
+    kind = {"threshold": int, "distance": float, "steps": int, "phi": float}.get(name)
+    if kind is None:
+        raise InputError(f"--knob {text}: must be threshold, distance, steps or phi with its value, such as phi=0.5")
+    try:
+        return name, kind(value)
+    except ValueError:
+        raise InputError(f"--knob {text}: must be {'a whole number' if kind is int else 'a number'}") from None
 
 
 def _winch(name: str, robot: "Robot") -> str:

@@ -1,5 +1,6 @@
 """`read_constraints`: from a TOML file to `Constraints` for one robot."""
 
+from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -9,6 +10,7 @@ from pydantic import BeforeValidator, Field, Strict
 
 from hydrostat import units
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount, Robot
@@ -46,6 +48,19 @@ class ZoneTable(TomlTable):
     outline: Annotated[list[Coordinates], Field(min_length=3, max_length=1000)] | None = None
 
 
+class BuiltTable(TomlTable):
+    """[built]: the fields of `Uncertainty`."""
+
+    sewing: Length | None = None
+    friction: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
+    young: Number | None = None
+    thickness: Number | None = None
+    stiffness: Number | None = None
+    pins: Number | None = None
+    slack: Length | None = None
+    spool: Number | None = None
+
+
 class ConstraintsTable(TomlTable):
     """The whole file: the fields of `Constraints`, zones as tables of one zone each."""
 
@@ -74,6 +89,7 @@ class ConstraintsTable(TomlTable):
     mirror: Axis | None = None
     locked_winches: list[Name] | None = None
     locked_cables: list[Part] | None = None
+    built: BuiltTable | None = None
 
 
 ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "still": "still"}
@@ -89,6 +105,17 @@ def read_constraints(path: str | Path, robot: Robot) -> Constraints:
     """
     path = Path(path)
     return _ConstraintsReader(path, read_text(path), robot).constraints()
+
+
+def read_uncertainty(path: str | Path, robot: Robot) -> Uncertainty:
+    """What a robot as it is built may differ by, from the table [built] of a file of constraints.
+
+    Keys are the fields of `Uncertainty`: lengths as text with their unit, friction as the least and the largest
+    coefficient, all else as plain numbers. What is left out is as is usual for the body (`Uncertainty.of`). Raises
+    InputError as `read_constraints` does.
+    """
+    path = Path(path)
+    return _ConstraintsReader(path, read_text(path), robot).uncertainty()
 
 
 class _ConstraintsReader(TablesFile):
@@ -109,7 +136,7 @@ class _ConstraintsReader(TablesFile):
         given: dict[str, Any] = {
             key: value
             for key, value in self.table
-            if value is not None and key not in {*ZONES, "spool_ratio", "mirror"}
+            if value is not None and key not in {*ZONES, "spool_ratio", "mirror", "built"}
         }
         for table, field in ZONES.items():
             given[field] = self.records(table, self._zone)
@@ -123,6 +150,14 @@ class _ConstraintsReader(TablesFile):
             for place, name in enumerate(self.table.locked_cables or ())
         )
         return self.at("", lambda: _fitting(given, self.robot))
+
+    def uncertainty(self) -> Uncertainty:
+        """The tolerances that the text describes, those usual for the body where it says nothing."""
+        given = {key: value for key, value in self.table.built or () if value is not None}
+        numbers = {
+            key: tuple(map(float, value)) if isinstance(value, list) else float(value) for key, value in given.items()
+        }
+        return self.at("built", lambda: _usual_but(numbers, self.robot))
 
     def _zone(self, entry: Any) -> Zone:
         zone = Zone(
@@ -143,6 +178,14 @@ def cable_name(given: str | int, robot: Robot) -> str:
     if text not in names and text.isascii() and text.isdigit() and 1 <= int(text[:9]) <= len(names):
         return names[int(text[:9]) - 1]
     return robot.cable(text).name
+
+
+def _usual_but(given: dict[str, Any], robot: Robot) -> Uncertainty:
+    """The usual tolerances of a body, but for some, whose complaints begin with the key."""
+    try:
+        return replace(Uncertainty.of(robot.body), **given)
+    except InputError as error:
+        raise InputError(str(error).removeprefix("uncertainty: ")) from None
 
 
 def _fitting(given: dict[str, Any], robot: Robot) -> Constraints:

@@ -2,7 +2,7 @@
 
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
-from typing import Any
+from typing import Any, Self
 
 from hydrostat.closed_set import make_member
 from hydrostat.design.constraints import Constraints, Range
@@ -119,6 +119,42 @@ class TreeOptions:
 
     def __post_init__(self) -> None:
         make_member(self, "fibres", FibreKind)
+        for name, allowed in TREE_RANGES.items():
+            given = getattr(self, name)
+            for value in given if isinstance(given, tuple) else (given,):
+                if not allowed.holds(value):
+                    raise InputError(f"TreeOptions.{name} must be {allowed}, not {value!r}")
+
+    @classmethod
+    def single(cls, *, threshold: int = 60, distance: float = 1.5, steps: int = 12, phi: float = 0.5) -> Self:
+        """The thesis's search as it stands: one value of each knob, one network, none chosen by its pose error.
+
+        Args:
+            threshold: number of candidate fibres (R39).
+            distance: largest gap between two fibres that are joined, in mean mesh edges (R40).
+            steps: most fibres joined to one route (R40).
+            phi: weight of the mean against the spread in the score (R43).
+        """
+        return cls(
+            thresholds=(threshold,),
+            distances=(distance,),
+            growth_steps=steps,
+            phis=(phi,),
+            shares=1,
+            trials=1,
+            loss=0.0,
+        )
+
+
+TREE_RANGES = {
+    "thresholds": Range(whole=True, least=1),
+    "distances": Range(above=True),
+    "growth_steps": Range(whole=True, least=1),
+    "phis": Range(most=1.0),
+    "shares": Range(whole=True, least=1),
+    "trials": Range(whole=True, least=1),
+}
+"""What each number of `TreeOptions` may be."""
 
 
 @dataclass(frozen=True, kw_only=True)

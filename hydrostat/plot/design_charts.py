@@ -90,13 +90,13 @@ def _scale(axes: Axes, errors: np.ndarray) -> None:
 def draw_front(
     alternatives: Iterable[Alternative], chosen: Network, *, tolerance: float | None = None, width: float = WIDTH
 ) -> Figure:
-    """Error against number of cables, a line for each number of winches; of equal numbers the best counts.
+    """Error as built against number of cables, a line for each number of winches; of equal numbers the best counts.
 
     A filled dot is a network on the Pareto front: none with as few winches and cables is better. A ring marks the
     chosen one, a dashed line the tolerance that was asked for [m]. Width in inches.
     """
     errors = best_errors(alternatives, chosen)
-    figure, axes = new_chart("cables", "pose error [mm rms]", width=width, height=0.5 * width)
+    figure, axes = new_chart("cables", "error once built [mm rms]", width=width, height=0.5 * width)
     axes.xaxis.set_major_locator(MultipleLocator(max(1, round(max(cables for _, cables in errors) / 12))))
     for index, winches in enumerate(sorted({winches for winches, _ in errors})):
         line = [size for size in sorted(errors) if size[0] == winches]
@@ -124,13 +124,13 @@ def _draw_line(axes: Axes, line: list[Size], errors: dict[Size, float], colour: 
 
 def _draw_chosen(axes: Axes, chosen: Network) -> None:
     """A ring around the chosen network, named where there is room."""
-    place = len(chosen.robot.cables), MILLIMETRES * chosen.rms_error
+    place = len(chosen.robot.cables), MILLIMETRES * chosen.built
     axes.plot(*place, marker="o", markersize=12, color="none", markeredgecolor=INK, markeredgewidth=1.3, zorder=5,
         clip_on=False)  # fmt: skip
     low, high = axes.get_xlim()
     left = place[0] > (low + high) / 2
     axes.annotate(
-        f"chosen: {millimetres(chosen.rms_error)} mm", place, xytext=(-4 if left else 4, 11),
+        f"chosen: {millimetres(chosen.built)} mm", place, xytext=(-4 if left else 4, 11),
         textcoords="offset points", fontsize=8.5, color=INK, weight="bold", gid=HALO, ha="right" if left else "left",
         annotation_clip=False,
     )  # fmt: skip

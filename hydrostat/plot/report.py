@@ -74,7 +74,8 @@ def _path(network: Network, words: str) -> Html:
         fibres = len(activations[0].fibres)
         steps.append(_error_fact(bound, f"if each of {fibres} muscle fibres could pull by itself"))
     share = 100 * network.rms_error / network.robot.body.mesh.size
-    steps.append(_error_fact(network.rms_error, f"{words}: {share:.1f} % of the body's size", best=True))
+    steps.append(_error_fact(network.rms_error, f"{words}, in the model: {share:.1f} % of the body's size"))
+    steps.append(_error_fact(network.built, "to be expected once it is built: sewing, friction, stiffness", best=True))
     return tag("ol", *steps, class_="path")
 
 

@@ -232,7 +232,7 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        pictures.append(picture(figure, f"alternative-{index}", head, f": {_rms_text(other.rms_error)}"))
+        pictures.append(picture(figure, f"alternative-{index}", head, f": {_rms_text(other.built)} once built"))
     return grid(*pictures, kind="tiny")
 
 

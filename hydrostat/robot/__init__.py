@@ -5,6 +5,7 @@ from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
 from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.gravity import STANDARD_GRAVITY
+from hydrostat.robot.inflated import Face, inflated_robot
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation, find_material
 from hydrostat.robot.pin import Pin
@@ -21,6 +22,7 @@ __all__ = [
     "STANDARD_GRAVITY",
     "Body",
     "Cable",
+    "Face",
     "Marker",
     "Material",
     "Mount",
@@ -37,6 +39,7 @@ __all__ = [
     "find_risks",
     "gallery_folder",
     "gallery_names",
+    "inflated_robot",
     "load_robot",
     "mesh_body",
     "outline_body",

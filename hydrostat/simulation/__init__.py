@@ -4,6 +4,7 @@ from hydrostat.simulation.adjoint import Sensitivity
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
+from hydrostat.simulation.filled import FilledMotion, filled_motion
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.friction_band import friction_band
 from hydrostat.simulation.many_poses import ManyPoses
@@ -26,6 +27,7 @@ __all__ = [
     "CriticalKind",
     "CriticalPoint",
     "Dynamics",
+    "FilledMotion",
     "FoundPose",
     "ManyPoses",
     "Motion",
@@ -39,6 +41,7 @@ __all__ = [
     "Simulation",
     "SolvedPose",
     "StepOptions",
+    "filled_motion",
     "follow_branch",
     "friction_band",
     "largest_distance",

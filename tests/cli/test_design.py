@@ -224,7 +224,12 @@ BAD = {
     ("--winches", "²"): "winches must be a whole number from 1 to 20 or \"auto\", not '²'",
     ("--method", "magic"): 'method must be one of routes, trees, not "magic"',
     ("--method", "trees", "--fibres", "hairs"): '--fibres must be one of edges, elements, not "hairs"',
-    ("--fibres", "edges"): "--fibres is for --method trees; routes need no muscle fibres",
+    ("--fibres", "edges"): "--fibres is for --method trees; routes are priced by the pose error",
+    ("--knob", "phi=0.3"): "--knob is for --method trees; routes are priced by the pose error",
+    ("--method", "trees", "--knob", "phi=3"): "TreeOptions.phis must be at least 0 and at most 1, not 3.0",
+    ("--method", "trees", "--knob", "steps=some"): "--knob steps=some: must be a whole number",
+    ("--method", "trees", "--knob", "psi=3"): "--knob psi=3: must be threshold, distance, steps or phi with its value, "
+    "such as phi=0.5",
     ("--tolerance", "1 mm"): "--tolerance is for --winches auto, which finds the fewest winches that keep it",
     ("--winches", "auto", "--tolerance", "0 mm"): "--tolerance 0 mm: must be above 0, such as 12 mm",
     ("--cables", "61"): "cables must be a whole number from 1 to 60, not 61",

@@ -6,8 +6,15 @@ from pathlib import Path
 import pytest
 from builders import box_robot, strip_robot
 
-from hydrostat.design import Constraints, Zone
-from hydrostat.design.constraints_file import ZONES, ConstraintsTable, cable_name, read_constraints
+from hydrostat.design import Constraints, Uncertainty, Zone
+from hydrostat.design.constraints_file import (
+    ZONES,
+    BuiltTable,
+    ConstraintsTable,
+    cable_name,
+    read_constraints,
+    read_uncertainty,
+)
 from hydrostat.errors import InputError
 from hydrostat.robot import Mount
 
@@ -88,7 +95,8 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_every_field_can_stand_in_the_file(file: Path) -> None:
-    assert {ZONES.get(key, key) for key in ConstraintsTable.model_fields} == {field.name for field in fields(MADE)}
+    keys = set(ConstraintsTable.model_fields) - {"built"}
+    assert {ZONES.get(key, key) for key in keys} == {field.name for field in fields(MADE)}
     for field in fields(MADE):
         assert getattr(MADE, field.name) != getattr(Constraints(), field.name), field.name
     file.write_text(ALL)
@@ -99,6 +107,49 @@ def test_what_is_left_out_is_as_ever(file: Path) -> None:
     for text, changed in (("", {}), ('tension = "3 N"', {"tension": 3.0}), ("leads = true", {"leads": True})):
         file.write_text(text)
         assert read_constraints(file, strip_robot()) == replace(Constraints(), **changed)
+
+
+BUILT = """
+clearance = "4 mm"
+[built]
+sewing = "1 mm"
+friction = [0.1, 0.3]
+young = 0.1
+thickness = 0.05
+stiffness = 0.15
+pins = 0.25
+slack = "0.5 mm"
+spool = 0.01
+"""
+
+
+def test_tolerances_stand_in_the_same_file(file: Path) -> None:
+    assert set(BuiltTable.model_fields) == {field.name for field in fields(Uncertainty)}
+    file.write_text(BUILT)
+    assert read_uncertainty(file, strip_robot()) == Uncertainty(
+        sewing=1e-3, friction=(0.1, 0.3), young=0.1, thickness=0.05, stiffness=0.15, pins=0.25, slack=5e-4, spool=0.01
+    )
+    assert read_constraints(file, strip_robot()).clearance == 4e-3
+    file.write_text("[built]\nspool = 0.01")
+    for robot in (strip_robot(), box_robot()):
+        assert read_uncertainty(file, robot) == replace(Uncertainty.of(robot.body), spool=0.01)
+    file.write_text("")
+    assert read_uncertainty(file, strip_robot()) == Uncertainty()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    {
+        "sewing = 2": 'built.sewing: 2 has no unit; write a length as text: "12 mm"',
+        "young = -0.1": "built.young must be at least 0 and at most 1, not -0.1",
+        "friction = [0.3, 0.1]": "built.friction must rise from at least 0 to at most 1, not (0.3, 0.1)",
+    }.items(),
+)
+def test_a_wrong_tolerance_is_one_line(text: str, message: str, file: Path) -> None:
+    file.write_text(f"[built]\n{text}")
+    with pytest.raises(InputError) as caught:
+        read_uncertainty(file, strip_robot())
+    assert str(caught.value) == f"{file}, line 2: {message}"
 
 
 def test_zones_are_in_the_unit_of_the_robots_file(file: Path) -> None:

@@ -75,6 +75,12 @@ def test_methods_and_muscles_are_of_closed_sets(unchecked: None) -> None:
     assert TreeOptions(fibres="elements").fibres is FibreKind.ELEMENTS  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r'^fibres must be one of edges, elements, not "hairs"$'):
         TreeOptions(fibres="hairs")  # type: ignore[arg-type]
+    single = TreeOptions.single(threshold=30, distance=2.0, steps=8, phi=0.3)
+    assert (single.thresholds, single.distances, single.growth_steps, single.phis) == ((30,), (2.0,), 8, (0.3,))
+    assert (single.shares, single.trials, single.loss) == (1, 1, 0.0)
+    for wrong in ({"threshold": 0}, {"distance": 0.0}, {"steps": 1.5}, {"phi": 1.1}):
+        with pytest.raises(InputError, match=r"TreeOptions\.\w+ must be"):
+            TreeOptions.single(**wrong)  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r'^method must be one of routes, trees, not "magic"$'):
         DesignRequest(poses=(UP,), method="magic")  # type: ignore[arg-type]
 

@@ -301,7 +301,7 @@ class RouteSearch:
 
     def _finished(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """The networks found, judged as their user will find them, the best first."""
-        trials = [*self.found, *([] if complete else [self.best])]
+        trials = [*self.found, *(self._simpler() if complete else [self.best])]
         judged = [judged for trial in trials if trial is not None and (judged := self.judged(trial)) is not None]
         if not judged:
             raise HydrostatError(
@@ -309,6 +309,16 @@ class RouteSearch:
             )
         judged.sort(key=lambda network: network.built)
         return judged[0], judged[1:]
+
+    def _simpler(self) -> list[Trial]:
+        """The best network of each size with fewer cables, where none with fewer still is as good."""
+        kept: list[Trial] = []
+        for winches, cables in sorted(self.sizes, key=lambda size: size[1]):
+            trial = self.sizes[winches, cables]
+            fewer = cables < len(self.found[0].layout.routes)
+            if fewer and all(trial.cost < (1 - _WORSE) * other.cost for other in kept):
+                kept.append(trial)
+        return kept
 
     def judged(self, trial: Trial) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
@@ -345,6 +355,7 @@ class RouteSearch:
 _DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a cable finer
 _ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
 _LOOSER = 0.02  # fewer holes may cost so much
+_WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors
 _HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
 _STRONG = 0.1  # what the effort of stronger paths counts
 _DRAWN = 6  # sketches that are solved for each that is grown

@@ -139,6 +139,11 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
             f"without a gusset the stuffed body is about {stuffed:.0f} mm thick, but it was simulated with "
             f"{thickness:g} mm: it will be softer; sew it with the gusset, or simulate it thinner"
         )
+    if draft.robot.cables:
+        warnings.append(
+            "the cables are sewn on the front alone, so they also curl the body towards it (`hydrostat check --filled` "
+            "tells how far): play it lying on a table, or sew each cable on the back too and tie both to one spool"
+        )
     warnings += [
         f"the stopper of cable {sewn.cable} sits inside: adjust it through the opening"
         for sewn in draft.stitches

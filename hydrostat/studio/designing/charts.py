@@ -76,12 +76,12 @@ FRONT_WIDTH, FRONT_HEIGHT = 300.0, 176.0
 
 
 def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: int | None) -> str:
-    """A dot for each candidate, in the colour of its number of winches, small ones for networks on the way, as SVG.
+    """A dot for each candidate's error as built, in the colour of its number of winches, small ones on the way, as SVG.
 
     The line goes through what is better than all with fewer cables: what more of them gain. The trail has the networks
     on the way of the last design; the candidate of the chosen number has a ring.
     """
-    errors = [(len(one.robot.cables), 1e3 * one.error) for one in candidates]
+    errors = [(len(one.robot.cables), 1e3 * one.built) for one in candidates]
     way = [(mark.cables, 1e3 * mark.error) for mark in trail]
     chart = Chart(
         width=FRONT_WIDTH,

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design import DesignRequest, DesignStage, find_network
-from hydrostat.design.network import rms_error
+from hydrostat.design.network import Alternative, Network, rms_error
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Pose, Robot, Winch
 from hydrostat.studio.jobs import Report
@@ -35,6 +35,7 @@ class Solution:
     cables: tuple[Cable, ...]  # of the network
     reaches: tuple[Reach, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
+    built: float  # the same, expected of a robot as it is built [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,12 +47,18 @@ class Candidate:
     robot: Robot  # that one with the network
     reaches: tuple[Reach, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
+    built: float  # the same, expected of a robot as it is built [m]
     complete: bool  # whether the search came to its end
 
     @property
     def counts(self) -> str:
         """Such as "2 winches, 6 cables"."""
         return network_words(self.robot)
+
+    @property
+    def holes(self) -> int:
+        """How many via points are to be sewn, the ends of cables included."""
+        return sum(len(cable.points) - 1 for cable in self.robot.cables)
 
     @property
     def length(self) -> float:
@@ -80,10 +87,15 @@ def network_words(robot: Robot) -> str:
     return f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
 
 
-def solution(robot: Robot, reached: tuple[ReachedPose, ...]) -> Solution:
+def solution(found: Network | Alternative) -> Solution:
     """What is sent of a network."""
-    reaches = tuple(map(_reach, reached))
-    return Solution(winches=robot.winches, cables=robot.cables, reaches=reaches, error=rms_error(reached))
+    return Solution(
+        winches=found.robot.winches,
+        cables=found.robot.cables,
+        reaches=tuple(map(_reach, found.reached)),
+        error=rms_error(found.reached),
+        built=found.built,
+    )
 
 
 def _reach(reached: ReachedPose) -> Reach:
@@ -106,7 +118,7 @@ class Glimpse:
 
     winches: tuple[Winch, ...]  # of it
     cables: tuple[Cable, ...]  # of it
-    error: float  # root of the mean squared marker error over all poses [m]
+    error: float  # rms marker error over all poses: for routes that expected once built, for trees in the model [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -127,15 +139,21 @@ def design_work(report: Report, robot: Robot, request: DesignRequest) -> Designs
 
     network = find_network(robot, request, progress=report.progress, watch=watch)
     report.finish()
-    others = [(other.robot, other.reached) for other in network.alternatives]
-    solutions = _each_once([(network.robot, network.reached), *others])
+    solutions = _each_once([network, *network.alternatives])
     return DesignsFound(solutions=solutions, tried=network.tried, complete=network.complete)
 
 
-def _each_once(networks: Iterable[tuple[Robot, tuple[ReachedPose, ...]]]) -> tuple[Solution, ...]:
-    """Networks without those that have the same winches and cables as one before."""
-    kept: list[Solution] = []
-    for robot, reached in networks:
-        if not any((robot.winches, robot.cables) == (other.winches, other.cables) for other in kept):
-            kept.append(solution(robot, reached))
-    return tuple(kept)
+def _each_once(networks: Iterable[Network | Alternative]) -> tuple[Solution, ...]:
+    """Networks, but those that are no simpler than a better one before: in winches, cables and holes."""
+    kept: list[Network | Alternative] = []
+    for found in networks:
+        better = (other for other in kept if other.built <= found.built)
+        if not any(all(np.less_equal(_parts(other), _parts(found))) for other in better):
+            kept.append(found)
+    return tuple(map(solution, kept))
+
+
+def _parts(found: Network | Alternative) -> tuple[int, int, int]:
+    """Numbers of winches, cables and points of cables."""
+    robot = found.robot
+    return len(robot.winches), len(robot.cables), sum(len(cable.points) for cable in robot.cables)

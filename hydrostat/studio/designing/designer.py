@@ -290,6 +290,7 @@ class Designer(Stage):
                     robot=source.with_network(solution.winches, solution.cables),
                     reaches=solution.reaches,
                     error=solution.error,
+                    built=solution.built,
                     complete=found.complete,
                 )
             )
@@ -298,7 +299,7 @@ class Designer(Stage):
         seconds = time.monotonic() - run.began
         early = "" if found.complete else "stopped early, the best so far: "
         self.outcome = (
-            f"{early}{network_words(best.robot)}, {told_error(best.error)} off, in {seconds:.0f} s "
+            f"{early}{network_words(best.robot)}, {told_error(best.built)} off once built, in {seconds:.0f} s "
             f"({found.tried} networks tried)"
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name

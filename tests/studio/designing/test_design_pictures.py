@@ -102,7 +102,8 @@ def test_the_front_is_what_is_better_than_all_with_fewer_cables() -> None:
 def test_each_candidate_is_a_dot_and_the_chosen_one_has_a_ring() -> None:
     robot = strip_robot(columns=10, rows=3)
     candidates = [
-        Candidate(number=n, source=robot, robot=robot, reaches=(), error=1e-3 * n, complete=True) for n in (1, 2, 3)
+        Candidate(number=n, source=robot, robot=robot, reaches=(), error=5e-4 * n, built=1e-3 * n, complete=True)
+        for n in (1, 2, 3)
     ]
     svg = front_chart(candidates, marks(0.01), 2)
     assert len(all_of(svg, "circle", "chart-dot")) == 3

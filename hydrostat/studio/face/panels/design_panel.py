@@ -137,7 +137,7 @@ def _progress(page: WindowPage) -> None:
         if not designer.running or run is None or state is None:
             return
         best = run.trail[-1] if run.trail else None
-        error.set_text("Searching" if best is None else f"{told_error(best.error)} off")
+        error.set_text("Searching" if best is None else f"{told_error(best.error)} off once built")
         count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm off at rest")
         chart.set_content(growth_chart(run, designer.seconds))
         bar.set_value(state.done / state.total if state.total else 0.0)
@@ -229,7 +229,8 @@ def _words(one: Candidate, own: tuple[int, ...]) -> str:
     robot = one.robot
     note = " · in the robot" if one.number in own else "" if one.complete else " · stopped early"
     return (
-        f"<b>{told_error(one.error)}</b><span>{note}</span><br>"
-        f"<span>{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}<br>"
-        f"{1e3 * one.length:.0f} mm, {one.tension:.1f} N</span>"
+        f"<b>{told_error(one.built)} once built</b><span>{note}</span><br>"
+        f"<span>{told_error(one.error)} in the model<br>"
+        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}, "
+        f"{counted(one.holes, 'hole')}<br>{1e3 * one.length:.0f} mm, {one.tension:.1f} N</span>"
     )

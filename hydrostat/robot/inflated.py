@@ -1,0 +1,119 @@
+"""`inflated_robot`: a flat robot as the plush body that it becomes once it is filled, its cables on a face."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.robot.body import Body, surface_body
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.checks import Point
+from hydrostat.robot.pin import Pin
+from hydrostat.robot.robot import Robot
+
+
+class Face(StrEnum):
+    """Where the cables of a flat robot run once it is filled."""
+
+    FRONT = "front"  # sewn on the panel that is looked at
+    BACK = "back"  # on the other one
+    PAIRS = "pairs"  # each twice, on both panels, pulled together
+    MIDDLE = "middle"  # through the filling, half way between
+
+
+def inflated_robot(robot: Robot, face: Face | str = Face.FRONT, *, element_size: float | None = None) -> Robot:
+    """The robot in space that a flat one becomes: its outline blown up to its thickness, cables on a face of it.
+
+    Winches and markers stay in the plane z = 0; so a cable leaves its winch inside the body and comes to the skin at
+    its first via point. A pair is two cables of one winch, each as stiff as the one that is drawn. Poses get z = 0.
+
+    Args:
+        robot: flat, with an outline.
+        face: where its cables run.
+        element_size: of the tetrahedra [m]; that of the flat mesh if left out.
+
+    Raises:
+        InputError: a robot in space, one without a drawing, or a body too thick for its outline.
+    """
+    face = Face(face)
+    body = _blown_up(robot.body, element_size)
+    flat = robot.gravity
+    return replace(
+        robot,
+        body=body,
+        pins=tuple(_pin(pin, float(robot.body.thickness or 0.0)) for pin in robot.pins),
+        winches=tuple(replace(winch, at=_raised(winch.at)) for winch in robot.winches),
+        cables=tuple(lifted for cable in robot.cables for lifted in _lifted(cable, face, body)),
+        markers=tuple(replace(marker, at=_raised(marker.at)) for marker in robot.markers),
+        poses={
+            name: replace(pose, targets={marker: _raised(place) for marker, place in pose.targets.items()})
+            for name, pose in robot.poses.items()
+        },
+        gravity=None if flat is None else (*flat, 0.0),
+    )
+
+
+def _blown_up(body: Body, element_size: float | None) -> Body:
+    from hydrostat.geometry.files.ply_file import write_ply
+    from hydrostat.geometry.inflate import inflate
+
+    if body.outline is None or body.thickness is None:
+        raise InputError("only a flat robot with a drawing can be inflated")
+    surface = inflate(body.outline, body.thickness, spacing=body.outline.size / 80)
+    return surface_body(
+        write_ply(surface),
+        file="inflated.ply",
+        unit=1e-3,
+        material=body.material,
+        element_size=element_size or body.element_size or body.mesh.size / 25,
+        volume=body.volume,
+    )
+
+
+def _skin(body: Body, places: Points, side: float) -> Vector:
+    """Height of the skin over points of the plane, on the side of +z or -z, a little inside [m]."""
+    low, high = np.zeros(len(places)), np.full(len(places), float(np.abs(body.mesh.nodes[:, 2]).max()))
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        outside = body.distances(np.column_stack([places, side * middle])) > 0
+        high, low = np.where(outside, middle, high), np.where(outside, low, middle)
+    return side * low
+
+
+def _lifted(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
+    """A cable on its face, all but its first point, which is its winch's; twice for pairs."""
+    points = np.array(cable.points)
+    for name, side in _SIDES[face]:
+        lift = _skin(body, points, side)
+        lift[0] = 0.0
+        lifted = tuple(map(tuple, np.column_stack([points, lift]).tolist()))
+        yield replace(cable, points=lifted, name=f"{cable.name}{name}")
+
+
+_SIDES = {
+    Face.FRONT: (("", 1.0),),
+    Face.BACK: (("", -1.0),),
+    Face.PAIRS: ((" front", 1.0), (" back", -1.0)),
+    Face.MIDDLE: (("", 0.0),),
+}
+
+
+def _raised(place: Point) -> Point:
+    return (*place, 0.0)
+
+
+def _pin(pin: Pin, thickness: float) -> Pin:
+    """All of the body over what a pin holds in the plane."""
+    if pin.box is not None:
+        low, high = np.min(pin.box, axis=0), np.max(pin.box, axis=0)
+    else:
+        low, high = np.array(pin.at) - pin.radius, np.array(pin.at) + pin.radius
+    if pin.at is not None and pin.radius == 0.0:
+        return replace(pin, at=_raised(pin.at))
+    return replace(pin, at=None, radius=0.0, box=((*map(float, low), -thickness), (*map(float, high), thickness)))
+
+
+_HALVINGS = 14  # of the height, so that it is within a hundredth of a millimetre

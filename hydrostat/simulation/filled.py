@@ -1,0 +1,51 @@
+"""`filled_motion`: what a flat robot does once it is filled and its cables are sewn on a face of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.robot import Face, Robot, inflated_robot
+from hydrostat.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilledMotion:
+    """How far the markers of a filled robot are from those of its flat model, each the largest over all poses [m]."""
+
+    face: Face  # where its cables run
+    moved: float  # how far a marker goes in the flat model
+    out: float  # how far one comes out of the plane
+    aside: float  # how far one is from the flat model, as seen from the front
+    tension: float  # of a cable [N]
+    nodes: int  # of the mesh in space
+
+
+def filled_motion(
+    robot: Robot, contractions: Sequence[Vector], face: Face | str, *, element_size: float | None = None
+) -> FilledMotion:
+    """Play contractions on a flat robot and on the body in space that it becomes (`inflated_robot`), and compare.
+
+    Args:
+        robot: flat, with a drawing.
+        contractions: of all winches, for each pose [m].
+        face: where its cables run.
+        element_size: of the tetrahedra [m]; that of the flat mesh if left out.
+
+    Raises:
+        InputError: a robot in space, one without a drawing, or a body too thick for its outline.
+        NotConvergedError: a pose that has no equilibrium.
+    """
+    flat, solid = Simulation(robot), Simulation(inflated_robot(robot, face, element_size=element_size))
+    moved, out, aside, tension = 0.0, 0.0, 0.0, 0.0
+    for pulled in contractions:
+        before, after = flat.solve(pulled), solid.solve(pulled)
+        tension = max(tension, float(after.tensions.max(initial=0.0)))
+        for marker in robot.markers:
+            drawn, found = before.markers[marker.name], after.markers[marker.name]
+            moved = max(moved, float(np.linalg.norm(drawn - marker.at)))
+            out = max(out, abs(float(found[2])))
+            aside = max(aside, float(np.linalg.norm(found[:2] - drawn)))
+    nodes = len(solid.robot.body.mesh.nodes)
+    return FilledMotion(face=Face(face), moved=moved, out=out, aside=aside, tension=tension, nodes=nodes)
