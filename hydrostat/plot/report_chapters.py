@@ -161,7 +161,10 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
         "cable, cables that no longer earn their place are dropped, and via points move to where the error is least."
     )
     if len(stage_runs(trace.stages)) > 1:
-        words += " Several networks are begun, each from another first cable; the most promising is refined."
+        words += (
+            " Several networks are begun: grown from different first cables, drawn along the limbs, or taken from "
+            "winch trees; the most promising are refined."
+        )
     shown = evenly(len(trace.stages), MOST_STAGES)
     stages = [trace.stages[index] for index in shown]
     frame = stage_frame([*(stage.robot for stage in stages), network.robot])

@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Float, Int
 from scipy.optimize import nnls
-from scipy.sparse import csr_array
+from scipy.sparse import csc_array, csr_array, hstack
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
@@ -176,14 +176,16 @@ class _Choice:
     def __post_init__(self) -> None:
         bench, simulation = self.proposals.bench, self.bare.simulation
         mesh = bench.source.body.mesh
-        slopes = np.column_stack([self._pull(line) for line in self.lines])
-        response = simulation.response(self.bare.poses[0], slopes)
-        self.gives = slopes.T @ response + np.eye(len(self.lines)) / Cable.stiffness
+        slopes = csc_array(hstack([csc_array(self._pull(line)[:, None]) for line in self.lines]))
+        self.gives = np.eye(len(self.lines)) / Cable.stiffness
+        for first in range(0, len(self.lines), _AT_ONCE):
+            some = slice(first, first + _AT_ONCE)
+            self.gives[:, some] += slopes.T @ simulation.response(self.bare.poses[0], slopes[:, some].toarray())
         self.moves, self.missed, self.ridges = [], [], []
         for index, pose in enumerate(self.bare.poses):
             rows = len(bench.markers[index]) * mesh.dim
             fields = self.bare.slopes[index].fields[:rows].reshape(rows, -1)
-            self.moves.append(-bench.weights[index][:, None] * (fields @ slopes))
+            self.moves.append(-bench.weights[index][:, None] * (slopes.T @ fields.T).T)
             self.missed.append(bench.residual(simulation, index, pose.nodes))
             self.ridges.append(_EFFORT * float(np.linalg.norm(self.missed[-1])) / bench.constraints.tension_limit)
         self.scale = float(np.linalg.norm(np.concatenate(self.missed)))
@@ -321,7 +323,8 @@ _WAYS = ((0.85, 1.0), (0.85, 0.5), (0.4, 0.5))
 _EFFORT = 0.5  # share of the residual that the tension limit is worth
 _SIMPLE = 0.01  # what each line more must gain
 _SLACK = 6  # rounds in which slack cables are left out
-_EXCHANGES = 3
+_EXCHANGES = 3  # rounds
+_AT_ONCE = 64  # lines whose response is found at a time, so that large bodies need little memory
 _MEETS = 0.6  # share of the gap between cables at which they meet; what is nearer than the gap is pushed apart
 _ROOM = 2.5  # within so many spool radii of a winch its cables may meet
 _REACH = 0.03  # what is farther than this share of the body's size from a limit does not feel it
