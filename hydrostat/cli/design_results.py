@@ -43,6 +43,7 @@ def print_poses(network: "Network", seconds: float) -> None:
     from rich.table import Table
 
     from hydrostat.design import rest_error
+    from hydrostat.geometry import find_crossings
     from hydrostat.units import counted
 
     robot = network.robot
@@ -53,6 +54,9 @@ def print_poses(network: "Network", seconds: float) -> None:
     for reached in network.reached:
         table.add_row(*_pose_row(robot, reached))
     Console(markup=False).print(table)
+    for reached in network.reached:
+        if words := str(find_crossings(robot.body.mesh, reached.pose.nodes)):
+            print(f"{reached.wanted.name}: {words}")
     print(
         f"rms error: {1e3 * rest_error(network):.2f} mm at rest -> {1e3 * network.rms_error:.2f} mm reached in the "
         f"model, {1e3 * network.built:.2f} mm to be expected once built; "

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry import Outline
     from hydrostat.ik import Limits, ReachedPose
     from hydrostat.robot import Pose, Robot
-    from hydrostat.simulation import Simulation
+    from hydrostat.simulation import Simulation, SolvedPose
 
 
 def pose(
@@ -65,6 +65,7 @@ def pose(
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)
         _print_reached(loaded, reached, title, seconds)
         _note_other_pose(simulation, reached)
+        _note_crossings(loaded, reached.pose)
         print(f"  wrote {folder}")
         stuck |= reached.reason not in (InverseReason.REACHED, InverseReason.OPTIMAL)
     if stuck:
@@ -142,6 +143,14 @@ def _note_other_pose(simulation: "Simulation", reached: "ReachedPose") -> None:
     if pose.result.converged and away > _APART * simulation.robot.body.mesh.size:
         print(f"  note: at once from rest these contractions lead to another pose, up to {1e3 * away:.1f} mm away;")
         print("  take them in step by step, or see `hydrostat branches`")
+
+
+def _note_crossings(loaded: "Robot", pose: "SolvedPose") -> None:
+    """Say it if the body passes through itself."""
+    from hydrostat.geometry import find_crossings
+
+    if words := str(find_crossings(loaded.body.mesh, pose.nodes)):
+        print(f"  note: {words}")
 
 
 def _taken(loaded: "Robot", reached: "ReachedPose") -> dict[str, float]:

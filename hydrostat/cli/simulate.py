@@ -95,9 +95,13 @@ def _print_places(found: "SolvedPose | Motion", robot: "Robot") -> None:
 
 def _print_notes(simulation: "Simulation", pose: "SolvedPose") -> None:
     """Print what is in the way of a pose that was not found, and where else the body could have gone."""
+    from hydrostat.geometry import find_crossings
+
     if not pose.result.converged:
         for obstacle in simulation.in_the_way(pose):
             print(f"in the way: {obstacle}")
+    if words := str(find_crossings(simulation.robot.body.mesh, pose.nodes)):
+        print(f"note: {words}")
     if pose.result.buckled:
         print("note: the body buckled on the way; it could as well have gone to another side")
     if pose.result.converged and not pose.result.stable:

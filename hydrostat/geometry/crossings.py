@@ -1,0 +1,106 @@
+"""`find_crossings`: where a deformed body passes through itself."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.spatial import KDTree
+from shapely import STRtree, linestrings
+
+from hydrostat.arrays import Nodes
+from hydrostat.geometry.mesh import Mesh
+
+Pairs = Int[np.ndarray, "crossings 2"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Crossings:
+    """Places at which the boundary of a body cuts itself.
+
+    Attributes:
+        places: [m].
+        facets: the two facets of `Mesh.boundary` that meet at each; in space the edge that pierces is of the first.
+    """
+
+    places: Float[np.ndarray, "crossings dim"]
+    facets: Pairs
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    def __str__(self) -> str:
+        """One sentence, with the first place in mm; empty where there is none."""
+        if not len(self):
+            return ""
+        first = ", ".join(f"{1e3 * value:.0f}" for value in self.places[0])
+        return f"the body passes through itself, for instance at [{first}] mm: contact is not simulated"
+
+
+def find_crossings(mesh: Mesh, nodes: Nodes) -> Crossings:
+    """Find where the boundary of a mesh cuts itself, its nodes being at other places [m].
+
+    In the plane boundary edges are cut with boundary edges, in space edges with triangles, but those that share a node.
+    Edges that lie in the plane of a triangle do not cut it. A part that has passed wholly into another, and cuts no
+    boundary, is not seen.
+    """
+    return (_flat if mesh.dim == 2 else _solid)(mesh, nodes)
+
+
+def _flat(mesh: Mesh, nodes: Nodes) -> Crossings:
+    ends = nodes[mesh.boundary]
+    lines = np.asarray(linestrings(ends))
+    one, other = STRtree(lines).query(lines, predicate="intersects")
+    kept = (one < other) & ~_share(mesh.boundary[one], mesh.boundary[other])
+    one, other = one[kept], other[kept]
+    start, along = ends[one, 0], ends[one, 1] - ends[one, 0]
+    first, across = ends[other, 0], ends[other, 1] - ends[other, 0]
+    turned = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+    gap = first - start
+    share = (gap[:, 0] * across[:, 1] - gap[:, 1] * across[:, 0]) / np.where(turned == 0, 1.0, turned)
+    places = start + np.clip(np.where(turned == 0, 0.0, share), 0.0, 1.0)[:, None] * along
+    return Crossings(places=places, facets=np.column_stack([one, other]))
+
+
+def _solid(mesh: Mesh, nodes: Nodes) -> Crossings:
+    facets = mesh.boundary
+    every = np.sort(np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]]), axis=1)
+    edges, firsts = np.unique(every, axis=0, return_index=True)
+    owners = firsts % len(facets)
+    corners, ends = nodes[facets], nodes[edges]
+    middles = corners.mean(axis=1)
+    radius = float(np.linalg.norm(corners - middles[:, None], axis=2).max())
+    reach = radius + 0.5 * float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max())
+    near = KDTree(ends.mean(axis=1)).sparse_distance_matrix(KDTree(middles), reach, output_type="ndarray")
+    edge, facet = near["i"], near["j"]
+    apart = ~_share(edges[edge], facets[facet])
+    edge, facet = edge[apart], facet[apart]
+    pierced, places = _pierced(ends[edge], corners[facet])
+    return Crossings(places=places[pierced], facets=np.column_stack([owners[edge], facet])[pierced])
+
+
+def _pierced(
+    ends: Float[np.ndarray, "pairs 2 3"], corners: Float[np.ndarray, "pairs 3 3"]
+) -> tuple[Bool[np.ndarray, " pairs"], Float[np.ndarray, "pairs 3"]]:
+    """Whether each segment cuts its triangle, and where (Moeller and Trumbore 1997)."""
+    along = ends[:, 1] - ends[:, 0]
+    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normal = np.cross(along, two)
+    scale = np.einsum("pi,pi->p", one, normal)
+    lengths = np.linalg.norm([along, one, two], axis=2).prod(axis=0)
+    across = np.abs(scale) > _PARALLEL * lengths
+    safe = np.where(across, scale, 1.0)
+    gap = ends[:, 0] - corners[:, 0]
+    u = np.einsum("pi,pi->p", gap, normal) / safe
+    turned = np.cross(gap, one)
+    v = np.einsum("pi,pi->p", along, turned) / safe
+    share = np.einsum("pi,pi->p", two, turned) / safe
+    inside = across & (u >= 0) & (v >= 0) & (u + v <= 1) & (share >= 0) & (share <= 1)
+    return inside, ends[:, 0] + share[:, None] * along
+
+
+_PARALLEL = 1e-9  # of the volume of three edges: what spans less lies in one plane, and cuts nothing
+
+
+def _share(one: Int[np.ndarray, "pairs _"], other: Int[np.ndarray, "pairs _"]) -> Bool[np.ndarray, " pairs"]:
+    """Whether two facets have a node in common."""
+    return (one[:, :, None] == other[:, None, :]).any(axis=(1, 2))
