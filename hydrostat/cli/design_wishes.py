@@ -105,6 +105,7 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
 
     if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance is for --winches auto, which finds the fewest winches that keep it")
+    fibres = None if typed.fibres is None else member(FibreKind, typed.fibres, what="--fibres")
     for name, given in (("fibres", typed.fibres), ("knob", typed.knobs)):
         if given and not trees:
             raise InputError(f"--{name} is for --method trees; routes are priced by the pose error")
@@ -112,8 +113,7 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
         raise InputError("--simplicity is for routes; method trees leaves out cables by a rule of its own")
     if trees:
         options = TreeOptions.single(**dict(map(_knob, typed.knobs))) if typed.knobs else TreeOptions()
-        kind = options.fibres if typed.fibres is None else member(FibreKind, typed.fibres, what="--fibres")
-        return replace(options, fibres=kind)
+        return replace(options, fibres=fibres or options.fibres)
     tolerance = None if typed.tolerance is None else positive("--tolerance", typed.tolerance, LENGTH)
     simplicity = RouteOptions.simplicity if typed.simplicity is None else typed.simplicity
     return RouteOptions(tolerance=tolerance, simplicity=simplicity)
