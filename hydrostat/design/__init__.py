@@ -2,6 +2,7 @@
 
 from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.craft import Craft, SewingTimes, craft_of
 from hydrostat.design.design_cables import design_cables, find_network
 from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, TreeTrace
@@ -17,6 +18,7 @@ __all__ = [
     "BuiltErrors",
     "Certificate",
     "Constraints",
+    "Craft",
     "DesignMethod",
     "DesignRequest",
     "DesignStage",
@@ -25,12 +27,14 @@ __all__ = [
     "Network",
     "RouteOptions",
     "RouteTrace",
+    "SewingTimes",
     "TreeOptions",
     "TreeTrace",
     "Uncertainty",
     "Zone",
     "activate",
     "built_errors",
+    "craft_of",
     "design_cables",
     "edge_fibres",
     "element_fibres",

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrostat.design.craft import craft_of
 from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot, robot_hash
@@ -18,6 +19,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error": network.rms_error,
         "rms_error_as_built": network.built,
         "rms_error_at_rest": rest_error(network),
+        "craft": craft_of(robot, network.reached).as_values,
         "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
         "winches": _winches(robot),
         "cables": _cables(robot),
@@ -97,6 +99,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
         "rms_error_as_built": other.built,
+        "craft": craft_of(other.robot, other.reached).as_values,
         "poses": {pose.wanted.name: pose.rms_error for pose in other.reached},
         "robot": robot_hash(other.robot),
     }

@@ -100,15 +100,15 @@ class _PoseLoads:
         return Demand(
             poses=tuple(self.solved),
             tensions=np.max([pose.tensions for pose in poses], axis=0),
-            torques=np.max([_torques(self._robot, pose.tensions) for pose in poses], axis=0),
+            torques=np.max([shaft_torques(self._robot, pose.tensions) for pose in poses], axis=0),
             taken=np.stack([taken.min(axis=0), taken.max(axis=0)], axis=1),
             missed=tuple(self._missed),
             far=tuple(self._far),
         )
 
 
-def _torques(robot: Robot, tensions: Vector) -> Vector:
-    """Torque on the shaft of each winch [N m]."""
+def shaft_torques(robot: Robot, tensions: Vector) -> Vector:
+    """Torque on the shaft of each winch [N m] of the tensions of all cables [N]."""
     radii = {winch.name: winch.spool_radius for winch in robot.winches}
     own = np.array([cable.spool_radius or radii[cable.winch] for cable in robot.cables])
     mine = np.array([[cable.winch == winch.name for cable in robot.cables] for winch in robot.winches], dtype=float)

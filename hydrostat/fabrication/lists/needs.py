@@ -6,6 +6,7 @@ from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.list_input import Cloth, FoamNeeds, ListInput
+from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.solids.printed import Printed
 
 POLYETHYLENE = 0.97e-3  # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
@@ -29,7 +30,12 @@ def all_needs(
         items += _plush(given, given.cloth)
     if given.foam is not None:
         items += _foam(given, given.foam)
-    items += [*_cables(given, line, cuts, tubes), *_winches(given), *_control(given), *_mould(given)]
+    items += [
+        *_cables(given, line, cuts, tubes),
+        *_winches(given),
+        *control_needs(given.motor, given.units),
+        *_mould(given),
+    ]
     return [item for item in items if item.quantity > 0]
 
 
@@ -112,11 +118,11 @@ def _plastic(group: str, what: str, parts: tuple[Printed, ...]) -> Item:
     return _item(group, what, f"{pieces} pieces, with a little infill", 1e-3 * mass, "pla", mass)
 
 
-def _control(given: ListInput) -> list[Item]:
-    count = given.units
+def control_needs(motor: Motor, count: int) -> list[Item]:
+    """Boards, drivers and the supply that turn so many motors of a kind; some quantities may be 0."""
     voltage = "of the motors' voltage, with current for those that pull at once"
     supply = _item(_CONTROL, "power supply", voltage, float(count > 0), "supply")
-    if given.motor.horn is not None:
+    if motor.horn is not None:
         bus = "OpenRB-150 or alike, drives the servos by their bus"
         return [_item(_CONTROL, "controller board for servos", bus, float(count > 0), "servo board"), supply]
     boards, drivers = math.ceil(count / _BOARD_MOTORS), math.ceil(count / _DRIVER_MOTORS)

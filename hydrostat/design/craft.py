@@ -1,0 +1,107 @@
+"""`Craft`: what it takes to sew and to motorise a network, in plain units."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.design.checks.cables import SAME
+from hydrostat.design.polyline import nearest_shares, turns
+from hydrostat.fabrication.demand import shaft_torques
+from hydrostat.fabrication.lists.bill import PRICES
+from hydrostat.fabrication.lists.needs import control_needs
+from hydrostat.fabrication.parts.motor import choose_motor
+from hydrostat.ik import ReachedPose
+from hydrostat.robot import Cable, Mount, Robot
+
+SHARP = 60.0  # a turn of more than this [degrees] is called sharp
+
+
+@dataclass(frozen=True, kw_only=True)
+class SewingTimes:
+    """Minutes that the work on cables takes. All are assumed; none was measured.
+
+    With four holes a cable is stitched in ten minutes, as the assembly sheet says of every cable.
+    """
+
+    cut: float = 3.0  # to cut and mark a line or a tube, as on the assembly sheet
+    ends: float = 4.0  # to begin a cable at its winch and to put its stopper on
+    hole: float = 1.5  # to lead it through a hole, from the one before
+    sheath: float = 2.0  # to tie a tube down at both its ends
+
+
+@dataclass(frozen=True, kw_only=True)
+class Craft:
+    """Labour and money that a network asks of who builds it."""
+
+    holes: int  # points that cables are led through, without where they begin and end
+    crossings: int  # places where cables cross, but beside the winch of both
+    sharp_turns: int  # via points at which a cable turns by more than `SHARP` degrees
+    sheaths: int  # tubes
+    length: float  # of all cables along their routes [m]
+    minutes: float  # of cutting and stitching cables and tubes [min]
+    price: float  # rough, of motors with boards, drivers and supply, of line and tube as used up [USD]
+    motors: int  # winches that have cables: one motor each
+    motor: str  # key of the kind of motor, the same for all; empty where there is none
+
+    @property
+    def as_values(self) -> dict[str, float | int | str]:
+        """The fields by their names, as plain values for a file."""
+        return dict(vars(self))
+
+
+def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes | None = None) -> Craft:
+    """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches."""
+    clock = times or SewingTimes()
+    cables = robot.cables
+    motors = len({cable.winch for cable in cables})
+    holes = sum(len(cable.points) - 2 for cable in cables)
+    sheaths = sum(len(cable.sheathed) for cable in cables)
+    length = float(sum(cable.length for cable in cables))
+    tube = float(sum(cable.segments[~cable.bare].sum() for cable in cables))
+    price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
+    if motors:
+        torques = np.array([shaft_torques(robot, pose.pose.tensions) for pose in reached]).ravel()
+        inside = any(winch.mount is Mount.BODY for winch in robot.winches)
+        motor = choose_motor("auto", torques, inside=inside)
+        price += motors * motor.price + sum(item.cost for item in control_needs(motor, motors))
+        key = motor.key
+    return Craft(
+        holes=holes,
+        crossings=_crossings(robot),
+        sharp_turns=sum(_sharp(cable) for cable in cables),
+        sheaths=sheaths,
+        length=length,
+        minutes=(clock.cut + clock.ends) * len(cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths,
+        price=price,
+        motors=motors,
+        motor=key,
+    )
+
+
+def _sharp(cable: Cable) -> int:
+    return int((np.degrees(turns(np.array(cable.points))) > SHARP).sum())
+
+
+def _crossings(robot: Robot) -> int:
+    """Pairs of segments that meet: not neighbours of one cable, and not within two spool radii of a shared winch."""
+    winches = {winch.name: winch for winch in robot.winches}
+    runs = [
+        (index, at, np.array(cable.points[at : at + 2]))
+        for index, cable in enumerate(robot.cables)
+        for at in range(int(winches[cable.winch].mount is Mount.WORLD), len(cable.points) - 1)
+    ]
+    found = 0
+    for number, (index, at, ends) in enumerate(runs):
+        for other, there, ends_there in runs[number + 1 :]:
+            if other == index and there <= at + 1:
+                continue
+            shares = nearest_shares(ends[None], ends_there[None])
+            place = ends[0] + shares[0][0] * (ends[1] - ends[0])
+            meet = ends_there[0] + shares[1][0] * (ends_there[1] - ends_there[0])
+            winch = winches[robot.cables[index].winch]
+            beside = winch.name == robot.cables[other].winch and winch.mount is Mount.BODY
+            if beside and np.linalg.norm(place - np.array(winch.at)) < 2 * winch.spool_radius:
+                continue
+            found += int(np.linalg.norm(place - meet) < SAME)
+    return found

@@ -1,0 +1,66 @@
+"""Tests of `craft_of`; the oracle is counting by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hydrostat.design import SewingTimes, craft_of
+from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.robot import Cable, Robot, load_robot
+from hydrostat.robot.gallery import gallery_folder
+
+
+@pytest.fixture(scope="module")
+def starfish() -> Robot:
+    return load_robot(gallery_folder("starfish"))
+
+
+def sewn(robot: Robot, *routes: tuple[tuple[float, float], ...], sheathed: tuple[tuple[int, int], ...] = ()) -> Robot:
+    """The robot with its first winch alone, and these cables [m]; the first of them sheathed at these segments."""
+    winch = replace(robot.winches[0], name="w", at=routes[0][0])
+    cables = [
+        Cable(winch="w", points=points, sheathed=() if number else sheathed) for number, points in enumerate(routes)
+    ]
+    return robot.with_network((winch,), tuple(cables))
+
+
+BENT = ((0.0, 0.0), (0.03, 0.0), (0.03, 0.01), (0.07, 0.01))  # two turns of 90 degrees, 80 mm
+
+
+def test_counts_by_hand(starfish: Robot) -> None:
+    found = craft_of(sewn(starfish, BENT, sheathed=((0, 1),)), [])
+    assert (found.holes, found.sharp_turns, found.sheaths, found.crossings, found.motors) == (2, 2, 1, 0, 1)
+    assert found.length == pytest.approx(0.08)
+    assert found.minutes == pytest.approx(3 + 4 + 2 * 1.5 + 3 + 2)
+
+
+def test_four_holes_are_stitched_in_the_ten_minutes_of_the_sheet() -> None:
+    times = SewingTimes()
+    assert times.ends + 4 * times.hole == 10
+
+
+def test_crossings_are_counted_but_not_beside_the_winch(starfish: Robot) -> None:
+    over = ((0.0, 0.0), (0.04, -0.015), (0.04, 0.018))  # begins at the same winch, crosses the last segment of BENT
+    assert craft_of(sewn(starfish, BENT, over), []).crossings == 1
+    apart = ((0.0, 0.0), (0.02, -0.015), (0.04, -0.015))
+    assert craft_of(sewn(starfish, BENT, apart), []).crossings == 0
+
+
+def test_price_grows_by_the_line(starfish: Robot) -> None:
+    short, long = ((0.0, 0.0), (0.03, 0.0)), ((0.0, 0.0), (0.06, 0.0))
+    more = craft_of(sewn(starfish, long), []).price - craft_of(sewn(starfish, short), []).price
+    assert more == pytest.approx(0.03 * 6.95 / 91.44)  # 6.95 USD for 91.44 m
+
+
+def test_nothing_takes_nothing(starfish: Robot) -> None:
+    found = craft_of(starfish.with_network((), ()), [])
+    assert set(found.as_values.values()) == {0, ""}
+
+
+def test_motors_are_those_of_the_table(starfish: Robot) -> None:
+    found = craft_of(starfish, [])
+    assert found.motor in {motor.key for motor in MOTORS}
+    assert found.motors == len({cable.winch for cable in starfish.cables})
+    assert np.isfinite(found.price)
+    assert found.price > found.motors * min(motor.price for motor in MOTORS)
