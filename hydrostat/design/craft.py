@@ -21,12 +21,12 @@ SHARP = 60.0  # a turn of more than this [degrees] is called sharp
 class SewingTimes:
     """Minutes that the work on cables takes. All are assumed; none was measured.
 
-    With four holes a cable is stitched in ten minutes, as the assembly sheet says of every cable.
+    A cable with five holes is stitched in ten minutes, as the assembly sheet says of every cable.
     """
 
     cut: float = 3.0  # to cut and mark a line or a tube, as on the assembly sheet
-    ends: float = 4.0  # to begin a cable at its winch and to put its stopper on
-    hole: float = 1.5  # to lead it through a hole, from the one before
+    begin: float = 2.5  # to begin a cable at its winch
+    hole: float = 1.5  # to lead it through a hole, from the one before; at the last with its stopper
     sheath: float = 2.0  # to tie a tube down at both its ends
 
 
@@ -34,7 +34,7 @@ class SewingTimes:
 class Craft:
     """Labour and money that a network asks of who builds it."""
 
-    holes: int  # points that cables are led through, without where they begin and end
+    holes: int  # points that cables are led through, that of the stopper included, not where they begin
     crossings: int  # places where cables cross, but beside the winch of both
     sharp_turns: int  # via points at which a cable turns by more than `SHARP` degrees
     sheaths: int  # tubes
@@ -55,7 +55,7 @@ def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes
     clock = times or SewingTimes()
     cables = robot.cables
     motors = len({cable.winch for cable in cables})
-    holes = sum(len(cable.points) - 2 for cable in cables)
+    holes = sum(len(cable.points) - 1 for cable in cables)
     sheaths = sum(len(cable.sheathed) for cable in cables)
     length = float(sum(cable.length for cable in cables))
     tube = float(sum(cable.segments[~cable.bare].sum() for cable in cables))
@@ -72,7 +72,7 @@ def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes
         sharp_turns=sum(_sharp(cable) for cable in cables),
         sheaths=sheaths,
         length=length,
-        minutes=(clock.cut + clock.ends) * len(cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths,
+        minutes=(clock.cut + clock.begin) * len(cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths,
         price=price,
         motors=motors,
         motor=key,

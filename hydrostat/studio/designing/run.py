@@ -13,14 +13,14 @@ from hydrostat.studio.records.wishes import Paint, Wishes
 def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:
     """What a person's wishes for a robot ask of a design (InputError: no pose, or wishes that do not fit the robot).
 
-    The options are of the search; if left out its usual ones, with the tolerance that is wished for.
+    The options are of the search; if left out its usual ones, with the wished tolerance and simplicity.
     """
     request = DesignRequest(
         poses=wished_poses(robot, wishes),
         winches=wishes.winches or AUTO,
         cables=wishes.cables,
         constraints=wished_constraints(robot, wishes),
-        options=options or RouteOptions(tolerance=wishes.tolerance),
+        options=options or RouteOptions(tolerance=wishes.tolerance, simplicity=wishes.simplicity),
         improve=wishes.improve,
     )
     request.fitted(robot)  # what does not fit is told at once

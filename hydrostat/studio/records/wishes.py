@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from hydrostat.design import Constraints, DesignRequest, Zone
+from hydrostat.design import Constraints, DesignRequest, RouteOptions, Zone
 from hydrostat.design.constraints import RANGES
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
 from hydrostat.errors import InputError
@@ -36,6 +36,7 @@ class Wishes:
     tension: float = Constraints.tension  # the most that a cable bears [N]
     clearance: float = Constraints.clearance  # least distance of a cable from the edge [m]
     tolerance: float | None = None  # error good enough where winches are counted [m]; None: a hundredth of the body
+    simplicity: float = RouteOptions.simplicity  # how much a simple network is worth; 0: whatever helps at all is kept
     cables_per_winch: int = Constraints.cables_per_winch  # most cables of one winch
     slack: float = Constraints.slack  # the most that a stopper may leave loose [m]
     stepped: bool = False  # whether cables may have spools up to twice as large or small as their winch's
@@ -66,7 +67,11 @@ def moved_zone(zone: Zone, move: Callable[[Point], Point]) -> Zone:
     return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
 
 
-_COUNTED = {"cables": COUNTS["cables"], "cables_per_winch": RANGES["cables_per_winch"]}
+_COUNTED = {
+    "cables": COUNTS["cables"],
+    "cables_per_winch": RANGES["cables_per_winch"],
+    "simplicity": ROUTE_RANGES["simplicity"],
+}
 
 _AMOUNTS = {  # what each amount may be, and the unit in which it is told
     "tension": (RANGES["tension"], 1.0, "N"),

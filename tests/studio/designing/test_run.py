@@ -59,9 +59,9 @@ def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
 
 
 def test_as_few_winches_as_will_do(starfish: Robot) -> None:
-    asked = wished_request(starfish, Wishes(winches=0, cables=4, tolerance=0.003))
+    asked = wished_request(starfish, Wishes(winches=0, cables=4, tolerance=0.003, simplicity=4.0))
     assert (asked.winches, asked.cables, asked.improve) == ("auto", 4, False)
-    assert asked.options == RouteOptions(tolerance=0.003)
+    assert asked.options == RouteOptions(tolerance=0.003, simplicity=4.0)
     assert wished_request(starfish, Wishes(winches=3)).winches == 3
     with pytest.raises(InputError, match="give a number of winches to improve"):
         wished_request(starfish, Wishes(winches=0, improve=True))
@@ -81,6 +81,7 @@ def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
         ({"winches": -1}, "winches must be a whole number from 1 to 20, or 0 for as few as will do, not -1"),
         ({"cables": 61}, "cables must be a whole number from 1 to 60, not 61"),
         ({"cables_per_winch": 0}, "cables per winch must be a whole number from 1 to 60, not 0"),
+        ({"simplicity": -1.0}, "simplicity must be at least 0 and at most 20, not -1.0"),
         ({"tension": 0.0}, "tension must be above 0 and at most 1000 N, not 0 N"),
         ({"clearance": -0.001}, "clearance must be above 0 and at most 1000 mm, not -1 mm"),
         ({"tolerance": float("inf")}, "tolerance must be above 0 and at most 1000 mm, not inf mm"),

@@ -69,6 +69,7 @@ def _counts(page: WindowPage) -> None:
     with ui.column().classes("w-full").style("gap: 4px"):
         winches = _stepper(page, "Winches", "winches", least=0)
         cables = _stepper(page, "Cables, at most", "cables", least=1)
+    _simplicity(page)
     hint = ui.label("As few winches as bring every pose close enough.").classes("studio-hint")
 
     def show() -> None:
@@ -77,6 +78,33 @@ def _counts(page: WindowPage) -> None:
         cables.set_text(str(wishes.cables))
         hint.set_visibility(wishes.winches == 0)
 
+    page.on(Topic.ROBOT, show)
+
+
+SIMPLICITIES = {"simple": 4.0, "balanced": 1.0, "exact": 0.0}
+"""What the knob is called where it stands, and what `RouteOptions.simplicity` it is; at 4 a cable must gain 8 %."""
+
+
+def _simplicity(page: WindowPage) -> None:
+    """One knob: from few cables and holes to whatever helps at all."""
+    designer = page.session.designer
+    choices = {value: words for words, value in SIMPLICITIES.items()}
+    with ui.element("div").classes("studio-row"):
+        ui.label("Network").classes("flex-1")
+        choice = ui.toggle(choices, value=designer.wishes.simplicity if designer.wishes.simplicity in choices else None)
+        choice.props('dense no-caps unelevated padding="2px 10px" toggle-color=primary color=transparent')
+        choice.classes("design-toggle").props('data-testid="wish-simplicity"')
+        choice.tooltip("Simple: fewer cables and holes to sew, further off. Exact: all that brings poses nearer")
+
+    def send(value: float | None) -> None:
+        if value is not None and value != designer.wishes.simplicity:
+            page.act(lambda: designer.wish(simplicity=float(value)))
+
+    def show() -> None:
+        wished = designer.wishes.simplicity
+        choice.set_value(wished if wished in choices else None)
+
+    choice.on_value_change(lambda event: send(event.value))
     page.on(Topic.ROBOT, show)
 
 
