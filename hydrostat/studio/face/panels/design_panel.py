@@ -92,9 +92,8 @@ def _simplicity(page: WindowPage) -> None:
     with ui.element("div").classes("studio-row"):
         ui.label("Network").classes("flex-1")
         choice = ui.toggle(choices, value=designer.wishes.simplicity if designer.wishes.simplicity in choices else None)
-        choice.props(
-            'dense no-caps unelevated padding="2px 10px" toggle-color=primary color=transparent text-color=primary toggle-text-color=white'
-        )
+        choice.props('dense no-caps unelevated padding="2px 10px"')
+        choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
         choice.classes("design-toggle").props('data-testid="wish-simplicity"')
         choice.tooltip("Simple: fewer cables and holes to sew, further off. Exact: all that brings poses nearer")
 
