@@ -116,9 +116,13 @@ def _beside(path: Route, proposals: Proposals, *, world: bool) -> Iterator[Route
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
     ramp = np.minimum(0.5 * np.arange(len(middle)), _FULL) * spacing
     for side in _sides(along):
-        moved = _reach(middle, side, ramp, proposals.graph.region)[:, None] * side
+        reach = _reach(middle, side, ramp, proposals.graph.region)
+        wide = np.flatnonzero(reach >= _BESIDE * proposals.bench.constraints.cable_gap)
+        # At the thin end of a limb the lines of both sides would meet: they end before it.
+        end = wide[-1] + 1 if len(wide) and wide[-1] > 1 else len(middle)
         for share, apart in _WAYS:
-            points = _inside(resample(middle + share * moved, apart * spacing), proposals.graph.region)
+            moved = (middle + (share * reach)[:, None] * side)[:end]
+            points = _inside(resample(moved, apart * spacing), proposals.graph.region)
             if points is not None:
                 yield np.vstack([outside, points])
                 break
@@ -316,6 +320,7 @@ _BEGUN = 3  # sets that are gone over for each that is wanted
 _INWARD = 3.0  # how much longer an edge at the rim counts
 _STILL = 100.0  # how much longer one in a still zone
 _ROUNDS = 6  # of smoothing
+_BESIDE = 0.7  # gaps between cables that a line is at least beside the middle where it ends
 _FULL = 2.0  # spacings that a line is moved beside the middle at most
 _SHORT = 1e-6  # points nearer than this [m] are one
 # shares of the way to the clearance, and of the spacing, the first of which does: finer where a corner is cut
