@@ -42,7 +42,7 @@ def print_poses(network: "Network", seconds: float) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import rest_error
+    from hydrostat.design import craft_of, rest_error
     from hydrostat.geometry import find_crossings
     from hydrostat.units import counted
 
@@ -62,6 +62,7 @@ def print_poses(network: "Network", seconds: float) -> None:
         f"model, {1e3 * network.built:.2f} mm to be expected once built; "
         f"{counted(network.tried, 'network')} tried in {seconds:.1f} s"
     )
+    print(f"to build it: {craft_of(robot, network.reached)}")
 
 
 def print_front(network: "Network") -> None:

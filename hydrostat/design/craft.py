@@ -13,6 +13,7 @@ from hydrostat.fabrication.lists.needs import control_needs
 from hydrostat.fabrication.parts.motor import choose_motor
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Mount, Robot
+from hydrostat.units import counted
 
 SHARP = 60.0  # a turn of more than this [degrees] is called sharp
 
@@ -43,6 +44,14 @@ class Craft:
     price: float  # rough, of motors with boards, drivers and supply, of line and tube as used up [USD]
     motors: int  # winches that have cables: one motor each
     motor: str  # key of the kind of motor, the same for all; empty where there is none
+
+    def __str__(self) -> str:
+        """Such as "18 holes, 52 min of sewing, 165 USD with 3 motors"; crossings where there are any."""
+        crossed = f", {counted(self.crossings, 'crossing')}" if self.crossings else ""
+        return (
+            f"{counted(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of sewing, {self.price:.0f} USD with "
+            f"{counted(self.motors, 'motor')}"
+        )
 
     @property
     def as_values(self) -> dict[str, float | int | str]:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from hydrostat.design.craft import craft_of
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, TreeTrace, size_of
 from hydrostat.design.score_card import rest_error
 from hydrostat.drawing.svg import Html, tag
@@ -235,7 +236,8 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        pictures.append(picture(figure, f"alternative-{index}", head, f": {_rms_text(other.built)} once built"))
+        told = f": {_rms_text(other.built)} once built; {craft_of(robot, other.reached)}"
+        pictures.append(picture(figure, f"alternative-{index}", head, told))
     return grid(*pictures, kind="tiny")
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.design import DesignRequest, DesignStage, find_network
+from hydrostat.design import Craft, DesignRequest, DesignStage, craft_of, find_network
 from hydrostat.design.network import Alternative, Network, rms_error
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Pose, Robot, Winch
@@ -36,6 +36,7 @@ class Solution:
     reaches: tuple[Reach, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
+    craft: Craft  # what it takes to sew and to motorise it
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,17 +49,13 @@ class Candidate:
     reaches: tuple[Reach, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
+    craft: Craft  # what it takes to sew and to motorise it
     complete: bool  # whether the search came to its end
 
     @property
     def counts(self) -> str:
         """Such as "2 winches, 6 cables"."""
         return network_words(self.robot)
-
-    @property
-    def holes(self) -> int:
-        """How many via points are to be sewn, the ends of cables included."""
-        return sum(len(cable.points) - 1 for cable in self.robot.cables)
 
     @property
     def length(self) -> float:
@@ -95,6 +92,7 @@ def solution(found: Network | Alternative) -> Solution:
         reaches=tuple(map(_reach, found.reached)),
         error=rms_error(found.reached),
         built=found.built,
+        craft=craft_of(found.robot, found.reached),
     )
 
 

@@ -291,6 +291,7 @@ class Designer(Stage):
                     reaches=solution.reaches,
                     error=solution.error,
                     built=solution.built,
+                    craft=solution.craft,
                     complete=found.complete,
                 )
             )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import box_robot, strip_robot
 
-from hydrostat.design import DesignRequest
+from hydrostat.design import DesignRequest, craft_of
 from hydrostat.robot import Pose
 from hydrostat.studio.designing.charts import Chart, front, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
@@ -101,8 +101,11 @@ def test_the_front_is_what_is_better_than_all_with_fewer_cables() -> None:
 
 def test_each_candidate_is_a_dot_and_the_chosen_one_has_a_ring() -> None:
     robot = strip_robot(columns=10, rows=3)
+    craft = craft_of(robot, [])
     candidates = [
-        Candidate(number=n, source=robot, robot=robot, reaches=(), error=5e-4 * n, built=1e-3 * n, complete=True)
+        Candidate(
+            number=n, source=robot, robot=robot, reaches=(), error=0.0, built=1e-3 * n, craft=craft, complete=True
+        )
         for n in (1, 2, 3)
     ]
     svg = front_chart(candidates, marks(0.01), 2)

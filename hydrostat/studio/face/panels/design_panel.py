@@ -260,6 +260,6 @@ def _words(one: Candidate, own: tuple[int, ...]) -> str:
     return (
         f"<b>{told_error(one.built)} once built</b><span>{note}</span><br>"
         f"<span>{told_error(one.error)} in the model<br>"
-        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}, "
-        f"{counted(one.holes, 'hole')}<br>{1e3 * one.length:.0f} mm, {one.tension:.1f} N</span>"
+        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}<br>"
+        f"{one.craft}<br>{1e3 * one.length:.0f} mm, {one.tension:.1f} N</span>"
     )
