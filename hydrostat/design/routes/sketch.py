@@ -37,10 +37,11 @@ def sketches(proposals: Proposals, bare: Trial, *, winches: int, cables: int, co
 
     Candidates run from a few winch places to every marker, along each side of the limb that it is on. For each of many
     sets of winch places lines are chosen greedily; the best sets are gone over line by line, each exchanged for another
-    while that helps. `bare` is the trial of a layout without cables. None where there should be mirror images.
+    while that helps. `bare` is the trial of a layout without winches and cables. Empty where some stay, or there
+    should be mirror images.
     """
     mirrored = bare.layout.constraints.mirror is not None
-    lines = [] if mirrored or bare.layout.routes else list(_lines(proposals, bare))
+    lines = [] if mirrored or bare.layout.sites else list(_lines(proposals, bare))
     if not lines:
         return []
     choice = _Choice(proposals, bare, lines, winches, cables)

@@ -141,7 +141,8 @@ def _mirror(page: WindowPage) -> Show:
     with ui.element("div").classes("studio-row"):
         ui.label("Same on both sides of").classes("flex-1").style("font-size: 13px")
         choice = ui.toggle(choices, value="").props('dense no-caps unelevated padding="2px 12px"')
-        choice.props("toggle-color=primary color=transparent").classes("design-toggle")
+        choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
+        choice.classes("design-toggle")
         choice.props('data-testid="wish-mirror"')
     choice.on_value_change(lambda event: page.act(lambda: designer.wish(mirror=event.value or None)))
     return lambda wishes: choice.set_value(wishes.mirror or "")

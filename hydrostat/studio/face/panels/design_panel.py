@@ -95,7 +95,10 @@ def _simplicity(page: WindowPage) -> None:
         choice.props('dense no-caps unelevated padding="2px 10px"')
         choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
         choice.classes("design-toggle").props('data-testid="wish-simplicity"')
-        choice.tooltip("Simple: fewer cables and holes to sew, further off. Exact: all that brings poses nearer")
+        with choice:  # above, for the button to begin with is below
+            ui.tooltip("Simple: fewer cables and holes to sew, further off. Exact: all that brings poses nearer").props(
+                'anchor="top middle" self="bottom middle"'
+            )
 
     def send(value: float | None) -> None:
         if value is not None and value != designer.wishes.simplicity:
