@@ -29,7 +29,7 @@ session.starter.open_gallery(gallery_folder("letter_e"))
 new = Marker(name="new", at=robot.pins[0].at)
 session.document.change("add marker", robot=replace(robot, markers=(*robot.markers, new)))
 clock = 0.0
-while not list(Path(sys.argv[1]).glob("work/*/*/meta.json")):
+while not any(path.parent.name.isdecimal() for path in Path(sys.argv[1]).glob("work/*/*/meta.json")):  # whole
     session.step(clock)
     clock += 0.05
 print("kept", flush=True)
