@@ -61,7 +61,6 @@ class Craft:
 
 def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes | None = None) -> Craft:
     """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches."""
-    clock = times or SewingTimes()
     cables = robot.cables
     motors = len({cable.winch for cable in cables})
     holes = sum(len(cable.points) - 1 for cable in cables)
@@ -81,11 +80,28 @@ def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes
         sharp_turns=sum(_sharp(cable) for cable in cables),
         sheaths=sheaths,
         length=length,
-        minutes=(clock.cut + clock.begin) * len(cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths,
+        minutes=sewing_minutes(robot, times=times),
         price=price,
         motors=motors,
         motor=key,
     )
+
+
+def sewing_minutes(robot: Robot, *, times: SewingTimes | None = None) -> float:
+    """Minutes that it takes to cut and stitch the cables and tubes of a robot [min]."""
+    clock = times or SewingTimes()
+    holes = sum(len(cable.points) - 1 for cable in robot.cables)
+    sheaths = sum(len(cable.sheathed) for cable in robot.cables)
+    return (clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths
+
+
+def front(points: Sequence[tuple[float, float]]) -> list[int]:
+    """Indices of pairs (effort, error) that have a smaller error than all of as little effort, in order of effort."""
+    kept: list[int] = []
+    for index in sorted(range(len(points)), key=points.__getitem__):
+        if not kept or points[index][1] < points[kept[-1]][1]:
+            kept.append(index)
+    return kept
 
 
 def _sharp(cable: Cable) -> int:

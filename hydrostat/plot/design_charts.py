@@ -1,13 +1,14 @@
-"""Charts of a design: how the pose error fell while a network grew, what more winches and cables would gain (F2)."""
+"""Charts of a design: how the pose error fell while a network grew, what more sewing would gain (F2)."""
 
 from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MultipleLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from hydrostat.design.network import Alternative, DesignStage, Network, Size, best_errors, on_front
+from hydrostat.design.craft import front, sewing_minutes
+from hydrostat.design.network import Alternative, DesignStage, Network
 from hydrostat.drawing.palette import ERROR, GHOST, INK, SEAM, WINCHES
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
@@ -90,47 +91,71 @@ def _scale(axes: Axes, errors: np.ndarray) -> None:
 def draw_front(
     alternatives: Iterable[Alternative], chosen: Network, *, tolerance: float | None = None, width: float = WIDTH
 ) -> Figure:
-    """Error as built against number of cables, a line for each number of winches; of equal numbers the best counts.
+    """Error as built over minutes of sewing: a dot for each network in the colour of its number of winches.
 
-    A filled dot is a network on the Pareto front: none with as few winches and cables is better. A ring marks the
-    chosen one, a dashed line the tolerance that was asked for [m]. Width in inches.
+    The number above a dot counts cables. A filled dot is on the Pareto front, which a line joins: nothing that is sewn
+    as fast is better. A ring marks the chosen one, a dashed line the tolerance that was asked for [m]. Width in inches.
     """
-    errors = best_errors(alternatives, chosen)
-    figure, axes = new_chart("cables", "error once built [mm rms]", width=width, height=0.5 * width)
-    axes.xaxis.set_major_locator(MultipleLocator(max(1, round(max(cables for _, cables in errors) / 12))))
-    for index, winches in enumerate(sorted({winches for winches, _ in errors})):
-        line = [size for size in sorted(errors) if size[0] == winches]
-        _draw_line(axes, line, errors, WINCHES[index % len(WINCHES)])
+    networks = [chosen, *(other for other in alternatives if other.robot != chosen.robot)]
+    figure, axes = new_chart("minutes of sewing", "error once built [mm rms]", width=width, height=0.5 * width)
+    points = [(sewing_minutes(one.robot), MILLIMETRES * one.built) for one in networks]
+    best = front(points)
+    axes.plot(*np.transpose([points[index] for index in best]), color=GHOST, linewidth=1.2, zorder=2)
+    _draw_dots(axes, networks, points, set(best))
     if tolerance is not None:
         axes.axhline(MILLIMETRES * tolerance, color=ERROR, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
         axes.annotate(
             "tolerance", (0.0, MILLIMETRES * tolerance), xycoords=("axes fraction", "data"), xytext=(3, 2),
             textcoords="offset points", fontsize=7.5, color=ERROR, ha="left", va="bottom",
         )  # fmt: skip
-    axes.set_ylim(0.0, 1.08 * MILLIMETRES * max([*errors.values(), tolerance or 0.0, 1e-9]))
+    axes.set_ylim(0.0, 1.15 * max([MILLIMETRES * (tolerance or 0.0), 1e-6, *(error for _, error in points)]))
     axes.margins(x=0.06)
-    _draw_chosen(axes, chosen)
-    axes.legend(loc="upper right", fontsize=8, frameon=False, labelcolor=INK, handlelength=1.8)
+    _draw_counts(axes, networks, points)
+    _draw_chosen(axes, points[0])
+    axes.legend(loc="upper right", fontsize=8, frameon=False, labelcolor=INK, handlelength=1.0)
     return figure
 
 
-def _draw_line(axes: Axes, line: list[Size], errors: dict[Size, float], colour: str) -> None:
-    across, up = [cables for _, cables in line], [MILLIMETRES * errors[size] for size in line]
-    axes.plot(across, up, color=colour, linewidth=1.5, label=counted(line[0][0], "winch"), zorder=3)
-    for size, x, y in zip(line, across, up, strict=True):
-        fill = colour if on_front(size, errors) else "white"
-        axes.plot(x, y, marker="o", markersize=5.5, color=fill, markeredgecolor=colour, zorder=4, clip_on=False)
+Dot = tuple[float, float]  # minutes of sewing [min], and error as built [mm]
 
 
-def _draw_chosen(axes: Axes, chosen: Network) -> None:
-    """A ring around the chosen network, named where there is room."""
-    place = len(chosen.robot.cables), MILLIMETRES * chosen.built
+def _draw_dots(axes: Axes, networks: Sequence[Alternative | Network], dots: Sequence[Dot], best: set[int]) -> None:
+    """All dots; a line of the legend for each number of winches."""
+    counts = [len(one.robot.winches) for one in networks]
+    for number, count in enumerate(sorted(set(counts))):
+        colour, name = WINCHES[number % len(WINCHES)], counted(count, "winch")
+        axes.plot([], [], marker="o", markersize=5.5, linestyle="none", color=colour, label=name)
+        for index in (index for index, other in enumerate(counts) if other == count):
+            axes.plot(
+                *dots[index], marker="o", markersize=5.5, color=colour if index in best else "white",
+                markeredgecolor=colour, zorder=4, clip_on=False,
+            )  # fmt: skip
+
+
+_APART = 0.03, 0.06  # numbers nearer than these shares of a chart, across and upwards, would be one blot
+
+
+def _draw_counts(axes: Axes, networks: Sequence[Alternative | Network], dots: Sequence[Dot]) -> None:
+    """The number of cables of each network above its dot; where two would meet the later is left out."""
+    written: list[np.ndarray] = []
+    for number, (one, dot) in enumerate(zip(networks, dots, strict=True)):
+        place = axes.transAxes.inverted().transform(axes.transData.transform(dot))
+        if all((np.abs(place - other) > _APART).any() for other in written):
+            written.append(place)
+            axes.annotate(
+                str(len(one.robot.cables)), dot, xytext=(0, 4 if number else -8), textcoords="offset points",
+                fontsize=7.5, color=INK, ha="center", va="bottom" if number else "top", gid=HALO, annotation_clip=False,
+            )  # fmt: skip
+
+
+def _draw_chosen(axes: Axes, place: Dot) -> None:
+    """A ring around the dot of the chosen network, named where there is room."""
     axes.plot(*place, marker="o", markersize=12, color="none", markeredgecolor=INK, markeredgewidth=1.3, zorder=5,
         clip_on=False)  # fmt: skip
     low, high = axes.get_xlim()
     left = place[0] > (low + high) / 2
     axes.annotate(
-        f"chosen: {millimetres(chosen.built)} mm", place, xytext=(-4 if left else 4, 11),
+        f"chosen: {millimetres(place[1] / MILLIMETRES)} mm", place, xytext=(-4 if left else 4, 11),
         textcoords="offset points", fontsize=8.5, color=INK, weight="bold", gid=HALO, ha="right" if left else "left",
         annotation_clip=False,
     )  # fmt: skip

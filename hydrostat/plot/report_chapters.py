@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from hydrostat.design.craft import craft_of
-from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, TreeTrace, size_of
+from hydrostat.design.craft import craft_of, sewing_minutes
+from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, TreeTrace
 from hydrostat.design.score_card import rest_error
 from hydrostat.drawing.svg import Html, tag
 from hydrostat.ik import ReachedPose
@@ -185,17 +185,17 @@ def alternative_chapters(network: Network) -> list[Chapter]:
     others = network.alternatives
     if not others:
         return []
-    sizes = {size_of(one) for one in (*others, network)}
+    efforts = {sewing_minutes(one.robot) for one in (*others, network)}
     words = "Other networks that were found on the way, each with its error over all poses."
     parts: list[Html] = []
-    if len(sizes) > 1:
+    if len(efforts) > 1:
         words += (
-            " More winches and more cables cost more and reach more: the curve tells how much. A filled dot lies on "
-            "the Pareto front: no network with as few winches and cables is better."
+            " More sewing reaches more: the curve tells how much. The number at a dot counts cables. A filled dot lies "
+            "on the Pareto front: no network that is sewn as fast is better."
         )
         figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
-        note = ", a line for each number of winches"
-        parts.append(grid(picture(figure, "front", "Error against cables", note)))
+        note = ", a colour for each number of winches"
+        parts.append(grid(picture(figure, "front", "Error against minutes of sewing", note)))
     shown = [others[index] for index in evenly(len(others), MOST_ALTERNATIVES)]
     parts.append(_pictures(network, shown))
     if len(shown) < len(others):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hydrostat.design import SewingTimes, craft_of
+from hydrostat.design.craft import front
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.robot import Cable, Robot, load_robot
 from hydrostat.robot.gallery import gallery_folder
@@ -51,6 +52,21 @@ def test_price_grows_by_the_line(starfish: Robot) -> None:
     short, long = ((0.0, 0.0), (0.03, 0.0)), ((0.0, 0.0), (0.06, 0.0))
     more = craft_of(sewn(starfish, long), []).price - craft_of(sewn(starfish, short), []).price
     assert more == pytest.approx(0.03 * 6.95 / 91.44)  # 6.95 USD for 91.44 m
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_front_is_what_nothing_dominates(seed: int) -> None:
+    """Brute force over all pairs of whole numbers, of which many coincide in one or in both."""
+    points = [(float(x), float(y)) for x, y in np.random.default_rng(seed).integers(0, 6, size=(14, 2))]
+    found = [points[index] for index in front(points)]
+    dominated = {
+        (x, y) for x, y in points if any(left <= x and low <= y and (left, low) != (x, y) for left, low in points)
+    }
+    assert found == sorted(set(points) - dominated)
+
+
+def test_no_front_of_nothing() -> None:
+    assert front([]) == []
 
 
 def test_nothing_takes_nothing(starfish: Robot) -> None:

@@ -8,6 +8,7 @@ from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_ne
 from plot.test_report import Page
 
 from hydrostat.design import Alternative, Certificate, DesignStage, Network
+from hydrostat.design.craft import sewing_minutes
 from hydrostat.design.network import best_errors, on_front
 from hydrostat.drawing.palette import WINCHES
 from hydrostat.plot import draw_front, draw_growth, inline_svg, report_text
@@ -80,8 +81,8 @@ def told(*others: tuple[int, int, float]) -> str:
 
 
 def test_alternatives_of_one_size_have_no_front() -> None:
-    assert "Error against cables" not in told((2, 2, 0.01), (2, 2, 0.02))
-    assert "Error against cables" in told((2, 2, 0.01), (2, 3, 0.02))
+    assert "Error against minutes of sewing" not in told((2, 2, 0.01), (2, 2, 0.02))
+    assert "Error against minutes of sewing" in told((2, 2, 0.01), (2, 3, 0.02))
 
 
 @pytest.mark.slow
@@ -138,7 +139,7 @@ OTHERS = [(1, 1, 0.009), (1, 2, 0.008), (1, 3, 0.0085), (2, 3, 0.004), (2, 4, 0.
 
 def chosen(error: float = 0.006) -> Network:
     network = plain_network()
-    return replace(network, reached=(replace(network.reached[0], errors={"tip": error}),))
+    return replace(network, reached=(replace(network.reached[0], errors={"tip": error}),), built=error)
 
 
 def test_the_best_of_each_size_counts_and_the_chosen_one_always() -> None:
@@ -162,16 +163,29 @@ def test_the_front_is_what_nothing_dominates(seed: int) -> None:
 
 
 def test_the_picture_of_the_front() -> None:
-    axes = draw_front([sized(*other) for other in OTHERS], chosen(), tolerance=0.0045).axes[0]
-    curves = {line.get_label(): line for line in axes.lines if not str(line.get_label()).startswith("_")}
-    assert list(curves) == ["1 winch", "2 winches", "3 winches"]
-    assert np.asarray(curves["1 winch"].get_xydata()) == pytest.approx(np.array([[1, 9.0], [2, 8.0], [3, 8.5]]))
-    assert np.asarray(curves["2 winches"].get_xydata()) == pytest.approx(np.array([[2, 6.0], [3, 4.0], [4, 4.0]]))
-    assert [curve.get_color() for curve in curves.values()] == list(WINCHES[:3])
-    dots = {tuple(np.asarray(line.get_xydata())[0]): line for line in axes.lines if len(line.get_xdata()) == 1}
-    assert dots[3, 8.5].get_markerfacecolor() == "white"
-    assert dots[3, 4.0].get_markerfacecolor() == WINCHES[1]
-    assert {text.get_text() for text in axes.texts} == {"chosen: 6.00 mm", "tolerance"}
+    """A cable of `sized` takes as many minutes as each other: dots stand at multiples of it, filled by brute force."""
+    others = [sized(*other) for other in OTHERS]
+    axes = draw_front(others, chosen(), tolerance=0.0045).axes[0]
+    each = sewing_minutes(others[0].robot)
+    own = sewing_minutes(chosen().robot)
+    points = [(own, 6.0), *((each * cables, 1e3 * error) for _, cables, error in OTHERS)]
+    dots = [line for line in axes.lines if line.get_markersize() == 5.5 and np.size(line.get_xdata())]
+    drawn = {tuple(np.asarray(dot.get_xydata())[0].round(9)): dot for dot in dots}
+    assert set(drawn) == {tuple(np.round(point, 9)) for point in points}
+    winches = [len(chosen().robot.winches), *(count for count, _, _ in OTHERS)]
+    for (x, y), count in zip(points, winches, strict=True):
+        dot = drawn[tuple(np.round((x, y), 9))]
+        beaten = any(left <= x and low <= y and (left, low) != (x, y) for left, low in points)
+        if points.count((x, y)) == 1:
+            assert dot.get_markeredgecolor() == WINCHES[count - 1]
+            assert dot.get_markerfacecolor() == ("white" if beaten else WINCHES[count - 1])
+    labels = [line.get_label() for line in axes.lines if not str(line.get_label()).startswith("_")]
+    assert labels == ["1 winch", "2 winches", "3 winches"]
+    (ring,) = [line for line in axes.lines if line.get_markersize() == 12]
+    assert np.asarray(ring.get_xydata()) == pytest.approx(np.array([[own, 6.0]]))
+    words = {text.get_text() for text in axes.texts}
+    assert {"chosen: 6.00 mm", "tolerance"} < words
+    assert words - {"chosen: 6.00 mm", "tolerance"} <= {"1", "2", "3", "4"}
     assert axes.get_ylim()[0] == 0.0
 
 

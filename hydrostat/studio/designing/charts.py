@@ -1,9 +1,10 @@
-"""`front_chart`, `growth_chart`: what more cables gain, and how the error falls while a design runs, as SVG."""
+"""`front_chart`, `growth_chart`: what more sewing gains, and how the error falls while a design runs, as SVG."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from hydrostat.design.craft import front
 from hydrostat.drawing.palette import WINCHES
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.run import DesignRun, Mark
@@ -72,48 +73,57 @@ def ticks(largest: float, *, most: int, least: float = 0.0) -> list[float]:
     return [float(f"{index * step:.6g}") for index in range(int(largest / step * (1 + 1e-9)) + 1)]
 
 
-FRONT_WIDTH, FRONT_HEIGHT = 300.0, 176.0
+FRONT_WIDTH, FRONT_HEIGHT = 300.0, 196.0
+
+APART = (16.0, 11.0)  # numbers nearer to each other than this, across and upwards, would be one blot
+Place = tuple[float, float]  # in a picture
 
 
 def front_chart(candidates: Sequence[Candidate], trail: Sequence[Mark], chosen: int | None) -> str:
-    """A dot for each candidate's error as built, in the colour of its number of winches, small ones on the way, as SVG.
+    """A dot for each candidate's error as built over its minutes of sewing, in the colour of its winches, as SVG.
 
-    The line goes through what is better than all with fewer cables: what more of them gain. The trail has the networks
-    on the way of the last design; the candidate of the chosen number has a ring.
+    The number beside a dot counts cables. Small dots are the networks on the way of the last design, from its trail.
+    The line goes through what is better than all that are sewn as fast: what more sewing gains. The candidate of the
+    chosen number has a ring.
     """
-    errors = [(len(one.robot.cables), 1e3 * one.built) for one in candidates]
-    way = [(mark.cables, 1e3 * mark.error) for mark in trail]
+    errors = [(one.craft.minutes, 1e3 * one.built) for one in candidates]
+    way = [(mark.minutes, 1e3 * mark.error) for mark in trail]
     chart = Chart(
         width=FRONT_WIDTH,
         height=FRONT_HEIGHT,
-        across=max([cables for cables, _ in (*errors, *way)], default=1) + 0.6,
-        up=1.1 * max([1e-3, *(error for _, error in (*errors, *way))]),
+        across=1.06 * max([1.0, *(minutes for minutes, _ in (*errors, *way))]),
+        up=1.18 * max([1e-3, *(error for _, error in (*errors, *way))]),
         name="error, mm",
-        below="cables",
+        below="minutes of sewing",
         whole=True,
     )
-    line = chart.line(front([*errors, *way]))
+    points = [*errors, *way]
+    line = chart.line(points[index] for index in front(points))
     parts = [f'<polyline points="{line}" class="chart-front"/>']
-    for cables, error in way:
-        x, y = chart.place(cables, error)
-        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" class="chart-way"/>')
-    for one, (cables, error) in zip(candidates, errors, strict=True):
-        x, y = chart.place(cables, error)
+    parts += ['<circle cx="{:.1f}" cy="{:.1f}" r="2.5" class="chart-way"/>'.format(*chart.place(*mark)) for mark in way]
+    places = [chart.place(*error) for error in errors]
+    for one, (x, y) in zip(candidates, places, strict=True):
         ring = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="9" class="chart-ring"/>' if one.number == chosen else ""
         colour = winch_count_colour(len(one.robot.winches))
         parts.append(f'{ring}<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{colour}" class="chart-dot"/>')
+    parts += _counts(candidates, places, chosen)
     counts = sorted({len(one.robot.winches) for one in candidates})
     keys = [(winch_count_colour(count), counted(count, "winch")) for count in counts]
-    return chart.drawn("".join([*parts, _legend(keys)]), label="error against number of cables")
+    return chart.drawn("".join([*parts, _legend(keys)]), label="error once built against minutes of sewing")
 
 
-def front(points: Sequence[tuple[int, float]]) -> list[tuple[int, float]]:
-    """Pairs of cables and errors that have a smaller error than all with as few cables."""
-    kept: list[tuple[int, float]] = []
-    for cables, error in sorted(points):
-        if not kept or error < kept[-1][1]:
-            kept.append((cables, error))
-    return kept
+def _counts(candidates: Sequence[Candidate], places: Sequence[Place], chosen: int | None) -> Iterator[str]:
+    """The number of cables above each dot, that of the chosen one first; where two would meet the later is left out."""
+    written: list[Place] = []
+    order = sorted(range(len(candidates)), key=lambda index: candidates[index].number != chosen)
+    for index in order:
+        x, y = places[index][0], places[index][1] - (13 if candidates[index].number == chosen else 9)
+        if all(abs(x - left) > APART[0] or abs(y - low) > APART[1] for left, low in written):
+            written.append((x, y))
+            yield (
+                f'<text x="{x:.1f}" y="{y:.1f}" class="chart-count" text-anchor="middle">'
+                f"{len(candidates[index].robot.cables)}</text>"
+            )
 
 
 def winch_count_colour(winches: int) -> str:

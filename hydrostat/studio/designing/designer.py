@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.design import DesignRequest, RouteOptions
+from hydrostat.design.craft import sewing_minutes
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
@@ -271,6 +272,7 @@ class Designer(Stage):
             error=glimpse.error,
             winches=len(glimpse.winches),
             cables=len(glimpse.cables),
+            minutes=sewing_minutes(best),
         )
         self.run = replace(run, best=best, trail=(*run.trail, mark))
         self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)

@@ -63,6 +63,7 @@ class Mark:
     error: float  # root of the mean squared marker error over all poses [m]
     winches: int  # how many it has
     cables: int  # how many it has
+    minutes: float  # of cutting and stitching it [min]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,5 +1,6 @@
 """Small pictures and charts. Oracles: coordinates worked out by hand, XML that parses, fronts by their definition."""
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -7,8 +8,8 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.design import DesignRequest, craft_of
-from hydrostat.robot import Pose
-from hydrostat.studio.designing.charts import Chart, front, front_chart, growth_chart, ticks
+from hydrostat.robot import Pose, Robot
+from hydrostat.studio.designing.charts import BOTTOM, FRONT_HEIGHT, LEFT, Chart, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.ease import DURATION, Ease
 from hydrostat.studio.designing.run import DesignRun, Mark
@@ -68,7 +69,10 @@ def test_a_chart_is_as_large_as_its_values() -> None:
 
 
 def marks(*errors: float) -> tuple[Mark, ...]:
-    return tuple(Mark(seconds=1.0 + n, error=error, winches=1, cables=n + 1) for n, error in enumerate(errors))
+    return tuple(
+        Mark(seconds=1.0 + n, error=error, winches=1, cables=n + 1, minutes=10.0 * (n + 1))
+        for n, error in enumerate(errors)
+    )
 
 
 def run(*errors: float) -> DesignRun:
@@ -94,24 +98,47 @@ def test_a_design_that_has_found_nothing_yet_has_a_chart() -> None:
     assert parsed(growth_chart(run(), 0.0)) is not None
 
 
-def test_the_front_is_what_is_better_than_all_with_fewer_cables() -> None:
-    assert front([(3, 2.0), (1, 5.0), (2, 6.0), (3, 1.0), (4, 1.0), (1, 7.0)]) == [(1, 5.0), (3, 1.0)]
-    assert front([]) == []
+def candidate(number: int, robot: Robot, *, minutes: float, built: float) -> Candidate:
+    """A network that takes so long to sew and is so far off once built [mm]."""
+    craft = replace(craft_of(robot, []), minutes=minutes)
+    return Candidate(
+        number=number, source=robot, robot=robot, reaches=(), error=0.0, built=1e-3 * built, craft=craft, complete=True
+    )
 
 
-def test_each_candidate_is_a_dot_and_the_chosen_one_has_a_ring() -> None:
+def place(part: ElementTree.Element) -> tuple[float, float]:
+    """Middle of a circle."""
+    return float(part.get("cx") or "nan"), float(part.get("cy") or "nan")
+
+
+def test_a_candidate_is_a_dot_where_its_minutes_and_its_error_are() -> None:
+    """Minutes of 20, 40, 80 and errors of 8, 4, 2 mm: scales from 0 put the dots in these shares of the last."""
     robot = strip_robot(columns=10, rows=3)
-    craft = craft_of(robot, [])
-    candidates = [
-        Candidate(
-            number=n, source=robot, robot=robot, reaches=(), error=0.0, built=1e-3 * n, craft=craft, complete=True
-        )
-        for n in (1, 2, 3)
-    ]
-    svg = front_chart(candidates, marks(0.01), 2)
-    assert len(all_of(svg, "circle", "chart-dot")) == 3
-    assert len(all_of(svg, "circle", "chart-ring")) == 1
-    assert len(all_of(svg, "circle", "chart-way")) == 1
+    pulled = robot.with_network(robot.winches, [*robot.cables, replace(robot.cables[0], name="more")])
+    told = [(1, robot, 20, 8), (2, pulled, 40, 4), (3, robot, 80, 2)]
+    svg = front_chart([candidate(n, one, minutes=m, built=e) for n, one, m, e in told], marks(0.01), 2)
+    dots = [place(dot) for dot in all_of(svg, "circle", "chart-dot")]
+    across = np.array([x for x, _ in dots]) - LEFT
+    np.testing.assert_allclose(across / across[2], [0.25, 0.5, 1.0], atol=0.002)
+    floor = FRONT_HEIGHT - BOTTOM
+    heights = floor - np.array([y for _, y in dots])
+    np.testing.assert_allclose(heights / heights[0], [1.0, 0.5, 0.25], atol=0.002)
+    (ring,) = all_of(svg, "circle", "chart-ring")
+    assert place(ring) == dots[1]
+    (way,) = all_of(svg, "circle", "chart-way")
+    assert place(way)[0] - LEFT == pytest.approx(across[2] / 8, abs=0.1)
+    words = all_of(svg, "text", "chart-count")
+    assert sorted(part.text or "" for part in words) == sorted(str(len(one.cables)) for _, one, _, _ in told)
+    assert "minutes of sewing" in svg
+
+
+def test_numbers_of_dots_that_coincide_are_one_number_that_of_the_chosen() -> None:
+    robot = strip_robot(columns=10, rows=3)
+    more = robot.with_network(robot.winches, [*robot.cables, replace(robot.cables[0], name="more")])
+    pair = [candidate(1, robot, minutes=40, built=4), candidate(2, more, minutes=40.5, built=4)]
+    for number, one in ((1, robot), (2, more)):
+        (words,) = all_of(front_chart(pair, (), number), "text", "chart-count")
+        assert words.text == str(len(one.cables))
 
 
 def test_a_body_glides_and_arrives() -> None:

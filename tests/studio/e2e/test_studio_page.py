@@ -112,6 +112,24 @@ def quiet(page: "Page") -> None:
     assert page.evaluate("window.__app.errors") == []
 
 
+def cards_are_whole(page: "Page") -> None:
+    """No line of a card reaches beyond it or below the window, in a small window and in a large one."""
+    before = page.viewport_size
+    assert before is not None
+    for width, height in ((1280, 800), (1920, 1080)):
+        page.set_viewport_size({"width": width, "height": height})
+        lines = page.evaluate(
+            "[...document.querySelectorAll('[data-testid=design-card] :is(b, span, svg)')].map(line => {"
+            " const card = line.closest('[data-testid=design-card]').getBoundingClientRect();"
+            " const range = document.createRange(); range.selectNodeContents(line);"
+            " const own = range.getBoundingClientRect();"
+            " return [card.bottom - own.bottom, card.right - own.right, innerHeight - card.bottom]; })"
+        )
+        assert len(lines) >= 5
+        assert min(map(min, lines)) >= 0
+    page.set_viewport_size(before)
+
+
 def test_from_the_gallery_to_a_kit_and_back(studio: Studio, window: Open, tmp_path: Path) -> None:
     with studio() as address:
         page = window(address)
@@ -143,6 +161,7 @@ def test_from_the_gallery_to_a_kit_and_back(studio: Studio, window: Open, tmp_pa
             page.get_by_test_id("design-cables").get_by_text(str(left), exact=True).wait_for()
         page.get_by_test_id("design-go").click()
         page.get_by_test_id("design-card").first.wait_for()
+        cards_are_whole(page)
         page.get_by_test_id("design-accept").click()
         page.wait_for_function("__app.things.filter(t => t.key.startsWith('winch:')).length === 2")
 

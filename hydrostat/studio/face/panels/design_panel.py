@@ -212,7 +212,7 @@ def design_compare(page: WindowPage) -> None:
 def _front(page: WindowPage, candidates: tuple[Candidate, ...]) -> None:
     designer = page.session.designer
     with ui.element("div").classes("design-front"):
-        ui.label("What more cables gain").classes("studio-section").style("margin: 0 0 8px")
+        ui.label("What more sewing gains").classes("studio-section").style("margin: 0 0 8px")
         ui.html(front_chart(candidates, designer.trail, designer.chosen), sanitize=False).classes("w-full")
 
 
@@ -251,18 +251,30 @@ def _cards(page: WindowPage, candidates: tuple[Candidate, ...], own: tuple[int, 
             pose = designer.pose if now or designer.pose in {reach.pose.name for reach in one.reaches} else None
             show = page.doing(designer.show, one.number, pose)
             card = pressable("design-card" + (" design-card-on" if now else ""), show)
-            with card.props('data-testid="design-card"'):
+            with card.props('data-testid="design-card"').tooltip(_more(one)):
                 ui.html(designer.sketch(one), sanitize=False).classes("w-full")
                 ui.html(_words(one, own), sanitize=False)
 
 
 def _words(one: Candidate, own: tuple[int, ...]) -> str:
-    """Error, counts, cable and tension, as HTML; only numbers."""
-    robot = one.robot
-    note = " · in the robot" if one.number in own else "" if one.complete else " · stopped early"
+    """Error once built, counts, minutes, price, crossings where there are any, as lines of HTML; only numbers."""
+    craft = one.craft
+    lines = [
+        one.counts,
+        f"{craft.minutes:.0f} min of sewing",
+        f"{craft.price:.0f} USD, {counted(craft.motors, 'motor')}",
+    ]
+    if craft.crossings:
+        lines.append(counted(craft.crossings, "crossing"))
+    if one.number in own or not one.complete:
+        lines.append("in the robot" if one.number in own else "stopped early")
+    return f"<b>{told_error(one.built)} once built</b>" + "".join(f"<span>{line}</span>" for line in lines)
+
+
+def _more(one: Candidate) -> str:
+    """What a card has no room for."""
+    craft = one.craft
     return (
-        f"<b>{told_error(one.built)} once built</b><span>{note}</span><br>"
-        f"<span>{told_error(one.error)} in the model<br>"
-        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}<br>"
-        f"{one.craft}<br>{1e3 * one.length:.0f} mm, {one.tension:.1f} N</span>"
+        f"{told_error(one.error)} in the model; {counted(craft.holes, 'hole')}, "
+        f"{1e3 * one.length:.0f} mm of cable pulled with up to {one.tension:.1f} N"
     )
