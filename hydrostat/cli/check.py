@@ -1,6 +1,6 @@
 """`hydrostat check`."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -16,14 +16,16 @@ def check(
     robot: RobotFolder,
     filled: Annotated[
         bool,
-        typer.Option("--filled", help="Also play its poses on the filled body, cables on the front or on both faces."),
+        typer.Option(
+            "--filled", help="Play its poses on the filled body with cables on each face, however long it takes."
+        ),
     ] = False,
 ) -> None:
-    """Say what is wrong with a robot and what is risky.
+    """Say what is wrong with a robot and what is risky; of a flat one, how far it leaves its plane once it is filled.
 
     Example: hydrostat check examples/starfish --filled
     """
-    from hydrostat.robot import find_risks
+    from hydrostat.robot import face_words, find_risks
     from hydrostat.units import counted
 
     found = read_robot(robot)
@@ -35,36 +37,55 @@ def check(
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
     counts = ", ".join(counted(len(entries), noun) for noun, entries in parts.items())
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
+    if words := face_words(found):
+        print(f"cables: {words}")
     if filled:
         _print_filled(found)
+    elif words:
+        _print_out_of_plane(found)
     risks = find_risks(found)
     for risk in risks:
         print(f"risky: {risk}")
     print("Nothing is wrong." if not risks else f"Nothing is wrong, {len(risks)} risky.")
 
 
+def _print_out_of_plane(robot: "Robot") -> None:
+    """How far a flat robot comes out of its plane with its cables where they are, if that is quickly told."""
+    from hydrostat.errors import NotConvergedError
+    from hydrostat.simulation import filled_motion, quickly_filled
+
+    if not quickly_filled(robot, len(robot.poses)):
+        if robot.body.outline is not None and robot.poses:
+            print("once filled: it takes long to tell how far markers leave the plane; ask by hydrostat check --filled")
+        return
+    try:
+        print(f"once filled: {filled_motion(robot, _pulled(robot))}")
+    except (InputError, NotConvergedError) as error:
+        print(f"once filled: not found, {error}")
+
+
 def _print_filled(robot: "Robot") -> None:
     """How far a flat robot comes out of its plane once it is filled, by face."""
-    from hydrostat.ik import solve_ik
     from hydrostat.robot import Face
-    from hydrostat.simulation import Simulation, filled_motion
+    from hydrostat.simulation import filled_motion
 
     if robot.body.outline is None:
         raise InputError("--filled is for flat robots with a drawing; leave it out")
     if not robot.poses or not robot.cables:
         raise InputError("--filled plays the poses of a robot by its cables; it needs at least one of each")
-    simulation = Simulation(robot)
-    pulled = [solve_ik(simulation, pose).pose.contractions for pose in robot.poses.values()]
-    print("Filled, with the commands of the flat model (mm, the most of all markers and poses):")
+    pulled = _pulled(robot)
+    print("Filled, with the commands of the flat model (the most of all markers and poses):")
     for face in Face:
-        found = filled_motion(robot, pulled, face)
-        print(
-            f"  cables {_WHERE[face]:<18} {1e3 * found.out:5.1f} out of the plane, {1e3 * found.aside:5.1f} aside of "
-            f"the flat model, which moves {1e3 * found.moved:.1f}"
-        )
+        print(f"  cables {face.words}: {filled_motion(robot, pulled, face)}")
 
 
-_WHERE = {"front": "on the front", "back": "on the back", "pairs": "on both faces", "middle": "in the middle"}
+def _pulled(robot: "Robot") -> list[Any]:
+    """Contractions of all winches, for each pose."""
+    from hydrostat.ik import InverseOptions, solve_ik
+    from hydrostat.simulation import Simulation
+
+    simulation, once = Simulation(robot), InverseOptions(restarts=0)
+    return [solve_ik(simulation, pose, options=once).pose.contractions for pose in robot.poses.values()]
 
 
 def _body_lines(body: "Body") -> list[str]:

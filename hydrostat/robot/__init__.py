@@ -3,9 +3,10 @@
 from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
+from hydrostat.robot.face import Face, face_words, sewn_robot
 from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.gravity import STANDARD_GRAVITY
-from hydrostat.robot.inflated import Face, inflated_robot
+from hydrostat.robot.inflated import inflated_robot
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation, find_material
 from hydrostat.robot.pin import Pin
@@ -35,6 +36,7 @@ __all__ = [
     "SurfaceSketch",
     "Volume",
     "Winch",
+    "face_words",
     "find_material",
     "find_risks",
     "gallery_folder",
@@ -47,6 +49,7 @@ __all__ = [
     "robot_hash",
     "robot_text",
     "save_robot",
+    "sewn_robot",
     "sketch_mesh",
     "sketch_robot",
     "sketch_surface",

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from enum import StrEnum
 
 import numpy as np
 
@@ -11,20 +10,12 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
+from hydrostat.robot.face import Face, side_name
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 
 
-class Face(StrEnum):
-    """Where the cables of a flat robot run once it is filled."""
-
-    FRONT = "front"  # sewn on the panel that is looked at
-    BACK = "back"  # on the other one
-    PAIRS = "pairs"  # each twice, on both panels, pulled together
-    MIDDLE = "middle"  # through the filling, half way between
-
-
-def inflated_robot(robot: Robot, face: Face | str = Face.FRONT, *, element_size: float | None = None) -> Robot:
+def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size: float | None = None) -> Robot:
     """The robot in space that a flat one becomes: its outline blown up to its thickness, cables on a face of it.
 
     Winches and markers stay in the plane z = 0; so a cable leaves its winch inside the body and comes to the skin at
@@ -32,13 +23,13 @@ def inflated_robot(robot: Robot, face: Face | str = Face.FRONT, *, element_size:
 
     Args:
         robot: flat, with an outline.
-        face: where its cables run.
+        face: where its cables run; as the robot says if left out, and if it does not, on the front.
         element_size: of the tetrahedra [m]; that of the flat mesh if left out.
 
     Raises:
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.
     """
-    face = Face(face)
+    face = Face(face or robot.face or Face.FRONT)
     body = _blown_up(robot.body, element_size)
     flat = robot.gravity
     return replace(
@@ -53,6 +44,7 @@ def inflated_robot(robot: Robot, face: Face | str = Face.FRONT, *, element_size:
             for name, pose in robot.poses.items()
         },
         gravity=None if flat is None else (*flat, 0.0),
+        face=None,
     )
 
 
@@ -86,17 +78,17 @@ def _skin(body: Body, places: Points, side: float) -> Vector:
 def _lifted(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
     """A cable on its face, all but its first point, which is its winch's; twice for pairs."""
     points = np.array(cable.points)
-    for name, side in _SIDES[face]:
+    for name, side in _HEIGHTS[face]:
         lift = _skin(body, points, side)
         lift[0] = 0.0
         lifted = tuple(map(tuple, np.column_stack([points, lift]).tolist()))
-        yield replace(cable, points=lifted, name=f"{cable.name}{name}")
+        yield replace(cable, points=lifted, name=side_name(cable, name) if name else cable.name)
 
 
-_SIDES = {
+_HEIGHTS = {
     Face.FRONT: (("", 1.0),),
     Face.BACK: (("", -1.0),),
-    Face.PAIRS: ((" front", 1.0), (" back", -1.0)),
+    Face.PAIRS: (("front", 1.0), ("back", -1.0)),
     Face.MIDDLE: (("", 0.0),),
 }
 

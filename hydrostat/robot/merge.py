@@ -108,7 +108,7 @@ def _parted(text: str, *, last: bool) -> tuple[str, str, str]:
 _RECORDS = {"body": Body, "pin": Pin, "winch": Winch, "cable": Cable, "marker": Marker, "pose": Pose}
 _LISTS = ("pin", "winch", "cable", "marker", "pose")
 _ORDER = ("", "body", *_LISTS)
-_TOP = ("name", "length_unit", "gravity")
+_TOP = ("name", "length_unit", "gravity", "face")
 
 
 def merged_text(text: str, robot: Robot) -> str:

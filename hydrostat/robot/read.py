@@ -69,7 +69,7 @@ class RobotReader(TablesFile):
             poses[pose.name] = pose
         body = self._body()
         gravity = self.at("", lambda: _gravity(table.gravity, body.mesh.dim))
-        options = {"length_unit": self.unit, "gravity": gravity}
+        options = {"length_unit": self.unit, "gravity": gravity, "face": table.face}
         return self.at("", lambda: Robot(name=table.name, body=body, poses=poses, **options, **parts))
 
     def _pin(self, entry: Any) -> Pin:

@@ -8,10 +8,12 @@ import numpy as np
 
 from hydrostat import units
 from hydrostat.arrays import Vector
+from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.checks import Point
+from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.pin import Pin
@@ -37,6 +39,7 @@ class Robot:
         poses: by name.
         length_unit: of the coordinates in its file.
         gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
+        face: on which face of a flat body its cables run, or a word such as "pairs"; None: not said.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -51,6 +54,7 @@ class Robot:
     poses: Mapping[str, Pose]
     length_unit: str = "mm"
     gravity: tuple[float, ...] | None = None
+    face: Face | None = None
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -67,6 +71,7 @@ class Robot:
             if name != pose.name:
                 raise InputError(f'pose[{index}].name: a pose called "{pose.name}" is filed under "{name}"')
         self._check_dimensions()
+        self._check_face()
         if isinstance(self.gravity, str):
             object.__setattr__(self, "gravity", gravity_along(self.gravity, self.body.mesh.dim))
         if self.gravity is not None:
@@ -116,6 +121,13 @@ class Robot:
         for key, point in self._points():
             if len(point) != dim:
                 raise InputError(f"{key} has {len(point)} coordinates, but the body has {dim}")
+
+    def _check_face(self) -> None:
+        if self.face is None:
+            return
+        make_member(self, "face", Face)
+        if self.body.mesh.dim == 3:
+            raise InputError("face is only for flat bodies: in space, cables run where their points are; remove it")
 
     def _points(self) -> Iterable[tuple[str, Point]]:
         for index, pin in enumerate(self.pins):

@@ -21,6 +21,7 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Volume
 from hydrostat.robot.checks import check_name
+from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.materials import MOST_BRANCHES
 from hydrostat.robot.winch import Mount
@@ -216,6 +217,7 @@ class RobotTable(TomlTable):
     name: Name
     length_unit: Text = "mm"
     gravity: Gravity | None = None
+    face: Face | None = None
     body: BodyTable
     pin: list[PinTable] = []
     winch: list[WinchTable] = []
@@ -228,6 +230,7 @@ _NAMED = "a material with a name has its own; remove this key, or the name"
 _VISCOUS = 'material = { name = "polyester fibre", viscosity = "40 Pa s" }'
 REFUSED = {
     "body.gravity": "gravity stands at the top of the file, before [body]; move it there",
+    "body.face": "where the cables of a flat robot run stands at the top of the file, before [body]; move it there",
     "body.viscosity": "it belongs to the material; write " + _VISCOUS,
     "body.relaxation": "it belongs to the material; write " + _VISCOUS,
     "body.material.young": _NAMED,

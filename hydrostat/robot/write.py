@@ -84,6 +84,8 @@ def robot_text(robot: Robot) -> str:
         document["length_unit"] = robot.length_unit
     if robot.gravity is not None:
         document["gravity"] = writer.gravity(robot.gravity)
+    if robot.face is not None:
+        document["face"] = str(robot.face)
     document["body"] = writer.body(robot.body)
     groups: dict[str, Iterable[dict[str, Any]]] = {
         "pin": map(writer.pin, robot.pins),

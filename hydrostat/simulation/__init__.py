@@ -4,7 +4,7 @@ from hydrostat.simulation.adjoint import Sensitivity
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
-from hydrostat.simulation.filled import FilledMotion, filled_motion
+from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_filled
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.friction_band import friction_band
 from hydrostat.simulation.many_poses import ManyPoses
@@ -48,6 +48,7 @@ __all__ = [
     "path_dependence",
     "pose_facts",
     "profile_text",
+    "quickly_filled",
     "read_profile",
     "rig_slopes",
     "write_motion",

@@ -21,22 +21,43 @@ class FilledMotion:
     tension: float  # of a cable [N]
     nodes: int  # of the mesh in space
 
+    def __str__(self) -> str:
+        """Such as "markers come 0.4 mm out of the plane, 10.0 mm aside of the flat model, which moves 56.5 mm"."""
+        return (
+            f"markers come up to {1e3 * self.out:.1f} mm out of the plane, {1e3 * self.aside:.1f} mm aside of the flat "
+            f"model, which moves {1e3 * self.moved:.1f} mm"
+        )
+
+
+def quickly_filled(robot: Robot, poses: int) -> bool:
+    """Tell whether `filled_motion` of so many poses takes some seconds at most: a flat body that was drawn, not fine."""
+    body = robot.body
+    if body.outline is None or body.thickness is None or not robot.cables or not poses:
+        return False
+    across = max(body.thickness / (body.element_size or body.mesh.size / 25), 1.0)
+    return poses * _DEEP * across * len(body.mesh.nodes) <= _QUICK
+
+
+_DEEP = 1.5  # nodes of the body in space for each of the flat mesh and each element of its thickness
+_QUICK = 8000  # nodes times poses
+
 
 def filled_motion(
-    robot: Robot, contractions: Sequence[Vector], face: Face | str, *, element_size: float | None = None
+    robot: Robot, contractions: Sequence[Vector], face: Face | str | None = None, *, element_size: float | None = None
 ) -> FilledMotion:
     """Play contractions on a flat robot and on the body in space that it becomes (`inflated_robot`), and compare.
 
     Args:
         robot: flat, with a drawing.
         contractions: of all winches, for each pose [m].
-        face: where its cables run.
+        face: where its cables run; as the robot says if left out, and if it does not, on the front.
         element_size: of the tetrahedra [m]; that of the flat mesh if left out.
 
     Raises:
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.
         NotConvergedError: a pose that has no equilibrium.
     """
+    face = Face(face or robot.face or Face.FRONT)
     flat, solid = Simulation(robot), Simulation(inflated_robot(robot, face, element_size=element_size))
     moved, out, aside, tension = 0.0, 0.0, 0.0, 0.0
     for pulled in contractions:
@@ -48,4 +69,4 @@ def filled_motion(
             out = max(out, abs(float(found[2])))
             aside = max(aside, float(np.linalg.norm(found[:2] - drawn)))
     nodes = len(solid.robot.body.mesh.nodes)
-    return FilledMotion(face=Face(face), moved=moved, out=out, aside=aside, tension=tension, nodes=nodes)
+    return FilledMotion(face=face, moved=moved, out=out, aside=aside, tension=tension, nodes=nodes)

@@ -1,7 +1,9 @@
 """`hydrostat check`: what it says of the body. Oracle: a rectangle 60 x 40 x 20 mm of 40 kg/m^3, and a box like it."""
 
+import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,8 @@ from builders import box_mesh
 
 from hydrostat.cli.main import main
 from hydrostat.geometry.files.vtu_file import write_vtu
+from hydrostat.robot import gallery_folder, load_robot, save_robot
+from hydrostat.simulation import quickly_filled
 
 Check = Callable[[Path], list[str]]
 
@@ -84,3 +88,21 @@ def test_body_in_space(check: Check, tmp_path: Path) -> None:
         assert lines[2].endswith("smallest angle between faces 45 degrees")
         assert sum(line.startswith("risky: ") for line in lines) == risks
         assert lines[-1] == ("Nothing is wrong, 1 risky." if risks else "Nothing is wrong.")
+
+
+@pytest.mark.slow
+def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check, tmp_path: Path) -> None:
+    """Oracle: decision 0029: on the front alone centimetres out of the plane, in pairs less than a millimetre."""
+    robot = load_robot(gallery_folder("letter_s"))
+    found = {}
+    for face in ("front", "pairs"):
+        save_robot(replace(robot, face=face), tmp_path / face)
+        lines = check(tmp_path / face)
+        (place,) = (number for number, line in enumerate(lines) if line.startswith("cables: "))
+        out = re.match(r"once filled: markers come up to ([\d.]+) mm out of the plane", lines[place + 1])
+        assert out is not None
+        found[lines[place].removeprefix("cables: ")] = float(out[1])
+    assert 10 < found["on the front"] < 30
+    assert found["on both faces, in pairs"] < 1
+    fine = replace(robot, face="pairs", body=replace(robot.body, element_size=1e-4))
+    assert not quickly_filled(fine, len(fine.poses))

@@ -68,6 +68,7 @@ ODD += [
 ]
 ODD += ["[pose.targets]", "size", "mesh", "surface", "friction"]
 ODD += ["gravity", '"-y"', '"1 m/s^2"', "viscosity", '"1 Pa s"', "relaxation", "modulus", "time", '"2 s"', "volume"]
+ODD += ["face", '"pairs"']
 TOKEN = re.compile(r"\"[^\"\n]*\"|[\w.+-]+|\s+|.")
 
 
