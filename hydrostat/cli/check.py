@@ -16,9 +16,7 @@ def check(
     robot: RobotFolder,
     filled: Annotated[
         bool,
-        typer.Option(
-            "--filled", help="Play its poses on the filled body with cables on each face, however long it takes."
-        ),
+        typer.Option("--filled", help="Play its poses on the filled body, cables on each face, however long."),
     ] = False,
 ) -> None:
     """Say what is wrong with a robot and what is risky; of a flat one, how far it leaves its plane once it is filled.

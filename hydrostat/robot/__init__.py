@@ -3,7 +3,7 @@
 from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
-from hydrostat.robot.face import Face, face_words, sewn_robot
+from hydrostat.robot.face import Face
 from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.gravity import STANDARD_GRAVITY
 from hydrostat.robot.inflated import inflated_robot
@@ -13,6 +13,7 @@ from hydrostat.robot.pin import Pin
 from hydrostat.robot.read import load_robot
 from hydrostat.robot.risks import find_risks
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.sewn import face_words, sewn_robot
 from hydrostat.robot.sketch import sketch_robot
 from hydrostat.robot.sketch_space import SurfaceSketch, sketch_mesh, sketch_surface
 from hydrostat.robot.winch import Mount, Winch

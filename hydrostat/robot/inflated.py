@@ -10,9 +10,10 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
-from hydrostat.robot.face import Face, side_name
+from hydrostat.robot.face import Face
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.sewn import side_name
 
 
 def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size: float | None = None) -> Robot:

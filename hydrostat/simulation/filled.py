@@ -30,7 +30,7 @@ class FilledMotion:
 
 
 def quickly_filled(robot: Robot, poses: int) -> bool:
-    """Tell whether `filled_motion` of so many poses takes some seconds at most: a flat body that was drawn, not fine."""
+    """Tell whether `filled_motion` of so many poses takes some seconds: of a flat body that was drawn, not too fine."""
     body = robot.body
     if body.outline is None or body.thickness is None or not robot.cables or not poses:
         return False

@@ -1,0 +1,37 @@
+"""`sewn_robot`: a flat robot with each cable as often as it is sewn; `face_words`: where its cables run, in words."""
+
+from dataclasses import replace
+
+from hydrostat.robot.cable import Cable
+from hydrostat.robot.checks import LONGEST_NAME
+from hydrostat.robot.face import Face
+from hydrostat.robot.robot import Robot
+
+
+def sewn_robot(robot: Robot) -> Robot:
+    """The flat robot with each cable as often as it is sewn: in pairs all those of the front, then all of the back.
+
+    Both of a pair are as stiff as the one that is drawn. A robot whose cables are no pairs is given back as it is.
+    """
+    if robot.face is not Face.PAIRS:
+        return robot
+    sewn = tuple(replace(cable, name=side_name(cable, side)) for side in Face.PAIRS.sides for cable in robot.cables)
+    return replace(robot, cables=sewn, face=None)
+
+
+def side_name(cable: Cable, side: str) -> str:
+    """Such as "left 1 back"; nothing, so that a robot gives it one, where that is longer than a name may be."""
+    name = f"{cable.name} {side}"
+    return name if len(name) <= LONGEST_NAME else ""
+
+
+def face_words(robot: Robot) -> str:
+    """Where the cables of a flat robot run, such as "on the front"; empty for one in space or without cables."""
+    if robot.body.mesh.dim != 2 or not robot.cables:
+        return ""
+    return _UNSAID if robot.face is None else robot.face.words
+
+
+_UNSAID = (
+    'not said where: a plush kit sews them on the front alone; face = "pairs" before [body] has them on both faces'
+)
