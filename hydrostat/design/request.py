@@ -226,10 +226,6 @@ class DesignRequest:
                     known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
                     raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')
         self.constraints.check(robot)
-        if self.method is DesignMethod.TREES and dim != 2:
-            raise InputError(
-                'method "trees" designs for flat bodies only, this body lies in space; use method "routes"'
-            )
         fitted = replace(self, uncertainty=self.uncertainty or Uncertainty.of(robot.body))
         return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.improve else fitted
 

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 import shapely
-from builders import box_robot, mesh_body, strip_mesh, strip_robot
+from builders import mesh_body, strip_mesh, strip_robot
 from robustness import EXAMPLES
 
 from hydrostat.design import Constraints, FibreKind, Network, TreeOptions, TreeTrace, design_cables
@@ -168,7 +168,6 @@ def thin_robot() -> Robot:
         (body(), [UP], 0, 1, "winches must be a whole number from 1 to 20"),
         (body(), [UP], 3, 2, "3 winches and 2 cables"),
         (body(), [UP, Pose(name="odd", targets={"nose": (0.1, 0.0)})], 1, 1, 'pose "odd".*no marker "nose".*are: tip'),
-        (box_robot(), [Pose(name="up", targets={"tip": (0.1, 0.03, 0.02)})], 1, 1, "flat bodies only"),
         (thin_robot(), [UP], 1, 1, "too thin for cables 5 mm inside its edge"),
     ],
 )

@@ -9,8 +9,10 @@ from builders import mesh_body, strip_mesh
 from hydrostat.design import Constraints, TreeOptions
 from hydrostat.design.region import body_region
 from hydrostat.design.trees.design_trees import _apart, _shares
+from hydrostat.design.trees.lead_ways import LeadWays, lead_ways
 from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.robot import Body, Pin, Robot
 
 OPTIONS, LIMITS = TreeOptions(), Constraints()
 
@@ -35,7 +37,13 @@ def strip_trees(seed: int, *, poses: int = 1, **options: float) -> WinchTrees:
         share = np.interp(mesh.nodes[:, 1], np.linspace(-0.025, 0.025, 7), random.uniform(0.0, 0.4, 7))
         posed.append(np.column_stack([mesh.nodes[:, 0] * (1 - share), mesh.nodes[:, 1]]))
     routes = [row(y) for y in (-0.015, -0.01, -0.004, 0.003, 0.009, 0.015)]
-    return WinchTrees(mesh, routes, posed, body_region(mesh_body(mesh), 0.005), LIMITS, TreeOptions(**options))
+    return WinchTrees(mesh, routes, posed, ways_of(mesh_body(mesh)), LIMITS, TreeOptions(**options))
+
+
+def ways_of(body: Body) -> LeadWays:
+    """Of a body without a network."""
+    robot = Robot(name="bare", body=body, pins=(Pin(box=((-1.0, -1.0), (1.0, 1.0))),), poses={})
+    return lead_ways(robot, body_region(body, LIMITS.clearance), LIMITS)
 
 
 def test_the_score_by_hand() -> None:
@@ -108,7 +116,7 @@ def test_leads_stay_inside_and_begin_at_the_winch() -> None:
     region = body_region(body, 0.005)
     assert region.body.area == pytest.approx(0.1**2 - 0.04**2)
     route = np.array([[0.085, -0.03], [0.085, 0.0], [0.085, 0.03]])
-    trees = WinchTrees(body.mesh, [route], [body.mesh.nodes], region, LIMITS, OPTIONS)
+    trees = WinchTrees(body.mesh, [route], [body.mesh.nodes], ways_of(body), LIMITS, OPTIONS)
     assert len(trees.places)
     for place in trees.places:
         points, lead = trees.cable_points(int(place), 0)

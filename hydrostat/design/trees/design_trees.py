@@ -26,11 +26,12 @@ from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.design.region import body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
+from hydrostat.design.trees.lead_ways import lead_ways
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
-from hydrostat.robot import Cable, Pose, Robot, Winch
+from hydrostat.robot import Cable, Mount, Pose, Robot, Winch
 from hydrostat.simulation import BodyPhysics, Simulation
 
 
@@ -46,7 +47,7 @@ def design_trees(
     drawn at random. `body` is the physics of the body, if it is made already.
 
     Raises:
-        InputError: a body that is not flat or too thin.
+        InputError: a body that is too thin.
         HydrostatError: no network can be built from the muscles that were found.
     """
     return _TreeDesign(robot, request, progress, watch, body or BodyPhysics(robot)).run()
@@ -86,6 +87,7 @@ class _TreeDesign:
         self.winches, self.cables = int(request.winches), request.cables
         self.body, self.mesh = body, robot.body.mesh
         self.region = body_region(robot.body, self.constraints.clearance)
+        self.ways = lead_ways(robot, self.region, self.constraints)
         self.spacing = float(self.mesh.edge_lengths.mean())
 
     def run(self) -> Network:
@@ -148,7 +150,7 @@ class _TreeDesign:
             if not routes:
                 continue
             posed = [activation.nodes for activation in activations]
-            trees = WinchTrees(self.mesh, routes, posed, self.region, self.constraints, self.options)
+            trees = WinchTrees(self.mesh, routes, posed, self.ways, self.constraints, self.options)
             for phi in self.options.phis:
                 plans = (_TreePlan(candidates, trees, self._plant(trees, share, phi)) for share in shares)
                 groups.append([plan for plan in plans if len(plan.chosen) == self.winches])
@@ -218,9 +220,14 @@ class _TreeDesign:
             gap=self.constraints.hole_gap,
             winch_gap=2 * self.constraints.spool_radius,
         )
-        if laid is None or not all(self.region.holds(points) for points in laid):
+        if laid is None:
             return None
-        if max(map(sharpest_turn, laid)) > self.options.turn:
+        # Where a cable comes from the world its tube hangs as it likes.
+        bodily = [
+            points[int(self.ways.outside(chosen[index].place)) :]
+            for (index, _, _), points in zip(pulled, laid, strict=True)
+        ]
+        if not all(map(self.region.holds, bodily)) or max(map(sharpest_turn, bodily)) > self.options.turn:
             return None
         winches = [self._winch(index, tree) for index, tree in enumerate(chosen)]
         cables = []
@@ -233,7 +240,8 @@ class _TreeDesign:
     def _winch(self, index: int, tree: WinchTree) -> Winch:
         return Winch(
             name=f"winch_{index + 1}",
-            at=_point(self.mesh.nodes[tree.place]),
+            at=_point(self.ways.points[tree.place]),
+            mount=Mount.WORLD if self.ways.outside(tree.place) else Mount.BODY,
             spool_radius=self.constraints.spool_radius,
             travel=self.constraints.travel,
             release=self.constraints.release,

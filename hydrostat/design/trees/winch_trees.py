@@ -5,15 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Nodes
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import Route, length
-from hydrostat.design.region import Region
 from hydrostat.design.request import TreeOptions
-from hydrostat.errors import InputError
+from hydrostat.design.trees.lead_ways import LeadWays
 from hydrostat.geometry.anchors import locate
 from hydrostat.geometry.mesh import Mesh
 
@@ -22,7 +19,7 @@ from hydrostat.geometry.mesh import Mesh
 class WinchTree:
     """One winch and the routes it pulls."""
 
-    place: int  # node at which the winch stands
+    place: int  # point of the `LeadWays` at which the winch stands
     routes: tuple[int, ...]  # indices of its routes
     score: float  # phi mean - (1 - phi) std, less the penalty for leads
 
@@ -35,30 +32,24 @@ class WinchTrees:
         mesh: Mesh,
         routes: list[Route],
         posed: list[Nodes],
-        region: Region,
+        ways: LeadWays,
         constraints: Constraints,
         options: TreeOptions,
     ) -> None:
         """Routes at rest, and the node positions of each activated pose `posed` [m]."""
-        self.mesh, self.routes, self.region = mesh, routes, region
+        self.mesh, self.routes, self.ways = mesh, routes, ways
         self.constraints, self.options = constraints, options
-        self.places = np.flatnonzero(region.depths(mesh.nodes) >= constraints.winch_clearance)
-        if not len(self.places):
-            raise InputError(
-                f"no place of the body is {1e3 * constraints.winch_clearance:g} mm from its edge: no winch fits; "
-                "lower the winch clearance"
-            )
-        self.graph = _graph(mesh, region)
+        self.places = ways.places
         self.leads, self.reversed = self._leads()
         self.shortenings = np.array([[_shortening(mesh, route, nodes) for nodes in posed] for route in routes])
 
     def best(self, count: int, used: set[int], taken: list[int], phi: float) -> WinchTree | None:
         """Best winch with `count` of the routes not yet used, over all places not too near winches `taken` (R41)."""
-        nodes = self.mesh.nodes
+        points = self.ways.points
         rows = np.arange(len(self.places))
         for other in taken:
-            apart = np.linalg.norm(nodes[self.places[rows]] - nodes[other], axis=1) >= self.constraints.winch_gap
-            rows = rows[apart]
+            gap = _SAME if self.ways.outside(other) else self.constraints.winch_gap
+            rows = rows[np.linalg.norm(points[self.places[rows]] - points[other], axis=1) >= gap]
         order = np.argsort(self.shortenings.mean(axis=1), kind="stable")
         order = order[~np.isin(order, list(used))]
         reached = np.isfinite(self.leads[np.ix_(rows, order)])
@@ -91,10 +82,11 @@ class WinchTrees:
         """
         row = int(np.flatnonzero(self.places == place)[0])
         points = self.routes[route][:: -1 if self.reversed[row, route] else 1]
-        winch = self.mesh.nodes[place]
-        if np.linalg.norm(points[0] - winch) < 2 * self.constraints.spool_radius:
+        winch = self.ways.points[place]
+        beside = np.linalg.norm(points[0] - winch) < 2 * self.constraints.spool_radius
+        if beside and not self.ways.outside(place):
             return np.vstack([winch, points[1:]]), 0
-        lead = self._lead_path(place, points[0])
+        lead = self.ways.path(place, points[0])
         return np.vstack([lead, points]), len(lead)
 
     def _leads(self) -> tuple[Float[np.ndarray, "places routes"], Bool[np.ndarray, "places routes"]]:
@@ -104,40 +96,17 @@ class WinchTrees:
         the size of the body.
         """
         ends = np.array([[route[0], route[-1]] for route in self.routes]).reshape(-1, self.mesh.dim)
-        doors = [self._door(end) for end in ends]
-        away = dijkstra(self.graph, indices=doors)[:, self.places].T
-        away += np.linalg.norm(self.mesh.nodes[doors] - ends, axis=1)
+        away = self.ways.lengths(ends).T
         onward = np.array([[route[1] - route[0], route[-2] - route[-1]] for route in self.routes]).reshape(ends.shape)
-        arriving = ends - self.mesh.nodes[self.places][:, None]
+        arriving = ends - self.ways.points[self.places][:, None]
         lengths = np.linalg.norm(arriving, axis=2) * np.linalg.norm(onward, axis=1)
         back = (arriving * onward).sum(axis=2) < np.cos(np.radians(self.constraints.turn)) * lengths
         away += np.where(back, self.mesh.size, 0.0)
         pairs = away.reshape(len(self.places), len(self.routes), 2)
         return pairs.min(axis=2), pairs[:, :, 1] < pairs[:, :, 0]
 
-    def _door(self, point: Vector) -> int:
-        """Nearest node of the graph in sight of a point, or just the nearest."""
-        order = np.argsort(np.linalg.norm(self.mesh.nodes - point, axis=1), kind="stable")[:12]
-        order = order[np.diff(self.graph.indptr)[order] > 0] if np.diff(self.graph.indptr)[order].any() else order
-        seen = self.region.sees(np.tile(point, (len(order), 1)), self.mesh.nodes[order])
-        return int(order[np.argmax(seen)])
 
-    def _lead_path(self, place: int, end: Vector) -> Route:
-        """From the winch towards `end`, which is left out, through as few bends as the body allows."""
-        nodes = self.mesh.nodes
-        _, before = dijkstra(self.graph, indices=place, return_predecessors=True)
-        path = [self._door(end)]
-        while path[-1] != place and before[path[-1]] >= 0:
-            path.append(int(before[path[-1]]))
-        way = np.vstack([nodes[path[::-1]], end])
-        if path[-1] != place:
-            way = np.vstack([nodes[place], way])
-        kept = [0]
-        while kept[-1] < len(way) - 1:
-            ahead = np.arange(len(way) - 1, kept[-1], -1)
-            seen = self.region.sees(np.repeat(way[kept[-1] : kept[-1] + 1], len(ahead), axis=0), way[ahead])
-            kept.append(int(ahead[np.argmax(seen)]) if seen.any() else kept[-1] + 1)
-        return way[kept[:-1]]
+_SAME = 1e-6  # winches in the world nearer than this stand at one place [m]
 
 
 def tree_score(contractions: Float[np.ndarray, "cables poses"], phi: float) -> float:
@@ -153,11 +122,3 @@ def _shortening(mesh: Mesh, route: Route, nodes: Nodes) -> float:
     """By how much a route is shorter in an activated pose than at rest [m]."""
     posed = locate(mesh, route).positions(nodes)
     return float(length(route) - length(posed))
-
-
-def _graph(mesh: Mesh, region: Region) -> csr_array:
-    """Mesh edges that keep clear of the rim, weighted by length."""
-    edges: Int[np.ndarray, "edges 2"] = mesh.edges[region.sees(*np.swapaxes(mesh.nodes[mesh.edges], 0, 1))]
-    lengths: Vector = np.linalg.norm(np.diff(mesh.nodes[edges], axis=1)[:, 0], axis=1)
-    both = np.concatenate([edges, edges[:, ::-1]])
-    return csr_array((np.tile(lengths, 2), (both[:, 0], both[:, 1])), shape=(len(mesh.nodes),) * 2)
