@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hydrostat.design import AUTO, Constraints, DesignRequest, RouteOptions
+from hydrostat.design import AUTO, Constraints, DesignMethod, DesignRequest, RouteOptions
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 from hydrostat.studio.records.wishes import Paint, Wishes
@@ -13,14 +13,18 @@ from hydrostat.studio.records.wishes import Paint, Wishes
 def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:
     """What a person's wishes for a robot ask of a design (InputError: no pose, or wishes that do not fit the robot).
 
-    The options are of the search; if left out its usual ones, with the wished tolerance and simplicity.
+    The options are of the search for routes; if left out its usual ones, with the wished tolerance and simplicity.
+    Winch trees are grown as the thesis does it, by one value of each of its knobs (R46).
     """
+    usual = RouteOptions(tolerance=wishes.tolerance, simplicity=wishes.simplicity)
+    trees = wishes.method is DesignMethod.TREES
     request = DesignRequest(
         poses=wished_poses(robot, wishes),
         winches=wishes.winches or AUTO,
         cables=wishes.cables,
         constraints=wished_constraints(robot, wishes),
-        options=options or RouteOptions(tolerance=wishes.tolerance, simplicity=wishes.simplicity),
+        method=wishes.method,
+        options=wishes.tree_options if trees else options or usual,
         improve=wishes.improve,
     )
     request.fitted(robot)  # what does not fit is told at once

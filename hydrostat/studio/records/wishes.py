@@ -4,9 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from hydrostat.design import Constraints, DesignRequest, RouteOptions, Zone
+from hydrostat.closed_set import make_member
+from hydrostat.design import Constraints, DesignMethod, DesignRequest, RouteOptions, TreeOptions, Zone
 from hydrostat.design.constraints import RANGES
-from hydrostat.design.request import COUNTS, ROUTE_RANGES
+from hydrostat.design.request import COUNTS, ROUTE_RANGES, TREE_RANGES
 from hydrostat.errors import InputError
 from hydrostat.robot import Point
 from hydrostat.units import quote
@@ -25,7 +26,7 @@ class Wishes:
     """What a design shall be like.
 
     Raises:
-        InputError: a number out of its range, or a mirror that is no axis.
+        InputError: a number out of its range, a mirror that is no axis, or a method that there is not.
     """
 
     winches: int = int(DesignRequest.winches)  # how many; 0: as few as will do
@@ -45,7 +46,19 @@ class Wishes:
     kept_winches: tuple[str, ...] = ()  # names of the robot's own winches that stay
     kept_cables: tuple[str, ...] = ()  # names of the robot's own cables that stay, and their winches with them
 
+    method: DesignMethod = DesignRequest.method  # routes, ours, or the thesis's winch trees with the knobs that follow
+    threshold: int = 60  # number of candidate fibres (R39)
+    distance: float = 1.5  # largest gap between two fibres that are joined, in mean mesh edges (R40)
+    steps: int = 12  # most fibres joined to one route (R40)
+    phi: float = 0.5  # weight of the mean against the spread in the score (R43)
+
+    @property
+    def tree_options(self) -> TreeOptions:
+        """The knobs of the thesis's search as wished (R46)."""
+        return TreeOptions.single(threshold=self.threshold, distance=self.distance, steps=self.steps, phi=self.phi)
+
     def __post_init__(self) -> None:
+        make_member(self, "method", DesignMethod)
         if self.mirror not in (None, "x", "y", "z"):
             raise InputError(f"mirror must be x, y, z or nothing, not {quote(self.mirror)}")
         if self.winches != 0 and not COUNTS["winches"].holds(self.winches):
@@ -71,6 +84,10 @@ _COUNTED = {
     "cables": COUNTS["cables"],
     "cables_per_winch": RANGES["cables_per_winch"],
     "simplicity": ROUTE_RANGES["simplicity"],
+    "threshold": TREE_RANGES["thresholds"],
+    "distance": TREE_RANGES["distances"],
+    "steps": TREE_RANGES["growth_steps"],
+    "phi": TREE_RANGES["phis"],
 }
 
 _AMOUNTS = {  # what each amount may be, and the unit in which it is told

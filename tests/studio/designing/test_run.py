@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 from builders import gallery_robot
 
-from hydrostat.design import Constraints, RouteOptions, Zone
+from hydrostat.cli.design_wishes import TypedRequest, asked_of
+from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.designing.run import beginning, wished_constraints, wished_poses, wished_request
@@ -67,6 +68,20 @@ def test_as_few_winches_as_will_do(starfish: Robot) -> None:
         wished_request(starfish, Wishes(winches=0, improve=True))
 
 
+def test_the_knobs_of_the_thesis_are_those_of_the_command_line(starfish: Robot) -> None:
+    """The usual ones are those of `TreeOptions.single`; what trees do not keep is told at once."""
+    asked = wished_request(starfish, Wishes(method=DesignMethod.TREES))
+    assert (asked.method, asked.options) == (DesignMethod.TREES, TreeOptions.single())
+    knobs = {"threshold": 40, "distance": 2.5, "steps": 8, "phi": 0.3}
+    typed = TypedRequest(method="trees", knobs=[f"{name}={value}" for name, value in knobs.items()])
+    wished = wished_request(starfish, Wishes(method=DesignMethod.TREES, **knobs))  # type: ignore[arg-type]
+    assert wished == asked_of(starfish, typed)
+    with pytest.raises(InputError, match="does not keep mirror"):
+        wished_request(starfish, Wishes(method=DesignMethod.TREES, mirror="x"))
+    with pytest.raises(InputError, match="with a number of winches"):
+        wished_request(starfish, Wishes(method=DesignMethod.TREES, winches=0))
+
+
 def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
     far = Wishes(zones=((Paint.KEEP_OUT, Zone(at=(9.0, 9.0), radius=0.01)),))
     with pytest.raises(InputError, match="does not touch the body"):
@@ -81,6 +96,8 @@ def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
         ({"winches": -1}, "winches must be a whole number from 1 to 20, or 0 for as few as will do, not -1"),
         ({"cables": 61}, "cables must be a whole number from 1 to 60, not 61"),
         ({"cables_per_winch": 0}, "cables per winch must be a whole number from 1 to 60, not 0"),
+        ({"phi": 1.5}, "phi must be at least 0 and at most 1, not 1.5"),
+        ({"threshold": 0}, "threshold must be a whole number, at least 1, not 0"),
         ({"simplicity": -1.0}, "simplicity must be at least 0 and at most 20, not -1.0"),
         ({"tension": 0.0}, "tension must be above 0 and at most 1000 N, not 0 N"),
         ({"clearance": -0.001}, "clearance must be above 0 and at most 1000 mm, not -1 mm"),

@@ -77,14 +77,20 @@ def design_limits(page: WindowPage) -> None:
     with _more("Limits"):
         with ui.element("div").classes("studio-row"):
             shows += [
-                _number(page, "Tension, at most", "N", "tension"),
-                _number(page, "From the edge", "mm", "clearance"),
+                number_box(page, "Tension, at most", "N", "tension"),
+                number_box(page, "From the edge", "mm", "clearance"),
             ]
         shows.append(_mirror(page))
         with ui.element("div").classes("studio-row"):
-            shows += [_number(page, "Close enough", "mm", "tolerance"), _number(page, "Slack, at most", "mm", "slack")]
+            shows += [
+                number_box(page, "Close enough", "mm", "tolerance"),
+                number_box(page, "Slack, at most", "mm", "slack"),
+            ]
         with ui.element("div").classes("studio-row"):
-            shows += [_number(page, "Cables a winch", "", "cables_per_winch"), _number(page, "Torque", "N m", "torque")]
+            shows += [
+                number_box(page, "Cables a winch", "", "cables_per_winch"),
+                number_box(page, "Torque", "N m", "torque"),
+            ]
         shows.append(_switch(page, "Spools may differ in radius", "stepped"))
     _own(page, shows)
 
@@ -99,11 +105,11 @@ def _more(title: str) -> ui.expansion:
     return ui.expansion(title).classes("design-more").props('dense header-class="studio-section"')
 
 
-def _number(page: WindowPage, words: str, unit: str, name: str) -> Show:
+def number_box(page: WindowPage, words: str, unit: str, name: str) -> Show:
     """A box for a wish; empty for one that is left open."""
     designer = page.session.designer
     scale = 1e3 if unit == "mm" else 1.0
-    whole = unit == ""
+    whole = isinstance(getattr(Wishes, name), int)
     optional = name in ("tolerance", "torque")
     box = ui.number(words, suffix=unit or None, format="%.6g").props("dense outlined hide-bottom-space stack-label")
     box.classes("flex-1 studio-figure").style("min-width: 0").props(f'data-testid="wish-{name}"')

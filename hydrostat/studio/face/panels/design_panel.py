@@ -4,12 +4,14 @@ from functools import partial
 
 from nicegui import ui
 
+from hydrostat.design import DesignMethod
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
 from hydrostat.studio.designing.design_work import Candidate, told_error
 from hydrostat.studio.designing.run import wished_poses
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
+from hydrostat.studio.face.panels.design_method import design_method
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
 
@@ -19,6 +21,7 @@ def design_panel(page: WindowPage) -> None:
     ui.label("Design").classes("studio-title")
     _poses(page)
     _counts(page)
+    design_method(page)
     _go(page)
     _progress(page)
     design_paint(page)
@@ -89,7 +92,7 @@ def _simplicity(page: WindowPage) -> None:
     """One knob: from few cables and holes to whatever helps at all."""
     designer = page.session.designer
     choices = {value: words for words, value in SIMPLICITIES.items()}
-    with ui.element("div").classes("studio-row"):
+    with ui.element("div").classes("studio-row") as row:
         ui.label("Network").classes("flex-1")
         choice = ui.toggle(choices, value=designer.wishes.simplicity if designer.wishes.simplicity in choices else None)
         choice.props('dense no-caps unelevated padding="2px 10px"')
@@ -107,6 +110,7 @@ def _simplicity(page: WindowPage) -> None:
     def show() -> None:
         wished = designer.wishes.simplicity
         choice.set_value(wished if wished in choices else None)
+        row.set_visibility(designer.wishes.method is DesignMethod.ROUTES)
 
     choice.on_value_change(lambda event: send(event.value))
     page.on(Topic.ROBOT, show)

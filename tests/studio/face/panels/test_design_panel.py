@@ -1,8 +1,9 @@
 """The panel of the stage "design". The oracle is what is wished."""
 
 import pytest
-from desk import Desk, at_desk
+from desk import Desk, at_desk, is_shown
 
+from hydrostat.design import DesignMethod
 from hydrostat.robot import Robot
 from hydrostat.studio.records.wishes import Paint
 from hydrostat.studio.stage import StageName
@@ -31,6 +32,28 @@ def test_counts_and_limits_become_wishes(starfish: Robot) -> None:
         await desk.press("Undo")
         assert designer.wishes.mirror is None
         assert desk.one("wish-mirror").value == ""
+
+    at_desk(starfish, act)
+
+
+def test_the_thesis_search_has_its_knobs(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.DESIGN)
+        designer = desk.session.designer
+        assert not is_shown(desk.one("wish-phi"))
+        await desk.choose("wish-method", DesignMethod.TREES)
+        assert designer.wishes.method is DesignMethod.TREES
+        assert is_shown(desk.one("wish-phi"))
+        assert not is_shown(desk.one("wish-simplicity"))
+        for knob, value in (("threshold", 40), ("distance", 2.5), ("steps", 8), ("phi", 0.3)):
+            await desk.type(f"wish-{knob}", value)
+            assert getattr(designer.wishes, knob) == pytest.approx(value)
+        await desk.type("wish-phi", 1.5)  # refused
+        assert desk.one("wish-phi").value == pytest.approx(0.3)
+        await desk.press("design-go")
+        assert len(desk.begun) == 1
+        await desk.press("Undo")
+        assert designer.wishes.phi == pytest.approx(0.5)
 
     at_desk(starfish, act)
 
