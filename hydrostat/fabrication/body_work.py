@@ -25,7 +25,7 @@ from hydrostat.fabrication.sheets.tiles import tiled_pdf
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Face, Mount, Robot
 from hydrostat.units import counted
 
 
@@ -83,8 +83,18 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
             f"Pour: {body.mass:.0f} g of {body.material}",
         ),
         problems=(*mould.problems, *channel_problems(robot, options.parts)),
-        warnings=(*mould.warnings, *_effort(printed)),
+        warnings=(*mould.warnings, *_effort(printed), *_inside(robot)),
         checks=mould_checks(robot, mould),
+    )
+
+
+def _inside(robot: Robot) -> tuple[str, ...]:
+    """A sentence if a flat robot says that its cables run on its faces, and is cast."""
+    if robot.face in (None, Face.MIDDLE) or not robot.cables:
+        return ()
+    return (
+        f"the robot says that its cables run {robot.face.words}, but a cast body has them in the middle of its "
+        "thickness, where pairs are not needed: both keep it flat",
     )
 
 

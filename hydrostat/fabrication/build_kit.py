@@ -21,7 +21,7 @@ from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
-from hydrostat.robot import Robot
+from hydrostat.robot import Face, Robot, face_words, sewn_robot
 from hydrostat.units import counted
 
 Progress = Callable[[str, int, int], None]  # told the stage, how much of it is done, and how much there is
@@ -56,7 +56,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
     if plan.problems and not options.force:
         raise UnbuildableError(plan.problems)
     tell("Files")
-    files, summary = _files(plan), _summary(plan)
+    files, summary = _files(plan), (*_summary(plan), *_cable_summary(robot, plan))
     facts = {
         "method": plan.method,
         "motor": plan.rigid.motor.key,
@@ -83,7 +83,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
 class _Plan:
     """All that a kit is written from."""
 
-    robot: Robot
+    robot: Robot  # as it is sewn: of pairs both cables
     options: KitOptions
     method: Method
     demand: Demand
@@ -137,9 +137,10 @@ class _Stages:
 
 def _plan(robot: Robot, options: KitOptions, tell: _Stages) -> _Plan:
     method = options.method_for(robot.body)
+    drawn, robot = robot, sewn_robot(robot) if method is Method.PLUSH else robot
     tell("Loads in its poses")
     demand = find_demand(robot, progress=tell.part)
-    rigid, work = _parts_and_body(robot, options, method, demand, tell)
+    rigid, work = _parts_and_body(drawn, robot, options, demand, tell)
     tell("Lists")
     lists = make_lists(_list_input(robot, options, method, demand, rigid, work))
     tell("Checks")
@@ -156,9 +157,12 @@ def _plan(robot: Robot, options: KitOptions, tell: _Stages) -> _Plan:
 
 
 def _parts_and_body(
-    robot: Robot, options: KitOptions, method: Method, demand: Demand, tell: _Stages
+    drawn: Robot, robot: Robot, options: KitOptions, demand: Demand, tell: _Stages
 ) -> tuple[RigidParts, BodyWork]:
-    """Winches and the body they are for: felt has holes for grommets, foam has room for winches."""
+    """Winches and the body they are for, of a robot as it is drawn and as it is sewn.
+
+    Felt has holes for grommets, foam has room for winches.
+    """
 
     def rigid(holes: int) -> RigidParts:
         tell("Winches")
@@ -167,9 +171,9 @@ def _parts_and_body(
             robot, demand, motor=options.motor, options=options.parts, bed=bed, holes=holes, hole=pinhole
         )
 
-    if method is Method.PLUSH:
+    if options.method_for(robot.body) is Method.PLUSH:
         tell("Pattern")
-        work = plush_work(robot, options)
+        work = plush_work(drawn, options)
         return rigid(work.holes), work
     parts = rigid(0)
     tell("Mould")
@@ -256,6 +260,14 @@ def _base_files(name: str, rigid: RigidParts) -> dict[str, bytes]:
         return {}
     sheet = cut_sheet(f"{name} - base", rigid.base.sheet)
     return {"parts/base.svg": pattern_svg(sheet), "parts/base.dxf": pattern_dxf(sheet)}
+
+
+def _cable_summary(robot: Robot, plan: _Plan) -> tuple[str, ...]:
+    """Where the cables of a flat robot run, a line if it says so."""
+    if robot.face is None or not plan.robot.cables:
+        return ()
+    words = face_words(robot) if plan.method is Method.PLUSH else Face.MIDDLE.words
+    return (f"Cables: {len(plan.robot.cables)}, {words}",)
 
 
 def _summary(plan: _Plan) -> tuple[str, ...]:

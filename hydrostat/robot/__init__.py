@@ -13,7 +13,7 @@ from hydrostat.robot.pin import Pin
 from hydrostat.robot.read import load_robot
 from hydrostat.robot.risks import find_risks
 from hydrostat.robot.robot import Robot
-from hydrostat.robot.sewn import face_words, sewn_robot
+from hydrostat.robot.sewn import face_words, sewn_robot, sewn_sides
 from hydrostat.robot.sketch import sketch_robot
 from hydrostat.robot.sketch_space import SurfaceSketch, sketch_mesh, sketch_surface
 from hydrostat.robot.winch import Mount, Winch
@@ -51,6 +51,7 @@ __all__ = [
     "robot_text",
     "save_robot",
     "sewn_robot",
+    "sewn_sides",
     "sketch_mesh",
     "sketch_robot",
     "sketch_surface",

@@ -19,6 +19,11 @@ def sewn_robot(robot: Robot) -> Robot:
     return replace(robot, cables=sewn, face=None)
 
 
+def sewn_sides(robot: Robot) -> tuple[str, ...]:
+    """Panels on which the cables of a flat plush robot are sewn: the front where it does not say, or cannot be."""
+    return (robot.face.sides if robot.face else ()) or Face.FRONT.sides
+
+
 def side_name(cable: Cable, side: str) -> str:
     """Such as "left 1 back"; nothing, so that a robot gives it one, where that is longer than a name may be."""
     name = f"{cable.name} {side}"

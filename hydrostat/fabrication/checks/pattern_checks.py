@@ -15,8 +15,8 @@ from hydrostat.fabrication.patches.cutting import MOST_EASE
 from hydrostat.fabrication.patches.skin_holes import NearestOnSkin
 from hydrostat.fabrication.patches.space_pattern import SpacePattern
 from hydrostat.fabrication.patterns.pattern import Pattern
-from hydrostat.fabrication.patterns.shape import Layer, PatternPart
-from hydrostat.robot import Mount, Robot
+from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart
+from hydrostat.robot import Mount, Robot, sewn_sides
 
 SCALE = 0.1  # how much the bar of 100 mm may be too long or too short [mm]
 
@@ -133,29 +133,34 @@ def pattern_checks(
 ) -> tuple[Check, ...]:
     """Holes and scale of the SVG, and whether the DXF shows the same; InputError if it is no drawing in millimetres."""
     seen = SeenSvg(svg)
-    front = seen.circles(PatternPart.PINHOLE, panel="front")
-    return _flat_holes(robot, pattern, front, options), *drawing_checks(seen, SeenDxf(dxf))
+    holes = [
+        _flat_holes(robot, pattern.panel(side), seen.circles(PatternPart.PINHOLE, panel=side), options)
+        for side in sewn_sides(robot)
+    ]
+    return *holes, *drawing_checks(seen, SeenDxf(dxf))
 
 
-def _flat_holes(
-    robot: Robot, pattern: Pattern, circles: Float[np.ndarray, "holes 3"], options: PatternOptions
-) -> Check:
+def _flat_holes(robot: Robot, panel: Panel, circles: Float[np.ndarray, "holes 3"], options: PatternOptions) -> Check:
     """Every point of a cable is where a hole of its own would lie within the hole that is cut."""
-    front = pattern.panel("front")
     worst, count = 0.0, 0
     for cable in robot.cables:
         first = 1 if robot.winch(cable.winch).mount is Mount.WORLD else 0
         for point in cable.points[first:]:
-            place = np.array(front.on_sheet(point))
+            place = np.array(panel.on_sheet(point))
             away = np.linalg.norm(circles[:, :2] - place, axis=1) - (circles[:, 2] - options.pinhole / 2)
             worst = max(worst, float(np.maximum(away, 0.0).min(initial=np.inf)))
             count += 1
     return Check(
-        what=f"pinholes are where the {count} points of the simulated cables are",
+        what=f"pinholes {_on(panel, robot)}are where the {count} points of the simulated cables are",
         measured=f"at most {worst:.3f} mm off",
         allowed=f"{HOLES:g} mm",
         passed=worst <= HOLES,
     )
+
+
+def _on(panel: Panel, robot: Robot) -> str:
+    """Which panel it is, where that has to be said."""
+    return "" if sewn_sides(robot) == ("front",) else f"of the {panel.name} "
 
 
 def patch_checks(robot: Robot, pattern: SpacePattern, svg: bytes, dxf: bytes) -> tuple[Check, ...]:

@@ -31,17 +31,19 @@ def stitch_table(stitches: tuple[CableStitches, ...]) -> Table:
             gap = None if before is None else math.dist(before, stitch.place)
             along, before = along + (gap or 0.0), stitch.place
             name = point_name(stitch.number - 1, last)
-            rows.append((f"C{cable.cable}", cable.winch, name, _through_cloth(stitch), *stitch.place, gap, along))
+            rows.append(
+                (f"C{cable.cable}", cable.winch, cable.panel, name, _through_cloth(stitch), *stitch.place, gap, along)
+            )
     return Table(
         name="stitching",
         title="Stitching order",
         columns=(
-            *text_columns("cable", "winch", "point", "way"),
+            *text_columns("cable", "winch", "panel", "point", "way"),
             *number_columns("x", "y", "from the last point", "from the winch", unit="mm"),
         ),
         rows=tuple(rows),
         notes=(
-            "Out: from inside to outside of the front panel; in: back. Where a cable does not go through the cloth, "
+            "Out: from inside to outside of the panel; in: the way back. Where a cable does not go through the cloth, "
             "what holds it there is tied to the cloth with thread.",
             "x and y count from the middle of the drawing, seen from the front.",
         ),

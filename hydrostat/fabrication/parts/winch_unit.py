@@ -72,16 +72,21 @@ def _radii(
 
 
 def _layers(spool: Spool, winch: Winch, cables: tuple[int, ...]) -> tuple[str, ...]:
-    """A sentence for each cable that lies in more than one layer."""
-    found = []
+    """A sentence for each cable that lies in more than one layer, or for all of one winch that do so alike."""
+    alike: dict[Groove, list[str]] = {}
     for index, groove in zip(cables, spool.grooves, strict=True):
         if groove.layers > 1:
-            outer = groove.radius + (groove.layers - 1) * spool.cable
-            found.append(
-                f'cable C{index + 1} of winch "{winch.name}" lies in {groove.layers} layers: its radius grows from '
-                f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns take in "
-                f"{100 * (outer / groove.radius - 1):.0f} % more than was simulated (E13)"
-            )
+            alike.setdefault(groove, []).append(f"C{index + 1}")
+    found = []
+    for groove, names in alike.items():
+        outer = groove.radius + (groove.layers - 1) * spool.cable
+        who = f"cable {names[0]}" if len(names) == 1 else f"cables {', '.join(names)}"
+        lies, radius = ("lies", "its radius") if len(names) == 1 else ("lie", "their radius")
+        found.append(
+            f'{who} of winch "{winch.name}" {lies} in {groove.layers} layers: {radius} grows from '
+            f"{groove.radius:.1f} to {outer:.1f} mm, so the last turns take in "
+            f"{100 * (outer / groove.radius - 1):.0f} % more than was simulated (E13)"
+        )
     return tuple(found)
 
 

@@ -137,14 +137,14 @@ class PanelLabels:
         """All that was written so far."""
         return tuple(self._shapes)
 
-    def cable_numbers(self, robot: Robot) -> None:
-        """C1, C2, ... beside the stopper of each cable and where it leaves its winch."""
-        for number, cable in enumerate(robot.cables, start=1):
+    def cable_numbers(self, robot: Robot, *, first: int = 1) -> None:
+        """C1, C2, ... from that of the first on, beside the stopper of each cable and where it leaves its winch."""
+        for number, cable in enumerate(robot.cables, start=first):
             self.cable_name(number, place(cable.points[-1]))
-        for number, cable in enumerate(robot.cables, start=1):
-            first = LineString([place(point) for point in cable.points[:2]]).intersection(self._seam)
-            if not first.is_empty:
-                near = first.interpolate(min(_ALONG, first.length / 2))
+        for number, cable in enumerate(robot.cables, start=first):
+            begin = LineString([place(point) for point in cable.points[:2]]).intersection(self._seam)
+            if not begin.is_empty:
+                near = begin.interpolate(min(_ALONG, begin.length / 2))
                 self._beside(f"C{number}", (near.x, near.y), gap=2.5)
 
     def cable_name(self, cable: int, at: Place) -> None:
@@ -166,6 +166,7 @@ class PanelLabels:
 
     def figure(self, text: str, at: Place) -> None:
         """A small number beside a hole; none where there is no room."""
+        at = (-at[0], at[1]) if self._mirrored else at
         letters = Lettering(text, _FIGURE)
         middle = self._space.clear_beside(at, letters.width, _FIGURE, gap=_FIGURE_GAP)
         if middle is not None:

@@ -1,6 +1,6 @@
 """`Opening`: the slit in the back with its zipper, through which winches are reached (R10)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import Pinhole
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place, Shape, trace
-from hydrostat.robot import Robot
+from hydrostat.robot import Point, Robot
 
 ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
 """Lengths in which zippers are sold [mm]; any can be cut shorter."""
@@ -60,22 +60,42 @@ class Opening:
         )
 
 
-def find_opening(robot: Robot, seam: Polygon, pinholes: tuple[Pinhole, ...], options: PatternOptions) -> Opening | None:
+def find_opening(
+    robot: Robot,
+    seam: Polygon,
+    pinholes: tuple[Pinhole, ...],
+    options: PatternOptions,
+    *,
+    runs: Iterable[Sequence[Point]] = (),
+) -> Opening | None:
     """The opening along the row of winches and `opening_reach` beyond, as long as a zipper that is sold.
 
-    Turned and shifted if need be, so as to stay inside the seam and off the pinholes of its panel. None without a winch
-    in the body, without reach, or without room.
+    Turned and shifted if need be, so as to stay inside the seam, off the pinholes of its panel and, if that leaves room
+    for a hand, off the `runs` of its cables [m]. None without a winch in the body, without reach, or without room.
     """
-    return opening_at([(1e3 * winch.at[0], 1e3 * winch.at[1]) for winch in robot.winches], seam, pinholes, options)
+    places = [(1e3 * winch.at[0], 1e3 * winch.at[1]) for winch in robot.winches]
+    ways = [LineString([(1e3 * point[0], 1e3 * point[1]) for point in run]) for run in runs]
+    if ways:
+        beside = seam.difference(shapely.union_all(ways).buffer(_PLACKET))
+        found = opening_at(places, seam, pinholes, options, room=beside)
+        if found is not None and found.slit.length > ZIPPERS[0] - 1e-6:
+            return found
+    return opening_at(places, seam, pinholes, options)
 
 
 def opening_at(
-    places: Iterable[Place], seam: Polygon, pinholes: tuple[Pinhole, ...], options: PatternOptions
+    places: Iterable[Place],
+    seam: Polygon,
+    pinholes: tuple[Pinhole, ...],
+    options: PatternOptions,
+    *,
+    room: BaseGeometry | None = None,
 ) -> Opening | None:
-    """The opening over winches at these places on a panel [mm]; None as for `find_opening`."""
+    """The opening over winches at these places on a panel [mm], within `room` if given; None as for `find_opening`."""
     reach = options.opening_reach
     winches = np.array([place for place in places if seam.contains(shapely.Point(place))])
-    room: BaseGeometry = seam.buffer(-reach / 3)
+    inner: BaseGeometry = seam.buffer(-reach / 3)
+    narrow, room = room is not None or bool(pinholes), inner if room is None else inner.intersection(room)
     if not len(winches) or not reach or room.is_empty:
         return None
     centre = shapely.shortest_line(room, shapely.Point(winches.mean(axis=0))).interpolate(0.0)
@@ -84,7 +104,7 @@ def opening_at(
     row = np.linalg.svd(winches - winches.mean(axis=0))[2][0] if len(winches) > 1 else np.array([1.0, 0.0])
     wanted = 2 * (np.abs((winches - winches.mean(axis=0)) @ row).max() + reach)
     slits = []
-    for shift in _SHIFTS if off else _SHIFTS[:1]:
+    for shift in _SHIFTS if narrow else _SHIFTS[:1]:
         for angle in _TURNS:
             direction = row @ _turn(np.radians(angle))
             middle = np.array(centre.coords[0]) + shift * np.array([-direction[1], direction[0]])

@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from shapely import LineString
+
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.gusset import gusset_panels, stuffed_thickness, wants_gusset
@@ -14,7 +16,7 @@ from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, Patter
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
 from hydrostat.fabrication.patterns.skin import Notch, Skin, find_notches, flat_skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, cable_stitches
-from hydrostat.robot import Robot
+from hydrostat.robot import Face, Robot, sewn_sides
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,35 +59,50 @@ class _PatternDraft:
     stitches: tuple[CableStitches, ...]
     opening: Opening | None
 
+    def sewn(self, panel: str) -> tuple[CableStitches, ...]:
+        """Stitches on one panel, of each cable of the robot or of none."""
+        return tuple(stitches for stitches in self.stitches if stitches.panel == panel)
+
+    def label_cables(self, labels: PanelLabels, panel: str) -> None:
+        """Numbers of the cables that are sewn on a panel."""
+        sewn = self.sewn(panel)
+        if sewn:
+            labels.cable_numbers(self.robot, first=sewn[0].cable)
+
 
 def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pattern:
     """Front and back of a flat plush robot, and a gusset for a thick one, to be sewn, turned and stuffed (R10).
 
     All panels show the right side of the cloth: the front as drawn, the back as seen from behind. Cables run along the
-    front panel, stitched in and out of it at their points, so the pinholes are there. The zipper is in the back. Raises
-    InputError: the body is not flat, or a hole or an edge cannot be cut as drawn (unless `force`).
+    panel that the robot says, or along both, stitched in and out of it at their points, so the pinholes are there. The
+    zipper is in the back, beside them. Raises InputError: the body is not flat, or a hole or an edge cannot be cut as
+    drawn, or cables in the middle (unless `force`).
     """
     options = options or PatternOptions()
     skin = flat_skin(robot.body, options)
     holes = find_pinholes(robot, skin.seam, options)
-    problems = skin.problems + pinhole_problems(holes, skin.seam, options)
+    problems = skin.problems + pinhole_problems(holes, skin.seam, options) + _unheld(robot)
     if problems and not options.force:
         first, *others = problems
         raise InputError(f"{first} (and {len(others)} more such)" if others else first)
+    sides = sewn_sides(robot)
+    behind = options.back_pinholes or "back" in sides
+    runs = [cable.points for cable in robot.cables] if "back" in sides else []
     draft = _PatternDraft(
         robot=robot,
         options=options,
         skin=skin,
         notches=find_notches(skin),
         stitches=cable_stitches(robot, skin.seam),
-        opening=find_opening(robot, skin.seam, holes if options.back_pinholes else (), options),
+        opening=find_opening(robot, skin.seam, holes if behind else (), options, runs=runs),
     )
     edges = (*trace(skin.cut, Layer.CUT, PatternPart.EDGE), *trace(skin.slits, Layer.CUT, PatternPart.SLIT))
     cloth = (*edges, *seam_marks(skin, draft.notches), *winch_marks(robot, skin.seam))
     pinholes = tuple(hole.circle for hole in holes)
     markers = marker_marks(robot) if options.marker_names else ()
-    front = (*cloth, *pinholes, *cable_marks(robot, draft.stitches, skin.seam, holes), *markers)
-    back = (*cloth, *(pinholes if options.back_pinholes else ()))
+    marks = {side: cable_marks(robot, draft.sewn(side), skin.seam, holes) for side in sides}
+    front = (*cloth, *(pinholes if "front" in sides else ()), *marks.get("front", ()), *markers)
+    back = (*cloth, *(pinholes if behind else ()), *marks.get("back", ()))
     thickness = 1e3 * (robot.body.thickness or 0.0)
     wanted = wants_gusset(skin.seam, thickness, options)
     gusset = gusset_panels(robot.name, skin, draft.notches, thickness, options) if wanted else ()
@@ -107,10 +124,10 @@ def _front(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     """The front panel about the robot's origin, with its labels."""
     labels = PanelLabels(draft.skin.seam, shapes, mirrored=False)
     labels.notch_names([(notch.name, notch.stroke) for notch in draft.notches], draft.skin.cut)
-    labels.cable_numbers(draft.robot)
+    draft.label_cables(labels, "front")
     labels.winch_names(draft.robot)
     labels.marker_names(draft.robot, draft.options)
-    labels.hole_numbers(draft.stitches)
+    labels.hole_numbers(draft.sewn("front"))
     labels.title(f"{draft.robot.name} - front")
     labels.grain()
     return Panel(name="front", origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
@@ -124,7 +141,9 @@ def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
     labels.notch_names([(notch.name, notch.stroke) for notch in draft.notches], draft.skin.cut)
     if draft.opening:
         labels.opening(draft.opening)
+    draft.label_cables(labels, "back")
     labels.winch_names(draft.robot)
+    labels.hole_numbers(draft.sewn("back"))
     labels.title(f"{draft.robot.name} - back")
     labels.grain()
     return Panel(name="back", origin=(0.0, 0.0), mirrored=True, shapes=(*mirror, *labels.shapes()))
@@ -139,17 +158,43 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
             f"without a gusset the stuffed body is about {stuffed:.0f} mm thick, but it was simulated with "
             f"{thickness:g} mm: it will be softer; sew it with the gusset, or simulate it thinner"
         )
-    if draft.robot.cables:
+    if draft.robot.cables and len(sewn_sides(draft.robot)) == 1:
+        (panel,) = sewn_sides(draft.robot)
         warnings.append(
-            "the cables are sewn on the front alone, so they also curl the body towards it (`hydrostat check --filled` "
-            "tells how far): play it lying on a table, or sew each cable on the back too and tie both to one spool"
+            f"the cables are sewn on the {panel} alone, so they also curl the body towards it (`hydrostat check` tells "
+            'how far): with face = "pairs" before [body] in robot.toml each is drawn and sewn on both panels'
         )
+    warnings += _over_zipper(draft)
     warnings += [
         f"the stopper of cable {sewn.cable} sits inside: adjust it through the opening"
         for sewn in draft.stitches
         if sewn.stopper is Side.INSIDE
     ]
     return tuple(warnings)
+
+
+def _unheld(robot: Robot) -> tuple[str, ...]:
+    """A sentence if cables shall run where no cloth holds them."""
+    if robot.face is not Face.MIDDLE or not robot.cables:
+        return ()
+    return (
+        'cables in the middle are held by nothing in loose filling: set face = "pairs", which is as flat, or cast it '
+        "(--method foam)",
+    )
+
+
+def _over_zipper(draft: _PatternDraft) -> list[str]:
+    """A sentence for all cables of the back that the zipper crosses."""
+    if draft.opening is None:
+        return []
+    crossed = [
+        f"C{sewn.cable}"
+        for sewn in draft.sewn("back")
+        if LineString([stitch.place for stitch in sewn.stitches]).intersects(draft.opening.slit)
+    ]
+    if not crossed:
+        return []
+    return [f"the zipper crosses {', '.join(crossed)} on the back: lead them inside there, under its tape"]
 
 
 _GAP = 10.0  # round the plate [mm]

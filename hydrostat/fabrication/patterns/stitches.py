@@ -9,11 +9,11 @@ import shapely
 from shapely import Polygon
 
 from hydrostat.fabrication.patterns.shape import Place
-from hydrostat.robot import Cable, Mount, Robot
+from hydrostat.robot import Cable, Mount, Robot, sewn_sides
 
 
 class Side(StrEnum):
-    """Side of the cloth of the front panel."""
+    """Side of the cloth of a panel."""
 
     INSIDE = "inside"
     OUTSIDE = "outside"
@@ -40,10 +40,11 @@ class Stitch:
 class CableStitches:
     """All stitches of a cable, from its winch to its stopper."""
 
-    cable: int  # its number, 1 for the first cable of the robot
+    cable: int  # its number, 1 for the first cable of the robot as it is sewn (`sewn_robot`)
     winch: str  # name of its winch
     begins: Side  # the side on which it comes from its winch
     stitches: tuple[Stitch, ...]  # one for each point of the cable
+    panel: str = "front"  # name of the panel on which it is sewn
 
     @property
     def passes(self) -> tuple[Stitch, ...]:
@@ -59,6 +60,8 @@ class CableStitches:
 def cable_stitches(robot: Robot, seam: Polygon) -> tuple[CableStitches, ...]:
     """Sew each cable: a running stitch through its points that ends outside, where its stopper can be adjusted.
 
+    In pairs all are sewn on the front, and then all on the back.
+
     The winch sits inside, so its cables begin there; a sheath lies inside too. A bare stretch goes through the cloth at
     each of its points. Where that would end on the wrong side, it stays inside up to its second point: its beginning
     is held there by the winch or by the end of the sheath.
@@ -66,10 +69,11 @@ def cable_stitches(robot: Robot, seam: Polygon) -> tuple[CableStitches, ...]:
     A cable whose winch stands beside the body comes over the cloth, or through the seam, whichever ends outside; a
     sheath that begins at such a winch lies outside.
     """
-    return tuple(_stitched(robot, number, cable, seam) for number, cable in enumerate(robot.cables, start=1))
+    ways = [(panel, cable) for panel in sewn_sides(robot) for cable in robot.cables]
+    return tuple(_stitched(robot, number, cable, seam, panel) for number, (panel, cable) in enumerate(ways, start=1))
 
 
-def _stitched(robot: Robot, number: int, cable: Cable, seam: Polygon) -> CableStitches:
+def _stitched(robot: Robot, number: int, cable: Cable, seam: Polygon, panel: str) -> CableStitches:
     places = [(1e3 * point[0], 1e3 * point[1]) for point in cable.points]
     world = robot.winch(cable.winch).mount is Mount.WORLD
     beside = world and not seam.intersects(shapely.Point(places[0]))
@@ -92,7 +96,7 @@ def _stitched(robot: Robot, number: int, cable: Cable, seam: Polygon) -> CableSt
     for index, (at, through) in enumerate(zip(places, passes, strict=True)):
         side = side.other if through else side
         stitches.append(Stitch(number=index + 1, place=at, passes=through, after=side))
-    return CableStitches(cable=number, winch=cable.winch, begins=begins, stitches=tuple(stitches))
+    return CableStitches(cable=number, winch=cable.winch, begins=begins, stitches=tuple(stitches), panel=panel)
 
 
 def runs_of(cable: Cable) -> Iterator[tuple[bool, list[int]]]:

@@ -51,10 +51,14 @@ class CableRun:
     solid: Sequence[bool]  # which of its segments run on the outside, or in front
     sheathed: Sequence[bool]  # which of them run in a tube
     holes: Sequence[bool]  # at which points it goes through the skin or is held by it
+    twin: int | None = None  # number of the cable behind it, on the other panel
 
 
 def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:
-    """A flat body from the front, at most so high [mm]; dashed runs inside the cloth. Without stitches it is cast."""
+    """A flat body from the front, at most so high [mm]; dashed runs inside the cloth. Without stitches it is cast.
+
+    Of pairs those in front are drawn, with the numbers of both: those behind run at the same places.
+    """
     rings = [1e3 * ring for ring in flat_rings(robot)]
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
@@ -66,7 +70,10 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
-    runs = [_stitched(robot, sewn, frame) for sewn in stitches] or [
+    near = [sewn for sewn in stitches if sewn.panel == stitches[0].panel]
+    behind = [sewn.cable for sewn in stitches if sewn.panel != stitches[0].panel]
+    twins: Sequence[int | None] = behind or [None] * len(near)
+    runs = [_stitched(robot, sewn, frame, twin) for sewn, twin in zip(near, twins, strict=True)] or [
         _within(robot, index, frame) for index in range(len(robot.cables))
     ]
     _put_runs(canvas, labels, runs, [frame.on(1e3 * np.array(winch.at)) for winch in robot.winches])
@@ -119,12 +126,12 @@ def _put_pane(canvas: Canvas, robot: Robot, pane: _Pane, room: Box) -> None:
     _put_runs(canvas, labels, runs, [frame.on(stand) for stand in pane.winches])
 
 
-def _stitched(robot: Robot, sewn: CableStitches, frame: CanvasFrame) -> CableRun:
+def _stitched(robot: Robot, sewn: CableStitches, frame: CanvasFrame, twin: int | None) -> CableRun:
     """A cable that is sewn through cloth."""
     sides = [stitch.after is Side.OUTSIDE for stitch in sewn.stitches[:-1]]
     cable = robot.cables[sewn.cable - 1]
     holes = [stitch.passes for stitch in sewn.stitches]
-    return CableRun(sewn.cable, frame.way(1e3 * np.array(cable.points)), sides, (~cable.bare).tolist(), holes)
+    return CableRun(sewn.cable, frame.way(1e3 * np.array(cable.points)), sides, (~cable.bare).tolist(), holes, twin)
 
 
 def _within(robot: Robot, index: int, frame: CanvasFrame) -> CableRun:
@@ -160,7 +167,7 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
         labels.take_box(box_round(run.spots[-1], 1.4))
     _put_winches(canvas, labels, stands)
     for run in runs:
-        words = f"C{run.cable}"
+        words = f"C{run.cable}" if run.twin is None else f"C{run.cable} C{run.twin}"
         middle = labels.beside(run.spots[-1], text_size(words, 9.0), gap=1.7)
         if middle is not None:
             canvas.text(middle, words, size=9.0, bold=True, halo=True)

@@ -40,8 +40,19 @@ def plush_steps(given: SheetInput) -> tuple[AssemblyStep, ...]:
             "Close and calibrate" if cables else "Close it",
             10 + 5 * cables,
             ("Close the zipper, lead the wires out at its end, then calibrate. " if cables else "Close the zipper. ")
+            + _matched(given)
             + held_text(given.robot),
         ),
+    )
+
+
+def _matched(given: SheetInput) -> str:
+    """How the two of a pair are set."""
+    if not given.pairs:
+        return ""
+    return (
+        f"Set the two of a pair (C1 with C{given.pairs + 1}, and so on) equally tight: a limb leans to the tighter "
+        "one. "
     )
 
 
@@ -65,7 +76,6 @@ def _cables(given: SheetInput) -> tuple[AssemblyStep, ...]:
     cables = len(given.robot.cables)
     tubes = sum(len(cable.sheathed) for cable in given.robot.cables)
     sheaths = "Tie sheaths to the inside of the cloth at both ends, the line in them. " if tubes else ""
-    all_of_them = "C1" if cables == 1 else f"C1 to C{cables}"
     grommets = " Grommets are optional: sew one behind a hole that frays." if _grommets(given) else ""
     return (
         AssemblyStep(
@@ -78,11 +88,28 @@ def _cables(given: SheetInput) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Stitch the cables",
             10 * cables,
-            f"Lay {'the front panel' if _flat(given) else 'each patch'} flat, right side up. Take {all_of_them} in "
-            "order (lists/stitching.csv). Begin at the winch and follow the numbers of the map: solid runs "
+            f"{_laid(given)} (lists/stitching.csv). Begin at the winch and follow the numbers of the map: solid runs "
             f"outside, dashed inside. {sheaths}End outside; put the stopper on loosely behind the last hole.{grommets}",
         ),
     )
+
+
+def _laid(given: SheetInput) -> str:
+    """What is laid flat, and which cables are sewn on it in which order."""
+    cables = len(given.robot.cables)
+    if given.pairs:
+        return (
+            f"Lay the front panel flat, right side up, and take {_row(1, given.pairs)} in order. Then the back panel, "
+            f"as its marks show: {_row(given.pairs + 1, cables)}, each behind its twin"
+        )
+    panel = given.panels[0] if given.panels else "front"
+    what = f"the {panel} panel" if _flat(given) else "each patch"
+    return f"Lay {what} flat, right side up. Take {_row(1, cables)} in order"
+
+
+def _row(first: int, last: int) -> str:
+    """C1; C1 to C6."""
+    return f"C{first}" if first == last else f"C{first} to C{last}"
 
 
 def _flat(given: SheetInput) -> bool:

@@ -33,6 +33,7 @@ def sheet_facts(given: SheetInput, *, letters: str = "") -> Facts:
         "paper": given.paper.value,
         "method": given.method.value,
         "title": shortened(given.robot.name, _NAME),
+        "pairs": given.pairs,
         "flat": given.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
         "facts": _about(given, steps),
@@ -81,7 +82,8 @@ def _about(given: SheetInput, steps: Iterable[Iterable[AssemblyStep]]) -> list[s
     busy = sum(step.minutes for page in steps for step in page)
     return [
         " × ".join(f"{side:.0f}" for side in sides) + " mm",
-        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}",
+        f"{counted(len(robot.winches), 'winch')}, {counted(len(robot.cables), 'cable')}"
+        + (f" in {counted(given.pairs, 'pair')}" if given.pairs else ""),
         f"about {minutes_text(busy)} of work",
         *cost_text(given),
     ]

@@ -35,6 +35,16 @@ class SheetInput:
     warnings: tuple[str, ...] = ()  # what to mind
 
     @property
+    def panels(self) -> tuple[str, ...]:
+        """Panels of a flat plush robot that cables are sewn on, by their names."""
+        return tuple(dict.fromkeys(sewn.panel for sewn in self.stitches))
+
+    @property
+    def pairs(self) -> int:
+        """How many cables have a twin on the other panel; 0 where cables are sewn on one alone."""
+        return len(self.robot.cables) // 2 if len(self.panels) > 1 else 0
+
+    @property
     def print_hours(self) -> float:
         """About how long one printer is busy with all parts.
 
