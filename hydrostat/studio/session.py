@@ -181,8 +181,10 @@ class Session:
 
     @property
     def legend(self) -> Scale | None:
-        """What the colours of the body mean; None for plain felt."""
-        return scale(self.document.robot, self.colouring) if self.document.is_open else None
+        """What the colours of the body mean; None for plain felt, and for muscles where none move the body."""
+        if not self.document.is_open or (self.colouring is Colouring.MUSCLES and self.current.shape().muscles is None):
+            return None
+        return scale(self.document.robot, self.colouring)
 
     def colour_by(self, colouring: Colouring | str) -> None:
         """Choose what the colours of the body mean (InputError: there is no colouring of this name)."""
@@ -220,7 +222,7 @@ class Session:
         if len(shape.nodes) != len(robot.body.mesh.nodes):
             shape = rest_shape(robot)  # the body was changed at this very moment; the next one is right
         head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}
-        return self._show.moment(robot, shape, things, head, node_values(robot, shape.nodes, self.colouring))
+        return self._show.moment(robot, shape, things, head, node_values(robot, shape, self.colouring))
 
     def left(self, screen: str) -> None:
         """Let go for a screen that is gone."""
@@ -228,6 +230,7 @@ class Session:
 
     def close(self) -> None:
         """End all work; what is not saved is there next time."""
+        self.poser.proposals.close()
         self.driver.leave()
         self.driver.motors.link.close()
         self.jobs.close()

@@ -39,6 +39,12 @@ class Fibres:
         corners = nodes[self.stencils]
         return np.stack([np.einsum("fc,fcd->fd", weights, corners) for weights in (self.start, self.end)], axis=1)
 
+    def around_nodes(self, tensions: Vector, count: int) -> Vector:
+        """Mean tension of the fibres that depend on each of so many nodes [N]; 0 for a node without any."""
+        corners = self.stencils.shape[1]
+        total = np.bincount(self.stencils.ravel(), np.repeat(tensions, corners), count)
+        return total / np.maximum(np.bincount(self.stencils.ravel(), minlength=count), 1)
+
     def energy(self) -> FibreEnergy:
         """The physics of the fibres; control f is the tension of fibre f."""
         return FibreEnergy(stencils=self.stencils, weights=self.end - self.start)

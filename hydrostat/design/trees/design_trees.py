@@ -22,7 +22,7 @@ from hydrostat.design.muscles.activation import (
 )
 from hydrostat.design.network import DesignStage, Network, TreeTrace, rms_error
 from hydrostat.design.polyline import Route, length, sharpest_turn
-from hydrostat.design.progress import Better, Progress, Watch, unseen
+from hydrostat.design.progress import Better, Progress, Watch, silent, unseen
 from hydrostat.design.region import body_region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
@@ -51,6 +51,18 @@ def design_trees(
         HydrostatError: no network can be built from the muscles that were found.
     """
     return _TreeDesign(robot, request, progress, watch, body or BodyPhysics(robot)).run()
+
+
+def propose_trees(
+    robot: Robot, request: DesignRequest, activations: Sequence[Activation], *, body: BodyPhysics | None = None
+) -> Robot | None:
+    """The best winch trees by their score alone, of muscles that are known already (X1); None if none can be built.
+
+    No pose is solved, so it takes a fraction of a second; what the network reaches is for others to find out. `body` is
+    the physics of the body, if it is made already. Raises InputError as `design_trees` does.
+    """
+    found = _TreeDesign(robot, request, silent, unseen, body or BodyPhysics(robot)).proposed(tuple(activations))
+    return None if found is None else found[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +141,11 @@ class _TreeDesign:
             tried=len(built),
             seconds=time.process_time() - began,
         )
+
+    def proposed(self, activations: tuple[Activation, ...]) -> tuple["_TreePlan", Robot] | None:
+        """The first of the best plans that can be built, with its robot; none is judged by the pose that it reaches."""
+        robots = ((plan, self._build(plan.trees, plan.chosen)) for plan in _shortlist(self._plans(activations)))
+        return next(((plan, robot) for plan, robot in robots if robot is not None), None)
 
     @property
     def _uncertainty(self) -> Uncertainty:

@@ -11,7 +11,12 @@ RAMP = palette.TENSION
 
 AXES = {"off": None, "x": "x", "y": "y", "z": "z"}
 
-COLOURINGS = {Colouring.FELT: "Felt", Colouring.STRAIN: "Strain", Colouring.STRESS: "Stress"}
+COLOURINGS = {
+    Colouring.FELT: "Felt",
+    Colouring.STRAIN: "Strain",
+    Colouring.STRESS: "Stress",
+    Colouring.MUSCLES: "Muscles",
+}
 
 
 def view_bar(page: WindowPage) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.muscles.free_posing import FreePosing
 from hydrostat.robot import Robot
 from hydrostat.studio.posing.held import Anchored, Held
@@ -26,6 +27,7 @@ class Mover(ABC):
 
 
 PATIENCE = 120  # so many updates are made towards targets that stay where they are
+FAINT = 1e-3  # a share of their strength with which muscles count as at rest: they are not shown as the strongest
 MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
 
 
@@ -38,6 +40,11 @@ class MuscleMover(Mover):
         self._posing, self._anchored = FreePosing(robot), Anchored(robot.body.mesh)
         self._held: Mapping[str, Held] = {}
         self._updates = 0
+
+    @property
+    def pulls(self) -> tuple[Nodes, Vector]:
+        """Where the body is [m], and the tension of the muscle on each edge of its mesh [N]."""
+        return self._posing.nodes, self._posing.tensions
 
     def rest(self) -> RobotShape:
         """Back to rest at once."""
@@ -54,7 +61,9 @@ class MuscleMover(Mover):
         return self._shape(held, more), more
 
     def _shape(self, held: Mapping[str, Held], more: bool) -> RobotShape:
-        nodes, robot = self._posing.nodes, self.robot
+        nodes, robot, tensions = self._posing.nodes, self.robot, self._posing.tensions
+        pulls = self._posing.fibres.around_nodes(tensions, len(nodes))
+        most = max(float(pulls.max()), FAINT * self._posing.strength)
         errors = self._anchored.errors(held, nodes)
         far = not more and max(errors.values(), default=0.0) > MISSED * robot.body.mesh.size
         return RobotShape(
@@ -62,5 +71,6 @@ class MuscleMover(Mover):
             tensions=np.zeros(len(robot.cables)),
             contractions=np.zeros(len(robot.winches)),
             errors=errors,
+            muscles=pulls / most,
             notes=("as far as muscles bring this body",) if far else (),
         )

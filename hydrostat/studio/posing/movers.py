@@ -22,6 +22,11 @@ class Movers:
         self._muscles: MuscleMover | None = None
         self._cables: CableMover | None = None
 
+    @property
+    def muscles(self) -> MuscleMover | None:
+        """The one that moves by muscles; None if it is not made yet."""
+        return self._muscles
+
     def ready(self, robot: Robot, mode: Mode) -> bool:
         """Tell whether there is a mover that fits, so that none has to be made."""
         found = self._muscles if mode is Mode.MUSCLES else self._cables

@@ -14,9 +14,11 @@ from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.posing.cable_proposals import CableProposals
 from hydrostat.studio.posing.held import Anchored, Held, Mode, Now, Wish, renamed_markers, with_network_of
 from hydrostat.studio.posing.movers import Movers, same_body
 from hydrostat.studio.posing.poses import checked_name, held_of, renamed_pose, wishes_after, with_pose, without_pose
+from hydrostat.studio.posing.propose_work import Moment
 from hydrostat.studio.posing.reach import MarkerReach
 from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.stage import Hit, Stage
@@ -48,6 +50,7 @@ class Poser(Stage):
         self._document = document
         self.reach = MarkerReach(document, jobs)  # all that a marker can reach
         self._lock = RLock()
+        self.proposals = CableProposals(document)  # cables for what the muscles do
         self._movers = Movers(document)
         self._now: Now | None = None
         self._done: tuple[Robot, Wish, float] | None = None
@@ -94,7 +97,11 @@ class Poser(Stage):
         cloud = self.reach.cloud(robot)
         if cloud is not None:
             found.append(cloud)
-        found += robot_things(robot, tensions=shape.tensions, scale=limit, chosen=keys)
+        proposed = self.proposals.network(robot) if wish.mode is Mode.MUSCLES else None
+        if proposed is None:
+            found += robot_things(robot, tensions=shape.tensions, scale=limit, chosen=keys)
+        else:
+            found += robot_things(proposed, chosen=keys)
         markers = {marker.name for marker in robot.markers}
         found += [
             Dot(key=f"point:{name}", at=point.at, look=Look.HANDLE, colour=MARKER, chosen=f"point:{name}" in keys)
@@ -253,9 +260,22 @@ class Poser(Stage):
             mover.rest()
         shape, more = mover.update(wish.held)
         self._publish(robot, shape)
+        self._propose(robot, wish)
         if not more:
             self._done = (robot, wish, tension)
         return more or self._fit().wish is not wish
+
+    def _propose(self, robot: Robot, wish: Wish) -> None:
+        """Want cables for what the muscles do just now."""
+        muscles = self._movers.muscles
+        if not self.proposals.on or wish.mode is not Mode.MUSCLES or muscles is None:
+            return
+        if not wish.held:
+            self.proposals.forget()
+            return
+        nodes, tensions = muscles.pulls
+        moment = Moment(held=wish.held, nodes=nodes, tensions=tensions, wishes=self._document.work.wishes)
+        self.proposals.ask(robot, moment)
 
     def _publish(self, robot: Robot, shape: RobotShape) -> None:
         with self._lock:

@@ -1,4 +1,4 @@
-"""`Colouring`: what the body is coloured by: felt, strain or stress."""
+"""`Colouring`: what the body is coloured by: felt, strain, stress, or the muscles that pull."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.robot import Robot
+from hydrostat.studio.view.things import RobotShape
 
 
 class Colouring(StrEnum):
@@ -19,6 +20,7 @@ class Colouring(StrEnum):
     FELT = "felt"
     STRAIN = "strain"
     STRESS = "stress"
+    MUSCLES = "muscles"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,12 +48,16 @@ def scale(robot: Robot, colouring: Colouring) -> Scale | None:
     if colouring is Colouring.STRESS:
         stress = strain * material.young
         return Scale(title="Stress (von Mises)", most=stress, low="0 kPa", high=f"{1e-3 * stress:.3g} kPa")
+    if colouring is Colouring.MUSCLES:
+        return Scale(title="Muscles", most=1.0, low="none", high="strongest")
     return None
 
 
-def node_values(robot: Robot, nodes: Nodes, colouring: Colouring) -> Vector | None:
-    """A value from 0 to 1 for each node at its place [m], as a share of the `scale`; None for plain felt."""
-    legend = scale(robot, colouring)
+def node_values(robot: Robot, shape: RobotShape, colouring: Colouring) -> Vector | None:
+    """A value from 0 to 1 for each node, as a share of the `scale`; None for plain felt, and where no muscle is."""
+    if colouring is Colouring.MUSCLES:
+        return shape.muscles
+    legend, nodes = scale(robot, colouring), shape.nodes
     if legend is None:
         return None
     found = node_strains(robot, nodes) if colouring is Colouring.STRAIN else node_stresses(robot, nodes)

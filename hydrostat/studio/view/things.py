@@ -17,6 +17,7 @@ class RobotShape:
     tensions: Vector  # of each cable [N]
     contractions: Vector  # of each winch [m]
     errors: dict[str, float] = field(default_factory=dict)  # distance of each held marker from its target [m]
+    muscles: Vector | None = None  # how hard they pull around each node, 1 for the hardest; None where none move it
     notes: tuple[str, ...] = ()  # what to mind, a line each: limits that hold, why a solver stopped
 
 

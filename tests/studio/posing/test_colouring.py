@@ -1,12 +1,17 @@
 """Colours of strain and stress. Oracles: closed forms of homogeneous stretch and shear, differences of the energy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics
+from hydrostat.studio.posing.held import Held
+from hydrostat.studio.posing.mover import MuscleMover
 from hydrostat.studio.view.colouring import Colouring, node_strains, node_stresses, node_values, scale
+from hydrostat.studio.view.things import rest_shape
 
 ROBOTS = {2: strip_robot(columns=6, rows=2), 3: box_robot()}
 
@@ -88,11 +93,31 @@ def test_colours_are_shares_of_a_steady_scale() -> None:
     nodes = moved(robot, np.diag([1.2, 1.0]))
     legend = scale(robot, Colouring.STRAIN)
     assert legend is not None
-    values = node_values(robot, nodes, Colouring.STRAIN)
+    values = node_values(robot, replace(rest_shape(robot), nodes=nodes), Colouring.STRAIN)
     assert values == pytest.approx(0.2 / legend.most)
     assert legend.high == f"{100 * legend.most:.3g} %"
-    far = node_values(robot, moved(robot, np.diag([9.0, 1.0])), Colouring.STRESS)
+    wide = replace(rest_shape(robot), nodes=moved(robot, np.diag([9.0, 1.0])))
+    far = node_values(robot, wide, Colouring.STRESS)
     assert far is not None
     assert far.max() == 1.0
-    assert node_values(robot, nodes, Colouring.FELT) is None
+    assert node_values(robot, rest_shape(robot), Colouring.FELT) is None
     assert scale(robot, Colouring.FELT) is None
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_muscles_are_coloured_as_hard_as_they_pull(dim: int) -> None:
+    """The mean over the edges of each node, counted one by one; nothing where no muscle moves the body."""
+    robot = ROBOTS[dim]
+    mover, marker = MuscleMover(robot), robot.markers[0]
+    goal = np.array(marker.at)
+    goal[1] += 0.01
+    held = {marker.name: Held(at=marker.at, target=tuple(goal.tolist()), marker=True)}
+    for _ in range(20):
+        shape, _ = mover.update(held)
+    values = node_values(robot, shape, Colouring.MUSCLES)
+    assert values is not None
+    tensions, edges = mover.pulls[1], robot.body.mesh.edges
+    means = np.array([tensions[(edges == node).any(axis=1)].mean() for node in range(len(values))])
+    assert values == pytest.approx(means / means.max(), abs=1e-12)
+    assert node_values(robot, mover.rest(), Colouring.MUSCLES) == pytest.approx(0.0)
+    assert node_values(robot, rest_shape(robot), Colouring.MUSCLES) is None

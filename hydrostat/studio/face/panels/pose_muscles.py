@@ -1,0 +1,49 @@
+"""`muscles_card`: which muscles pull, and the cables that would do the same (R38, X1)."""
+
+from nicegui import ui
+
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.view.colouring import Colouring
+from hydrostat.units import counted
+
+
+def muscles_card(page: WindowPage) -> None:
+    """Build the switches; with cables there are none."""
+    session, poser, document = page.session, page.session.poser, page.session.document
+    with ui.column().classes("w-full").style("gap: 6px") as room:
+        ui.label("Muscles").classes("studio-section")
+        colours = ui.switch("Show which of them pull").props("dense").style("font-size: 13px").mark("pose-colours")
+        propose = ui.switch("Propose cables as I drag").props("dense").style("font-size: 13px").mark("pose-propose")
+        with ui.element("div").classes("studio-row") as row:
+            words = ui.label().classes("studio-hint studio-figure flex-1").style("min-width: 0").mark("pose-proposed")
+            keep = ui.button("Keep", icon="check", on_click=page.doing(poser.proposals.keep))
+            keep.props("unelevated no-caps size=sm").mark("pose-keep").tooltip("Put these cables into the robot")
+
+    def colour(on: bool) -> None:
+        if on != (session.colouring is Colouring.MUSCLES):
+            page.act(session.colour_by, Colouring.MUSCLES if on else Colouring.FELT)
+
+    def show() -> None:
+        room.set_visibility(poser.mode is Mode.MUSCLES)
+        colours.set_value(session.colouring is Colouring.MUSCLES)
+        propose.set_value(poser.proposals.on)
+        row.set_visibility(poser.proposals.on)
+        words.set_text(_words())
+        found = poser.proposals.network(document.robot)
+        keep.set_visibility(found is not None)
+        keep.set_enabled(found is not None and found.cables != document.robot.cables)
+
+    def _words() -> str:
+        found = poser.proposals.found(document.robot)
+        if found is None:
+            return "Looking for cables" if poser.held else "Hold a point, and drag it."
+        if not found.cables:
+            return f"{found.words[:1].upper()}{found.words[1:]}"
+        off = "" if found.error is None else f", {1e3 * found.error:.1f} mm off"
+        return f"{counted(len(found.winches), 'winch')}, {counted(len(found.cables), 'cable')}{off}"
+
+    colours.on_value_change(lambda event: colour(bool(event.value)))
+    propose.on_value_change(lambda event: page.act(poser.proposals.switch, bool(event.value)))
+    page.on((Topic.THINGS, Topic.ROBOT), show)

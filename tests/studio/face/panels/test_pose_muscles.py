@@ -1,0 +1,60 @@
+"""Switches for muscles in the stage "pose". The oracle is the session behind them."""
+
+import pytest
+from desk import Desk, at_desk, is_shown
+
+from hydrostat.robot import Robot
+from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing.propose_work import Sketched
+from hydrostat.studio.stage import StageName
+from hydrostat.studio.view.colouring import Colouring
+from hydrostat.units import counted
+
+
+def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.POSE)
+        session, poser = desk.session, desk.session.poser
+        monkeypatch.setattr(poser.proposals, "_follow", lambda run: None)  # no process of its own
+        assert not is_shown(desk.one("pose-colours"))
+        poser.set_mode(Mode.MUSCLES)
+        await desk.follow()
+        assert is_shown(desk.one("pose-colours"))
+        await desk.choose("pose-colours", True)
+        assert session.colouring is Colouring.MUSCLES
+        await desk.choose("pose-colours", False)
+        assert session.colouring is Colouring.FELT
+        assert not is_shown(desk.one("pose-proposed"))
+        await desk.choose("pose-propose", True)
+        assert poser.proposals.on
+        assert desk.one("pose-proposed").text == "Hold a point, and drag it."
+        assert not is_shown(desk.one("pose-keep"))
+        robot = desk.robot
+        cables = tuple(cable for cable in robot.cables if cable.winch == robot.winches[0].name)
+        found = Sketched(winches=robot.winches[:1], cables=cables, error=0.0123)
+        poser.proposals._take(poser.proposals._run, robot, found)
+        await desk.follow()
+        assert desk.one("pose-proposed").text == f"1 winch, {counted(len(cables), 'cable')}, 12.3 mm off"
+        await desk.press("pose-keep")
+        assert desk.robot.cables == cables
+        assert not desk.one("pose-keep").enabled
+        await desk.press("Undo")
+        assert desk.robot.cables == robot.cables
+        await desk.choose("pose-propose", False)
+        assert not poser.proposals.on
+
+    at_desk(starfish, act)
+
+
+def test_what_stands_in_the_way_of_cables_is_told(starfish: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.POSE)
+        poser = desk.session.poser
+        monkeypatch.setattr(poser.proposals, "_follow", lambda run: None)
+        poser.set_mode(Mode.MUSCLES)
+        poser.proposals.switch(True)
+        poser.proposals._take(poser.proposals._run, desk.robot, Sketched(words="no cables fit these muscles"))
+        await desk.follow()
+        assert desk.one("pose-proposed").text == "No cables fit these muscles"
+
+    at_desk(starfish, act)
