@@ -65,14 +65,16 @@ BODIES = {
         winches=10, cables=10, constraints=SPACE, example="cupping_hand", more={"two fingers": TWO_FINGERS}
     ),
     "trunk": Body(winches=4, cables=6, constraints=Constraints(clearance=0.003, travel=0.15)),
+    "fish_tail": Body(winches=2, cables=2, constraints=Constraints(clearance=0.003, travel=0.067)),
 }
 """The designs of the thesis with its numbers of winches and cables (N1), the starfish with two winches and with three,
-and two bodies in space.
+and bodies in space.
 
 The poses of the examples in space are what their own networks reach, to the millimetre; `five_poses` is the cupping
 hand with one more of that kind. It keeps its ten winches, so its own network can hardly be beaten. The trunk gets four
 winches of its six, so that its own network is none of the candidates: bear and octopus arm have no winch to spare, and
-the poses of the arm need as much travel. The travel of the trunk's winches is that of its own.
+the poses of the arm need as much travel. The travel of the trunk's winches is that of its own,
+as is the fish tail's.
 """
 
 

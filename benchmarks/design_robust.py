@@ -31,7 +31,19 @@ from hydrostat.simulation import Simulation
 
 METHODS = ("hand", "trees", "exact", "routes")
 
-EVERY = ("starfish", "starfish_3", "robot", "pig", "letter_e", "letter_s", "puppy", "squid", "five_poses", "trunk")
+EVERY = (
+    "starfish",
+    "starfish_3",
+    "robot",
+    "pig",
+    "letter_e",
+    "letter_s",
+    "puppy",
+    "squid",
+    "five_poses",
+    "trunk",
+    "fish_tail",
+)
 
 
 def network(method: str, robot: Robot, body: Body, poses: Sequence[Pose]) -> Robot | None:

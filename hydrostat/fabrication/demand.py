@@ -1,7 +1,7 @@
 """`Demand`: what the poses of a robot ask of its motors and cables."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -36,8 +36,8 @@ class Demand:
 def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = None) -> Demand:
     """Find what the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at full travel.
 
-    Winches are pulled alone too if no pose could be solved. Where cables have friction, contractions are found without
-    it, and loads with it. `progress` is told how many poses are solved, of how many.
+    Winches are pulled alone too if no pose could be solved. Cables with friction come to each pose straight from rest.
+    `progress` is told how many poses are solved, of how many.
     """
     if not robot.cables:
         count = len(robot.winches)
@@ -59,11 +59,6 @@ class _PoseLoads:
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
         self._simulation = Simulation(robot)
-        self._rough = any(cable.friction for cable in robot.cables)
-        cables = tuple(replace(cable, friction=0.0) for cable in robot.cables)
-        self._smooth = self._simulation
-        if self._rough:
-            self._smooth = Simulation(robot.with_network(robot.winches, cables), body=self._simulation.body)
         self.solved: dict[str, SolvedPose] = {}
         self._missed: list[str] = []
         self._far: list[str] = []
@@ -72,10 +67,8 @@ class _PoseLoads:
         """A pose, as near as winches come."""
         name = f'pose "{pose.name}"'
         try:
-            reached = solve_ik(self._smooth, pose, options=_ONCE)
-            taken = reached.pose.contractions
-            solved = self._simulation.solve(taken) if self._rough else reached.pose
-            self.solved[name] = solved.without_factors()
+            reached = solve_ik(self._simulation, pose, options=_ONCE)
+            self.solved[name] = reached.pose.without_factors()
         except (InputError, NotConvergedError) as error:
             self._missed.append(f"{name}: {error}")
             return

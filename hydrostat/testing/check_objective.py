@@ -29,11 +29,12 @@ def check_objective(
     either side. They are tried at several steps and judged by the best, for wrong slopes agree at none.
     Further: shapes, as many rows in every posture, finite numbers, the same answer to the same question, errors that
     are not negative, and none of them above 0 where the residual is zero. An objective is not asked about at a kink,
-    such as a cable that just becomes taut: choose another pose there.
+    such as a cable that just becomes taut: choose another pose there. Where cables rub, every equilibrium is come to
+    straight from rest, so that the slopes are those of going on.
 
     Args:
         objective: what to check.
-        simulation: of a robot without friction.
+        simulation: of a robot; its cables may have friction.
         contractions: the pose [m].
         tolerance: largest relative error of the slopes.
         solver: what the sharp solves leave over, as a fraction of the largest applied force.
@@ -79,7 +80,7 @@ class _ObjectiveCheck:
 
     def posture(self, contractions: Vector) -> None:
         """Another pose has as many rows, all finite, and errors that fit them."""
-        self._values(posture_at(self.simulation, self.simulation.solve(contractions, start=self.pose)))
+        self._values(posture_at(self.simulation, self._solved(contractions)))
 
     def repeats(self) -> None:
         """An answer is the same when asked again, of this term or a new one, whatever was asked in between."""
@@ -131,8 +132,11 @@ class _ObjectiveCheck:
                 raise ConformanceError("errors", f"{name} is {error:.3g} m where the residual is zero")
 
     def _residual(self, contractions: Vector) -> Float[np.ndarray, " rows"]:
-        pose = self.simulation.solve(contractions, start=self.pose)
-        return np.asarray(self.term.residual(posture_at(self.simulation, pose)))
+        return np.asarray(self.term.residual(posture_at(self.simulation, self._solved(contractions))))
+
+    def _solved(self, contractions: Vector) -> SolvedPose:
+        start = None if self.simulation.assembly.has_history else self.pose
+        return self.simulation.solve(contractions, start=start)
 
     def _slopes(self, term: Term) -> np.ndarray:
         return np.asarray(term.slopes(self.at, moves_at(self.simulation, self.pose)))

@@ -1,12 +1,13 @@
 """The conformance suite of objectives can fail. Oracle: a good one, broken on purpose."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from wishes import BENT, FLAT, PLANE
 
+from hydrostat.ik.objectives.marker_goal import MarkerGoal
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Rows, Slopes, Term
 from hydrostat.simulation import Simulation
 from hydrostat.testing import ConformanceError, check_objective
@@ -114,3 +115,14 @@ SLIPS = {
 def test_the_suite_can_fail(slip: type[Wrapped]) -> None:
     with pytest.raises(ConformanceError, match=SLIPS[slip]):
         check_objective(Broken(slip), FLAT, BENT[2])
+
+
+@pytest.mark.slow
+def test_cables_that_rub_are_taken() -> None:
+    """Oracle: differences of whole loading paths, which a slope that is off by 0.01 % does not pass."""
+    robot = FLAT.robot
+    rough = Simulation(replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables)))
+    goal = MarkerGoal(targets={"tip": (0.2, 0.1)})
+    check_objective(goal, rough, BENT[2], postures=1)
+    with pytest.raises(ConformanceError, match="slopes at"):
+        check_objective(Broken(lambda _: SlopeOff(goal.on(rough))), rough, BENT[2], postures=1)

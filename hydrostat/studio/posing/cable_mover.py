@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import HydrostatError, NotConvergedError
 from hydrostat.ik import Closeness, InverseOptions, InverseReason, Limits, PointGoal, Tracker
-from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.simulation import Simulation, SolvedPose, friction_band
 from hydrostat.studio.posing.held import Anchored, Held
 from hydrostat.studio.posing.mover import Mover
 from hydrostat.studio.view.things import RobotShape
@@ -35,13 +35,15 @@ ENDS = {InverseReason.REACHED, InverseReason.OPTIMAL}
 
 
 class CableMover(Mover):
-    """Live inverse kinematics by `hs.Tracker`: each shape is an equilibrium within the limits."""
+    """Live inverse kinematics by `hs.Tracker`: each shape is an equilibrium within the limits.
 
-    def __init__(
-        self, simulation: Simulation, *, tension: float, start: SolvedPose | None = None, notes: tuple[str, ...] = ()
-    ) -> None:
-        """Begin in a pose, or at rest; cables bear at most a tension [N], notes are to be minded all the time."""
-        self.robot, self.tension, self._notes = simulation.robot, tension, notes
+    Where cables rub, the way of the pointer is the way of the winches. Once the body stays, a note tells how far apart
+    loading and unloading leave the markers.
+    """
+
+    def __init__(self, simulation: Simulation, *, tension: float, start: SolvedPose | None = None) -> None:
+        """Begin in a pose, or at rest; cables bear at most a tension [N]."""
+        self.robot, self.tension = simulation.robot, tension
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
         options = replace(simulation.options, tolerance=ROUGH)
         self._rough = Simulation(simulation.robot, options=options, body=simulation.body)
@@ -54,7 +56,7 @@ class CableMover(Mover):
 
     def limited(self, tension: float) -> "CableMover":
         """The same in the same pose with another limit on the tension [N]."""
-        return CableMover(self._simulation, tension=tension, start=self._pose, notes=self._notes)
+        return CableMover(self._simulation, tension=tension, start=self._pose)
 
     def rest(self) -> RobotShape:
         """Back to rest at once."""
@@ -92,12 +94,25 @@ class CableMover(Mover):
         if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
             stopped = reached.reason is not InverseReason.ITERATION_LIMIT
             notes = (*notes, str(reached.reason if stopped else InverseReason.OPTIMAL))
+        if not more:
+            notes = (*notes, *self._band())
         return self._shape(dict(reached.errors), notes), more
 
     def _calm(self, held: Mapping[str, Held]) -> Closeness:
         """Wish that the rest of the body stays, the more the farther the targets are."""
         error = max(self._anchored.errors(held, self._pose.nodes).values()) / self.robot.body.mesh.size
         return Closeness(pose=self._simulation.rest, of="nodes", weight=min(CALM * error, CALMEST))
+
+    def _band(self) -> tuple[str, ...]:
+        """How far apart friction leaves the markers, in words; nothing without it."""
+        try:
+            band = friction_band(self._simulation, self._pose)
+        except NotConvergedError:
+            return ()
+        if not band:
+            return ()
+        name = max(band, key=lambda own: band[own])
+        return (f"friction: come to from above, markers end up to {1e3 * band[name]:.1f} mm elsewhere ({name})",)
 
     def _begin(self, pose: SolvedPose) -> None:
         self._pose, self._held, self._updates, self._still, self._near = pose, {}, 0, 0, False
@@ -120,5 +135,5 @@ class CableMover(Mover):
             tensions=pose.tensions,
             contractions=pose.contractions,
             errors=errors,
-            notes=(*self._notes, *notes),
+            notes=notes,
         )

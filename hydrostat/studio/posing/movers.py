@@ -1,7 +1,5 @@
 """`Movers`: the mover that fits the robot as it is, made when it is first needed."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from hydrostat.robot import Robot
@@ -10,8 +8,6 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.posing.cable_mover import CableMover
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.posing.mover import Mover, MuscleMover
-
-RUBBING = "posed without friction: with it the pose depends on the way there"
 
 
 class Movers:
@@ -44,19 +40,12 @@ class Movers:
             return self._muscles
         before = self._cables
         if before is None or not self.ready(robot, mode):
-            simulation = self._simulation(robot)
-            notes = (RUBBING,) if _rubs(robot) else ()
-            self._cables = CableMover(simulation, tension=tension, start=_resumed(simulation, before), notes=notes)
+            simulation = self._document.simulation_of(robot)
+            self._cables = CableMover(simulation, tension=tension, start=_resumed(simulation, before))
         elif before.tension != tension:
             self._cables = before.limited(tension)
         assert self._cables is not None
         return self._cables
-
-    def _simulation(self, robot: Robot) -> Simulation:
-        """Physics of the robot; without friction, for with it no contractions belong to a pose."""
-        if _rubs(robot):
-            robot = replace(robot, cables=tuple(replace(cable, friction=0.0) for cable in robot.cables))
-        return self._document.simulation_of(robot)
 
 
 def same_body(first: Robot, second: Robot) -> bool:
@@ -72,8 +61,7 @@ def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
         return False
     if (first.pins, first.gravity) != (second.pins, second.gravity):
         return False
-    rubless = tuple(replace(cable, friction=0.0) for cable in second.cables)
-    return mode is Mode.MUSCLES or (first.winches == second.winches and first.cables in (second.cables, rubless))
+    return mode is Mode.MUSCLES or (first.winches, first.cables) == (second.winches, second.cables)
 
 
 def _resumed(simulation: Simulation, before: CableMover | None) -> SolvedPose | None:
@@ -85,7 +73,3 @@ def _resumed(simulation: Simulation, before: CableMover | None) -> SolvedPose | 
     wanted = np.array([np.clip(taken.get(winch.name, 0.0), -winch.release, winch.travel) for winch in robot.winches])
     pose = simulation.solve(wanted, strict=False)
     return pose if pose.result.converged and pose.result.stable else None
-
-
-def _rubs(robot: Robot) -> bool:
-    return any(cable.friction for cable in robot.cables)

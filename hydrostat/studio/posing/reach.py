@@ -1,6 +1,6 @@
 """`MarkerReach`: all that a marker can reach, as a cloud that grows while it is found."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil, log2
 
 import numpy as np
@@ -25,14 +25,15 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
     """How many of so many poses can be held, for contractions spread evenly over what all winches can do.
 
     The report is told where the marker is, a few places (points, dim) [m] at a time. Poses that do not converge, are
-    not stable or ask a cable for more than its limit [N] are left out.
+    not stable or ask a cable for more than its limit [N] are left out. Where cables rub, each is come to from rest.
     """
     simulation = Simulation(robot)
     last, held, places = simulation.rest, 0, []
+    rubs = simulation.assembly.has_history  # the way counts there
     for index, contractions in enumerate(spread(robot, count)):
         report.progress("trying poses", index, count)
         try:
-            pose = simulation.solve(contractions, start=last, strict=False)
+            pose = simulation.solve(contractions, start=None if rubs else last, strict=False)
         except HydrostatError:
             continue
         if pose.result.converged and pose.result.stable and pose.tensions.max(initial=0.0) <= tension:
@@ -120,14 +121,13 @@ class MarkerReach:
             raise InputError(f'there is no marker "{marker}"; choose one')
         if not robot.cables:
             raise InputError("this robot has no cables yet; find some in Design, or place them in Edit")
-        free = replace(robot, cables=tuple(replace(cable, friction=0.0) for cable in robot.cables))
-        before, search = self._search, _ReachSearch(free, marker, tension)
+        before, search = self._search, _ReachSearch(robot, marker, tension)
         self._search = search  # work may tell something, or be over, before it is said to have begun
         try:
             self._jobs.start(
                 f"Reach of {marker}",
                 sweep,
-                free,
+                robot,
                 marker,
                 tension,
                 count,

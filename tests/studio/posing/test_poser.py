@@ -216,14 +216,28 @@ def test_an_edited_robot_keeps_its_pose(starfish: Robot, document: Document, pos
     assert np.abs(poser.shape().nodes - before.nodes).max() < 1e-3
 
 
-def test_rubbing_cables_are_posed_as_if_they_did_not(starfish: Robot, document: Document, poser: Poser) -> None:
+@pytest.mark.slow
+def test_rubbing_cables_are_posed_as_they_rub_and_the_band_is_told(
+    starfish: Robot, document: Document, poser: Poser
+) -> None:
+    """Oracles: inverse kinematics of the robot that rubs, and `friction_band`, which is nothing without friction."""
     cables = tuple(replace(cable, friction=0.2) for cable in starfish.cables)
     document.change("friction", robot=replace(starfish, cables=cables))
     poser.show_pose("wave")
     settle(poser)
-    assert any("friction" in note for note in poser.shape().notes)
-    best = solve_ik(Simulation(starfish), starfish.poses["wave"]).errors
-    assert max(poser.shape().errors.values()) < max(best.values()) + 1e-3
+    simulation = Simulation(document.robot)
+    best = solve_ik(simulation, starfish.poses["wave"])
+    assert max(poser.shape().errors.values()) < max(best.errors.values()) + 1e-3
+    smooth = Simulation(starfish).solve(poser.shape().contractions).nodes
+    assert np.abs(poser.shape().nodes - smooth).max() > 1e-4, "without friction the body would be elsewhere"
+    (note,) = [note for note in poser.shape().notes if note.startswith("friction: ")]
+    assert float(note.split("up to ")[1].split(" mm")[0]) == pytest.approx(
+        1e3 * max(best.friction_band.values()), rel=0.3
+    )
+    document.change("none", robot=starfish)
+    poser.show_pose("wave")
+    settle(poser)
+    assert not any("friction" in note for note in poser.shape().notes)
 
 
 def test_keys(starfish: Robot, poser: Poser) -> None:
