@@ -182,7 +182,7 @@ def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) 
         with result_folder(out, stale=STALE) as folder:
             write_results(network, folder)
         forget_files(out / "kit")
-        made = write_kit(network.robot, out / "kit") if kit else None
+        made = write_kit(network, out / "kit") if kit else None
         progress("Writing results", 1, 1)
     return network, made
 

@@ -30,11 +30,27 @@ def write_results(network: "Network", folder: Path) -> None:
     write_report(network, folder / "report.html", facts=_facts(network))
 
 
-def write_kit(robot: "Robot", folder: Path) -> "Kit":
-    """The fabrication kit, in which what cannot be built well is told."""
+def write_kit(network: "Network", folder: Path) -> "Kit":
+    """The fabrication kit, in which what cannot be built well is told; its poses keep to the design's tension."""
     from hydrostat.fabrication import KitOptions, export_kit
 
-    return export_kit(robot, folder, options=KitOptions(force=True))
+    options = KitOptions(force=True, tension=network.constraints.tension_limit)
+    return export_kit(network.robot, folder, options=options)
+
+
+def designed_tension(robot: "Robot", folder: Path) -> float | None:
+    """The tension that a design kept [N], from the score.json beside its folder; None for a robot that it is not of."""
+    from hydrostat.robot import robot_hash
+
+    own = robot_hash(robot)
+    for place in (folder.resolve().parent, folder.resolve().parent.parent):
+        try:
+            card = json.loads((place / "score.json").read_text(encoding="utf-8"))
+            if own in {card["robot"], *(other["robot"] for other in card["alternatives"])}:
+                return float(card["tension_limit"])
+        except (OSError, ValueError, KeyError, TypeError):
+            continue
+    return None
 
 
 def print_poses(network: "Network", seconds: float) -> None:

@@ -2,13 +2,15 @@
 
 import re
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrostat.cli.design_results import designed_tension
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import positive
+from hydrostat.cli.options import asked, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.closed_set import member
 from hydrostat.errors import InputError
@@ -35,6 +37,13 @@ def fabricate(
     bed: Annotated[
         str, typer.Option(metavar="LENGTHS", help="The most that your 3D printer takes, along x, y and z.")
     ] = "220 x 220 x 250 mm",
+    tension: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FORCE",
+            help="The most that its poses pull a cable with; if left out that of its design, else no limit.",
+        ),
+    ] = None,
     paper: Annotated[str, typer.Option(metavar="a4|letter", help="What the pages are printed on.")] = "a4",
     seam: Annotated[str, typer.Option(metavar="LENGTH", help="Of plush: cloth between seam and cut.")] = "8 mm",
     line: Annotated[str, typer.Option(metavar="LENGTH", help="Diameter of the cables, a braided line.")] = "0.4 mm",
@@ -56,6 +65,7 @@ def fabricate(
     Example: hydrostat fabricate examples/starfish --out build/kit
     """
     from hydrostat import fabrication as kits
+    from hydrostat.units import FORCE
 
     require_folder(out)
     kind = member(kits.MouldKind, mould or "printed", what="--mould")
@@ -69,8 +79,10 @@ def fabricate(
         step=step,
         force=force,
     )
+    limit = asked("--tension", tension, FORCE)
     began = time.perf_counter()
     loaded = read_robot(robot)
+    options = replace(options, tension=designed_tension(loaded, robot) if limit is None else limit)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: is for bodies of foam; leave it out, or add --method foam")
     kit = _built(robot, loaded, options)

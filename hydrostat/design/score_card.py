@@ -20,6 +20,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error_as_built": network.built,
         "rms_error_at_rest": rest_error(network),
         "craft": craft_of(robot, network.reached).as_values,
+        "tension_limit": network.constraints.tension_limit,
         "poses": {pose.wanted.name: _reached(robot, pose) for pose in network.reached},
         "winches": _winches(robot),
         "cables": _cables(robot),

@@ -1,6 +1,7 @@
-"""`winch_room`: configuration space of a winch's unit, the places in a flat body where motor and spool can be built."""
+"""`built_in`, `winch_room`: where a flat body has room for motor and spool (a configuration space), and how strong."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -10,22 +11,38 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.zone import Zone
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication.parts.motor import MOTORS, Motor, largest_torque
 from hydrostat.fabrication.parts.places import GIVES, seam_of
 from hydrostat.fabrication.parts.winch_unit import unit_room
 from hydrostat.fabrication.solids.construct import Cuboid
 from hydrostat.robot import Body, Cable, Robot, Winch
 
 
-def winch_room(robot: Robot, constraints: Constraints, cables: int) -> tuple[Zone, ...]:
-    """Zones in which a winch with so many cables can be built into a flat body, within those of the constraints.
+def built_in(robot: Robot, constraints: Constraints, *, winches: int, cables: int) -> Constraints:
+    """The constraints with what motors in the body can do: their room, and their torque where only weak ones fit.
 
-    The unit lies across the body or in its plane, turned by whole hours of a clock. The motor is the strongest that
-    leaves any room. As given: where no motor fits, and in space.
+    The strongest motor of the kit sets no torque: where poses ask for more than it gives, there is no other to choose.
+    """
+    zones, motor = winch_room(robot, constraints, -(-cables // winches))
+    found = replace(constraints, winch_zones=zones)
+    if motor is None or motor is MOTORS[-1]:
+        return found
+    return replace(
+        found,
+        torque=min(constraints.torque or math.inf, largest_torque(motor, inside=True)),
+        cables_per_winch=min(constraints.cables_per_winch, cables - winches + 1),  # the others have one at least
+    )
+
+
+def winch_room(robot: Robot, constraints: Constraints, cables: int) -> tuple[tuple[Zone, ...], Motor | None]:
+    """Zones in which a winch with so many cables can be built into a flat body, and the motor that fits there.
+
+    They are within those of the constraints. The unit lies across the body or in its plane, turned by whole hours of a
+    clock. The motor is the strongest that leaves any room. Zones as given and None: where no motor fits, and in space.
     """
     body = robot.body
     if body.thickness is None:
-        return constraints.winch_zones
+        return constraints.winch_zones, None
     allowed = None
     if constraints.winch_zones:
         allowed = shapely.union_all([_shape(zone) for zone in constraints.winch_zones])
@@ -34,8 +51,8 @@ def winch_room(robot: Robot, constraints: Constraints, cables: int) -> tuple[Zon
         room = _room(body, box)
         zones = _zones(room if allowed is None else room.intersection(allowed))
         if zones:
-            return zones
-    return constraints.winch_zones
+            return zones, motor
+    return constraints.winch_zones, None
 
 
 def _example(robot: Robot, constraints: Constraints, cables: int) -> tuple[Robot, Winch]:

@@ -175,13 +175,13 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
         gusset=bool(pattern.gusset),
         cloth=_cloth(pattern),
         summary=(f"Pattern: {counted(len(pattern.panels), 'panel')} on {_size(pattern)} mm of felt",),
-        problems=(*pattern.problems, *_wrong_stuffing(robot)),
+        problems=(*pattern.problems, *stuffing_problems(robot)),
         warnings=pattern.warnings,
         checks=checks,
     )
 
 
-def _wrong_stuffing(robot: Robot) -> tuple[str, ...]:
+def stuffing_problems(robot: Robot) -> tuple[str, ...]:
     """Why what is built would be another robot than was simulated; nothing is said of a material given by numbers."""
     name = robot.body.material.name
     if not name or name in STUFFINGS:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from hydrostat.fabrication.body_work import BodyWork, foam_work, plush_work
@@ -16,6 +17,7 @@ from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
+from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_input import SheetInput
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
@@ -83,6 +85,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
 class _Plan:
     """All that a kit is written from."""
 
+    drawn: Robot  # as it was given
     robot: Robot  # as it is sewn: of pairs both cables
     options: KitOptions
     method: Method
@@ -96,15 +99,18 @@ class _Plan:
     def printed(self) -> tuple[Printed, ...]:
         return (*self.rigid.printed, *self.work.printed)
 
-    @property
+    @cached_property
     def problems(self) -> tuple[str, ...]:
+        """Why it is refused: what was known before, then what came of making it, each once."""
         large = too_large((*self.printed, *self.work.spare), self.options.mould.bed)
         failed = (
             f"the self-check failed: {check.what}: {check.measured} (allowed: {check.allowed})"
             for check in self.checks
             if not check.passed
         )
-        return (*self.rigid.problems, *self.work.problems, *self.lists.problems, *large, *failed)
+        known = find_refusals(self.drawn, self.demand, options=self.options)
+        made = (*self.rigid.problems, *self.work.problems, *self.lists.problems)
+        return tuple(dict.fromkeys((*known, *made, *large, *failed)))
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -139,7 +145,7 @@ def _plan(robot: Robot, options: KitOptions, tell: _Stages) -> _Plan:
     method = options.method_for(robot.body)
     drawn, robot = robot, sewn_robot(robot) if method is Method.PLUSH else robot
     tell("Loads in its poses")
-    demand = find_demand(robot, progress=tell.part)
+    demand = find_demand(robot, tension=options.tension, progress=tell.part)
     rigid, work = _parts_and_body(drawn, robot, options, demand, tell)
     tell("Lists")
     lists = make_lists(_list_input(robot, options, method, demand, rigid, work))
@@ -152,7 +158,15 @@ def _plan(robot: Robot, options: KitOptions, tell: _Stages) -> _Plan:
         *solid_checks(solids, (*rigid.assemblies, *work.assemblies)),
     )
     return _Plan(
-        robot=robot, options=options, method=method, demand=demand, rigid=rigid, work=work, lists=lists, checks=checks
+        drawn=drawn,
+        robot=robot,
+        options=options,
+        method=method,
+        demand=demand,
+        rigid=rigid,
+        work=work,
+        lists=lists,
+        checks=checks,
     )
 
 

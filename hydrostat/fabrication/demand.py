@@ -1,6 +1,6 @@
 """`Demand`: what the poses of a robot ask of its motors and cables."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import InverseOptions, solve_ik
+from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
 from hydrostat.robot import Pose, Robot, Winch
 from hydrostat.simulation import Simulation, SolvedPose
 
@@ -33,16 +33,19 @@ class Demand:
     far: tuple[str, ...] = ()  # sentences on poses that are out of reach
 
 
-def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = None) -> Demand:
+def find_demand(
+    robot: Robot, *, tension: float | None = None, progress: Callable[[int, int], None] | None = None
+) -> Demand:
     """Find what the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at full travel.
 
-    Winches are pulled alone too if no pose could be solved. Cables with friction come to each pose straight from rest.
-    `progress` is told how many poses are solved, of how many.
+    Winches are pulled alone too if no pose could be solved. In poses no cable is pulled with more than the tension [N],
+    as whoever plays them should keep to it; without one winches do all they can. Cables with friction come to each pose
+    straight from rest. `progress` is told how many poses are solved, of how many.
     """
     if not robot.cables:
         count = len(robot.winches)
         return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
-    work = _PoseLoads(robot)
+    work = _PoseLoads(robot, Limits(tension=tension))
     for done, pose in enumerate(robot.poses.values()):
         if progress is not None:
             progress(done, len(robot.poses))
@@ -53,11 +56,24 @@ def find_demand(robot: Robot, *, progress: Callable[[int, int], None] | None = N
     return work.demand()
 
 
+def demand_of(robot: Robot, reached: Sequence[ReachedPose]) -> Demand:
+    """The loads of poses that are solved already, as a design has them."""
+    rest = np.zeros((1, len(robot.cables)))
+    tensions = np.concatenate([rest, *(pose.pose.tensions[None] for pose in reached)])
+    taken = np.array([np.zeros(len(robot.winches)), *(pose.pose.contractions for pose in reached)])
+    return Demand(
+        poses=tuple(f'pose "{pose.target.name}"' if pose.target else "pose" for pose in reached),
+        tensions=tensions.max(axis=0),
+        torques=np.max([shaft_torques(robot, each) for each in tensions], axis=0),
+        taken=np.stack([taken.min(axis=0), taken.max(axis=0)], axis=1),
+    )
+
+
 class _PoseLoads:
     """Solves poses of a robot, and keeps what was found."""
 
-    def __init__(self, robot: Robot) -> None:
-        self._robot = robot
+    def __init__(self, robot: Robot, limits: Limits) -> None:
+        self._robot, self._limits = robot, limits
         self._simulation = Simulation(robot)
         self.solved: dict[str, SolvedPose] = {}
         self._missed: list[str] = []
@@ -67,7 +83,7 @@ class _PoseLoads:
         """A pose, as near as winches come."""
         name = f'pose "{pose.name}"'
         try:
-            reached = solve_ik(self._simulation, pose, options=_ONCE)
+            reached = solve_ik(self._simulation, pose, limits=self._limits, options=_ONCE)
             self.solved[name] = reached.pose.without_factors()
         except (InputError, NotConvergedError) as error:
             self._missed.append(f"{name}: {error}")

@@ -170,6 +170,8 @@ class KitOptions:
     Attributes:
         method: None: plush for a flat body and for one that is stuffed, foam for others.
         motor: key of a motor in the table, or "auto": the first that is strong enough.
+        tension: the most that its poses pull a cable with [N], as motors and lines are chosen for; None: as much as its
+            winches can. A designed robot keeps to the limit of its design.
         paper: of the pages.
         step: also write each printed part as STEP; needs the extra `cad`.
         force: write what cannot be built well all the same, with the reasons on the sheet.
@@ -178,11 +180,12 @@ class KitOptions:
         mould: of a robot of foam.
 
     Raises:
-        InputError: a text that is no method or no paper.
+        InputError: a text that is no method or no paper, a tension that is not above 0.
     """
 
     method: Method | None = None
     motor: str = "auto"
+    tension: float | None = None
     paper: Paper = Paper.A4
     step: bool = False
     force: bool = False
@@ -194,6 +197,8 @@ class KitOptions:
         if self.method is not None:
             make_member(self, "method", Method)
         make_member(self, "paper", Paper)
+        if self.tension is not None and not (math.isfinite(self.tension) and self.tension > 0):
+            raise InputError(f"tension must be above 0 N, not {self.tension:g} N")
 
     def method_for(self, body: Body) -> Method:
         """Method by which a body is made."""

@@ -1,14 +1,16 @@
 """Where a winch can be built in. Oracle: the ways to lie that the kit tries for a unit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from builders import gallery_robot
+from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.winch_room import _example, winch_room
+from hydrostat.design.winch_room import _example, built_in, winch_room
 from hydrostat.design.zone import Zone
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication.parts.motor import MOTORS, choose_motor
 from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
 from hydrostat.fabrication.parts.winch_unit import unit_room
 
@@ -17,7 +19,8 @@ from hydrostat.fabrication.parts.winch_unit import unit_room
 def test_a_unit_lies_within_the_seam_wherever_there_is_room(name: str, unchecked: None) -> None:
     """Of the strongest motor that fits; and nowhere 8 mm outside the room: the kit slides a unit by 6."""
     robot, limits = gallery_robot(name), Constraints()
-    zones = winch_room(robot, limits, 2)
+    zones, motor = winch_room(robot, limits, 2)
+    assert motor is MOTORS[-1]
     assert zones
     box = unit_room(*_example(robot, limits, 2), PartOptions(), MOTORS[-1])
     seam, thick = seam_of(robot.body), 1e3 * robot.body.thickness
@@ -37,10 +40,31 @@ def test_a_unit_lies_within_the_seam_wherever_there_is_room(name: str, unchecked
 def test_zones_of_ones_own_count(unchecked: None) -> None:
     robot = gallery_robot("starfish")
     small = Zone(at=(0.0, 0.0), radius=0.02)
-    zones = winch_room(robot, Constraints(winch_zones=(small,)), 2)
+    zones, _ = winch_room(robot, Constraints(winch_zones=(small,)), 2)
     corners = np.array([corner for zone in zones for corner in zone.outline])
     assert np.linalg.norm(corners, axis=1).max() <= 0.0201
 
 
 def test_in_space_zones_are_left_as_they_are(unchecked: None) -> None:
-    assert winch_room(gallery_robot("cupping_hand"), Constraints(), 2) == ()
+    assert winch_room(gallery_robot("cupping_hand"), Constraints(), 2) == ((), None)
+
+
+def test_a_small_body_gives_the_torque_of_the_motor_that_fits() -> None:
+    """Oracle: the choice of the kit, which takes this motor up to that torque and a stronger one beyond."""
+    body = mesh_body(strip_mesh(8, 4, size=(0.08, 0.04)), thickness=0.03)
+    robot = replace(strip_robot(), cables=(), winches=(), markers=(), body=body)
+    _, motor = winch_room(robot, Constraints(), 2)
+    assert motor is not None
+    limits = built_in(robot, Constraints(), winches=1, cables=2)
+    assert limits.torque is not None
+    assert choose_motor("auto", [limits.torque], inside=True) is motor
+    assert choose_motor("auto", [1.01 * limits.torque], inside=True) is not motor
+    assert limits.cables_per_winch == 2
+    assert limits.tension_limit == pytest.approx(limits.torque / (2 * limits.spool_radius))
+    assert built_in(robot, Constraints(torque=0.01), winches=1, cables=2).torque == 0.01
+
+
+def test_where_the_strongest_motor_fits_tensions_are_as_asked(unchecked: None) -> None:
+    robot = gallery_robot("starfish")
+    limits = built_in(robot, Constraints(), winches=2, cables=6)
+    assert (limits.torque, limits.tension_limit) == (None, Constraints().tension_limit)

@@ -8,7 +8,8 @@ from plush_robots import crossed
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.fabrication.demand import find_demand
+from hydrostat.fabrication import KitOptions
+from hydrostat.fabrication.demand import demand_of, find_demand
 
 
 def _posed(robot: hs.Robot, reach: float) -> hs.Robot:
@@ -64,6 +65,33 @@ def test_a_pose_far_out_of_reach_is_told():
     (sentence,) = find_demand(robot).far
     assert sentence.startswith('pose "away" is missed by 4')
     assert find_demand(_posed(crossed(), 0.006)).far == ()
+
+
+def test_poses_are_asked_with_the_tension_that_cables_bear():
+    """Oracles: the limit itself, and the loads without one, which are those of the pose."""
+    robot = _posed(crossed(), 0.006)
+    free = find_demand(robot)
+    most = 0.5 * float(free.tensions.max())
+    bound = find_demand(robot, tension=most)
+    assert bound.tensions.max() == pytest.approx(most, rel=1e-3)
+    assert bound.torques == pytest.approx(bound.tensions.sum() * 0.006, rel=1e-6)
+    np.testing.assert_allclose(find_demand(robot, tension=2 * float(free.tensions.max())).tensions, free.tensions)
+
+
+def test_a_tension_must_pull():
+    with pytest.raises(InputError, match="tension must be above 0 N, not -1 N"):
+        KitOptions(tension=-1.0)
+
+
+def test_loads_of_solved_poses_are_those_that_are_found():
+    """Oracle: the same poses by inverse kinematics."""
+    robot = _posed(crossed(), 0.006)
+    reached = hs.solve_ik(hs.Simulation(robot), robot.poses["made"])
+    known, found = demand_of(robot, [reached]), find_demand(robot)
+    assert known.poses == found.poses
+    np.testing.assert_allclose(known.tensions, found.tensions, rtol=1e-3)
+    np.testing.assert_allclose(known.torques, found.torques, rtol=1e-3)
+    np.testing.assert_allclose(known.taken, found.taken, atol=1e-5)
 
 
 def test_if_no_pose_can_be_solved_winches_are_pulled_alone(monkeypatch: pytest.MonkeyPatch):

@@ -239,6 +239,12 @@ def bend_violations(parts: Parts) -> Iterator[str]:
     yield from _wrong_spools(parts)
 
 
+def turn_violations(parts: Parts) -> Iterator[str]:
+    """Turns and arcs that are too sharp."""
+    for index in parts.new_cables:
+        yield from _sharp_bends(parts, index)
+
+
 def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
     """The arc fits a turn if it touches both segments no farther from the corner than the middle of the shorter."""
     limits, spans = parts.constraints, np.diff(parts.points[index], axis=0)

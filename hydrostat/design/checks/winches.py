@@ -11,11 +11,16 @@ from hydrostat.robot import Cable, Mount, Winch
 
 def winch_violations(parts: Parts) -> Iterator[str]:
     """Winches outside their zones, near the edge or each other, of other sizes, or with too many cables."""
+    yield from standing_violations(parts)
+    yield from _of_other_makes(parts)
+    yield from _crowded(parts)
+
+
+def standing_violations(parts: Parts) -> Iterator[str]:
+    """Winches outside their zones, near the edge, or near each other."""
     yield from _out_of_zones(parts)
     yield from _near_the_edge(parts)
     yield from _near_each_other(parts)
-    yield from _of_other_makes(parts)
-    yield from _crowded(parts)
 
 
 def _out_of_zones(parts: Parts) -> Iterator[str]:

@@ -63,7 +63,7 @@ def design_fewest(
     return replace(
         best,
         alternatives=tuple(front[counts] for counts in sorted(front)),
-        request=request,
+        request=replace(request, constraints=best.request.constraints),
         tried=sum(network.tried for network in found),
         seconds=sum(network.seconds for network in found),
         complete=not interrupted and all(network.complete for network in found),

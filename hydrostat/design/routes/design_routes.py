@@ -11,6 +11,7 @@ from scipy.optimize import nnls
 from hydrostat.arrays import Vector
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.built_error import expected_error
+from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
 from hydrostat.design.progress import Progress, Watch, unseen
 from hydrostat.design.region import Region, body_region
@@ -24,8 +25,10 @@ from hydrostat.design.routes.refine import linear_model, pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.uncertainty import Uncertainty
-from hydrostat.design.winch_room import winch_room
+from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
+from hydrostat.fabrication.demand import demand_of
+from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.ik import InverseOptions, Limits
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import BodyPhysics, Simulation
@@ -115,8 +118,7 @@ class RouteSearch:
         self.winches, self.cables = int(request.winches), request.cables
         self.constraints, self.options = request.constraints, request.route_options
         if self.constraints.built_in and not request.improve and self.constraints.mount is not Mount.WORLD:
-            room = winch_room(robot, self.constraints, -(-self.cables // self.winches))
-            self.constraints = replace(self.constraints, winch_zones=room)
+            self.constraints = built_in(robot, self.constraints, winches=self.winches, cables=self.cables)
         self.bench = Bench(robot, request.poses, self.constraints, request.uncertainty or Uncertainty.none(), body)
         self.stages: list[DesignStage] = []
         self.found: list[Trial] = []
@@ -143,7 +145,7 @@ class RouteSearch:
         return Network(
             robot=network.robot,
             source=self.robot,
-            request=self.request,
+            request=replace(self.request, constraints=self._kept),
             reached=network.reached,
             built=network.built,
             alternatives=tuple(alternatives),
@@ -308,7 +310,14 @@ class RouteSearch:
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
             )
         judged.sort(key=lambda network: network.built)
-        return judged[0], judged[1:]
+        first = next((place for place, network in enumerate(judged) if _fits(network)), 0)
+        return judged[first], [*judged[:first], *judged[first + 1 :]]
+
+    @property
+    def _kept(self) -> Constraints:
+        """What was asked, with the torque of the motors that fit."""
+        own = self.constraints
+        return replace(self.request.constraints, torque=own.torque, cables_per_winch=own.cables_per_winch)
 
     def _simpler(self) -> list[Trial]:
         """The best network of each size with fewer cables, where none with fewer still is as good."""
@@ -350,6 +359,11 @@ class RouteSearch:
         layout = layout_of(network.robot, self.constraints)
         poses = [reached.pose for reached in network.reached]
         return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot, body=self.bench.body), poses))
+
+
+def _fits(network: Alternative) -> bool:
+    """Whether the kit of a network would not be refused."""
+    return not find_refusals(network.robot, demand_of(network.robot, network.reached))
 
 
 _DIGITS = 5  # coordinates to a hundredth of a millimetre, as nobody places a cable finer

@@ -190,6 +190,11 @@ BRIEF = 0.5
 by then. Assumed, measured on none."""
 
 
+def largest_torque(motor: Motor, *, inside: bool = False) -> float:
+    """The most that poses may ask of a motor [N m], with the margin: outside the body for long, inside for seconds."""
+    return 1e-3 * (BRIEF * motor.stall_torque if inside else motor.rated_torque) / MARGIN
+
+
 def choose_motor(key: str, torques: Iterable[float], *, inside: bool = False) -> Motor:
     """The motor of a key; "auto": the first of the table that carries the largest torque [N m], with the margin.
 
@@ -197,9 +202,8 @@ def choose_motor(key: str, torques: Iterable[float], *, inside: bool = False) ->
     the strongest. Raises InputError if no motor has this key.
     """
     if key == "auto":
-        needed = MARGIN * 1e3 * max((float(torque) for torque in torques), default=0.0) - 1e-9
-        bears = {each.key: BRIEF * each.stall_torque if inside else each.rated_torque for each in MOTORS}
-        return next((each for each in MOTORS if bears[each.key] >= needed), MOTORS[-1])
+        needed = max((float(torque) for torque in torques), default=0.0) - 1e-12
+        return next((each for each in MOTORS if largest_torque(each, inside=inside) >= needed), MOTORS[-1])
     for motor in MOTORS:
         if motor.key == key:
             return motor

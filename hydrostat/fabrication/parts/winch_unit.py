@@ -215,14 +215,28 @@ class WinchUnit:
 
 def winch_units(robot: Robot, options: PartOptions, motor: Motor) -> tuple[WinchUnit, ...]:
     """A unit for each winch that has cables, in winch order; equal parts have the same name."""
+    parts = WinchParts()
+    return tuple(draft.unit(robot, parts, laid) for draft, laid in _drafts(robot, options, motor))
+
+
+def unit_problems(robot: Robot, options: PartOptions, motor: Motor) -> tuple[str, ...]:
+    """Why the units of the winches cannot be built well, as `winch_units` tells it, without making them."""
+    return tuple(
+        problem
+        for draft, laid in _drafts(robot, options, motor)
+        for problem in (*draft.problems, *(laid.problems if laid else ()))
+    )
+
+
+def _drafts(robot: Robot, options: PartOptions, motor: Motor) -> list[tuple["_UnitDraft", LaidUnit | None]]:
+    """Each winch that has cables as it is sized, and as it is laid in a flat body."""
     drafts = [
         _UnitDraft.of(robot, winch, cables, options, motor)
         for winch in robot.winches
         if (cables := tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name))
     ]
     laid = _lay_units(robot, [draft for draft in drafts if draft.winch.mount is Mount.BODY])
-    parts = WinchParts()
-    return tuple(draft.unit(robot, parts, laid.get(draft.winch.name)) for draft in drafts)
+    return [(draft, laid.get(draft.winch.name)) for draft in drafts]
 
 
 def unit_room(robot: Robot, winch: Winch, options: PartOptions, motor: Motor) -> Cuboid:

@@ -11,7 +11,7 @@ from hydrostat.fabrication.patterns.gusset import gusset_panels, stuffed_thickne
 from hydrostat.fabrication.patterns.labels import PanelLabels
 from hydrostat.fabrication.patterns.marks import cable_marks, marker_marks, seam_marks, winch_marks
 from hydrostat.fabrication.patterns.opening import Opening, find_opening
-from hydrostat.fabrication.patterns.pinholes import find_pinholes, pinhole_problems
+from hydrostat.fabrication.patterns.pinholes import Pinhole, find_pinholes, pinhole_problems
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, PatternPart, Place, Shape, trace
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
 from hydrostat.fabrication.patterns.skin import Notch, Skin, find_notches, flat_skin
@@ -81,7 +81,7 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
     options = options or PatternOptions()
     skin = flat_skin(robot.body, options)
     holes = find_pinholes(robot, skin.seam, options)
-    problems = skin.problems + pinhole_problems(holes, skin.seam, options) + _unheld(robot)
+    problems = _problems(robot, skin, holes, options)
     if problems and not options.force:
         first, *others = problems
         raise InputError(f"{first} (and {len(others)} more such)" if others else first)
@@ -118,6 +118,16 @@ def plush_pattern(robot: Robot, *, options: PatternOptions | None = None) -> Pat
         problems=problems,
         warnings=(*skin.warnings, *_warnings(draft, thickness, gusset=wanted)),
     )
+
+
+def pattern_problems(robot: Robot, options: PatternOptions) -> tuple[str, ...]:
+    """Why a flat body cannot be cut and sewn as drawn, a line each (InputError: the body is not flat)."""
+    skin = flat_skin(robot.body, options)
+    return _problems(robot, skin, find_pinholes(robot, skin.seam, options), options)
+
+
+def _problems(robot: Robot, skin: Skin, holes: tuple[Pinhole, ...], options: PatternOptions) -> tuple[str, ...]:
+    return skin.problems + pinhole_problems(holes, skin.seam, options) + _unheld(robot)
 
 
 def _front(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:

@@ -4,10 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hydrostat.design import AUTO, Constraints, DesignMethod, DesignRequest, RouteOptions
+from hydrostat.design import AUTO, DesignMethod, DesignRequest, RouteOptions
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
-from hydrostat.studio.records.wishes import Paint, Wishes
+from hydrostat.studio.records.wished_constraints import wished_constraints
+from hydrostat.studio.records.wishes import Wishes
 
 
 def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = None) -> DesignRequest:
@@ -37,26 +38,6 @@ def wished_poses(robot: Robot, wishes: Wishes) -> tuple[Pose, ...]:
         raise InputError("there is no pose to design for; drag the body in Pose and store how it should be")
     named = [pose for name, pose in robot.poses.items() if name in wishes.poses]
     return tuple(named or robot.poses.values())
-
-
-def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
-    """What can be built as wished, but for parts to keep that are gone (InputError: limits that cannot be)."""
-    zones = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
-    names = {winch.name for winch in robot.winches}
-    return Constraints(
-        winch_zones=zones[Paint.WINCH_ZONES],
-        keep_out=zones[Paint.KEEP_OUT],
-        still=zones[Paint.STILL],
-        mirror=wishes.mirror,
-        tension=wishes.tension,
-        clearance=wishes.clearance,
-        cables_per_winch=wishes.cables_per_winch,
-        slack=wishes.slack,
-        spool_ratio=2.0 if wishes.stepped else 1.0,
-        torque=wishes.torque,
-        locked_winches=tuple(name for name in wishes.kept_winches if name in names),
-        locked_cables=tuple(cable.name for cable in robot.cables if cable.name in wishes.kept_cables),
-    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,6 +17,7 @@ from hydrostat.studio.exporting.download import Download, archive, file_name
 from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.records.wished_constraints import wished_constraints
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
@@ -94,7 +95,8 @@ class Exporter(Stage):
         """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
         if not self._document.robot.cables:
             raise InputError("a kit needs cables; press Design, or place winches and cables by hand")
-        options = replace(self.options, force=True) if force else self.options
+        tension = wished_constraints(self._document.robot, self._document.work.wishes).tension_limit
+        options = replace(self.options, tension=tension, force=force or self.options.force)
         self._start(Export.KIT, "Making the kit", make_kit, options)
 
     def make_report(self) -> None:

@@ -9,7 +9,8 @@ from hydrostat.cli.design_wishes import TypedRequest, asked_of
 from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.studio.designing.run import beginning, wished_constraints, wished_poses, wished_request
+from hydrostat.studio.designing.run import beginning, wished_poses, wished_request
+from hydrostat.studio.records.wished_constraints import wished_constraints
 from hydrostat.studio.records.wishes import Paint, Wishes
 
 

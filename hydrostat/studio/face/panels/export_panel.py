@@ -245,7 +245,7 @@ def kit_result(page: WindowPage) -> None:
         _refused(page, kit)
         return
     download_button(kit.zip)
-    if replace(kit.options, force=False) != replace(exporter.options, force=False):
+    if replace(kit.options, force=False, tension=None) != replace(exporter.options, force=False, tension=None):
         ui.label("Made with other choices than those above.").classes("studio-hint")
     for line in kit.summary:
         head, _, words = line.partition(": ")

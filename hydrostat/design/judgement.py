@@ -1,0 +1,51 @@
+"""`judgement_of`: the one judgement of a robot that is to be built, for fabrication, studio and command line."""
+
+from collections.abc import Iterator
+
+from hydrostat.design.checks.cables import clearance_violations, gap_violations, hole_violations, turn_violations
+from hydrostat.design.checks.parts import Parts
+from hydrostat.design.checks.winches import standing_violations
+from hydrostat.design.constraints import Constraints
+from hydrostat.design.finding import Finding, Weight, places_in
+from hydrostat.design.region import body_region
+from hydrostat.fabrication import KitOptions
+from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.refusals import find_refusals
+from hydrostat.robot import Robot, find_risks
+
+
+def judgement_of(
+    robot: Robot,
+    *,
+    demand: Demand | None = None,
+    constraints: Constraints | None = None,
+    options: KitOptions | None = None,
+) -> tuple[Finding, ...]:
+    """What is to be said of a robot before it is built, the gravest first, each sentence with its places.
+
+    - What a kit is refused for (`find_refusals`): with the demand of its poses all that is known before it is made.
+    - Limits of designs that its network does not keep, where constraints are given; one sentence for each kind, with
+      the places of all. Travel, release and numbers of cables are limits of the search alone.
+    - Risks (`find_risks`).
+
+    Raises InputError: an unknown motor, or a demand of another robot.
+    """
+    refused = find_refusals(robot, demand, options=options) if robot.cables else ()
+    limits = _limits(robot, constraints) if constraints is not None and robot.cables else ()
+    return (
+        *(Finding(text=text, weight=Weight.REFUSED, places=places_in(text, robot)) for text in refused),
+        *limits,
+        *(Finding(text=text, weight=Weight.MIND, places=places_in(text, robot)) for text in find_risks(robot)),
+    )
+
+
+def _limits(robot: Robot, constraints: Constraints) -> Iterator[Finding]:
+    """A finding for each kind of limit: its first sentence, and the places of all."""
+    parts = Parts(robot, constraints, body_region(robot.body, constraints.clearance))
+    for check in (standing_violations, clearance_violations, hole_violations, gap_violations, turn_violations):
+        told = list(check(parts))
+        if not told:
+            continue
+        more = f" (and {len(told) - 1} more such)" if len(told) > 1 else ""
+        places = dict.fromkeys(place for text in told for place in places_in(text, robot))
+        yield Finding(text=told[0] + more, weight=Weight.LIMIT, places=tuple(places))

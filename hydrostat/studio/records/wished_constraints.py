@@ -1,0 +1,25 @@
+"""`wished_constraints`: what a person's wishes say of what can be built."""
+
+from hydrostat.design import Constraints
+from hydrostat.robot import Robot
+from hydrostat.studio.records.wishes import Paint, Wishes
+
+
+def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
+    """What can be built as wished, but for parts to keep that are gone (InputError: limits that cannot be)."""
+    zones = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
+    names = {winch.name for winch in robot.winches}
+    return Constraints(
+        winch_zones=zones[Paint.WINCH_ZONES],
+        keep_out=zones[Paint.KEEP_OUT],
+        still=zones[Paint.STILL],
+        mirror=wishes.mirror,
+        tension=wishes.tension,
+        clearance=wishes.clearance,
+        cables_per_winch=wishes.cables_per_winch,
+        slack=wishes.slack,
+        spool_ratio=2.0 if wishes.stepped else 1.0,
+        torque=wishes.torque,
+        locked_winches=tuple(name for name in wishes.kept_winches if name in names),
+        locked_cables=tuple(cable.name for cable in robot.cables if cable.name in wishes.kept_cables),
+    )

@@ -1,0 +1,118 @@
+"""One judgement for design and fabrication. Oracles: the kit's own refusals, networks that designs return."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import gallery_robot
+
+from hydrostat.design import Constraints, Network, RouteOptions, design_cables
+from hydrostat.design.finding import Weight
+from hydrostat.design.judgement import judgement_of
+from hydrostat.fabrication import KitOptions, build_kit
+from hydrostat.fabrication.demand import demand_of, find_demand
+from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.robot import Robot, find_risks, robot_hash
+
+SMALL = RouteOptions(starts=1, exchanges=0, polish=2, trials=2, steps=2, hops=6)
+
+
+def refused(robot: Robot, **given: object) -> list[str]:
+    found = judgement_of(robot, **given)  # type: ignore[arg-type]
+    return [finding.text for finding in found if finding.weight is Weight.REFUSED]
+
+
+def crowded() -> Robot:
+    """A starfish with a hole at the tip of an arm, and spools as large as a palm."""
+    robot = gallery_robot("starfish")
+    tip = robot.body.mesh.nodes[np.argmax(robot.body.mesh.nodes[:, 1])]
+    edge = tuple((0.999 * tip).tolist())
+    cables = (replace(robot.cables[0], points=(*robot.cables[0].points, edge)), *robot.cables[1:])
+    return robot.with_network([replace(winch, spool_radius=0.03) for winch in robot.winches], cables)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("motor", ["auto", "25d"])
+def test_what_is_known_before_a_kit_is_made_is_what_refuses_it(motor: str, unchecked: None) -> None:
+    robot, options = crowded(), KitOptions(motor=motor, force=True)
+    known = refused(robot, demand=find_demand(robot), options=options)
+    assert len(known) >= 2
+    assert list(build_kit(robot, options=options).problems) == known
+
+
+def test_nothing_refuses_a_robot_of_the_gallery(unchecked: None) -> None:
+    for name in ("starfish", "letter_s", "puppy", "fish_tail", "cupping_hand"):
+        assert refused(gallery_robot(name)) == []
+
+
+def test_one_sentence_for_each_kind_of_limit_with_all_places(unchecked: None) -> None:
+    """Oracle: the holes of letter_e that turn by more than 30 degrees, from their coordinates."""
+    robot = gallery_robot("letter_e")
+    found = [one for one in judgement_of(robot, constraints=Constraints()) if one.weight is Weight.LIMIT]
+    (turns,) = [one for one in found if "turns by" in one.text]
+    sharp = set()
+    for number, cable in enumerate(robot.cables):
+        steps = np.diff(np.array(cable.points), axis=0)
+        angles = np.degrees(np.abs(np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))))
+        sharp |= {f"via:{number}:{at + 1}" for at in np.flatnonzero(angles > 30.1)}
+    assert {place.part for place in turns.places} == sharp
+    assert turns.text.endswith(f"(and {len(sharp) - 1} more such)")
+    assert judgement_of(robot) == tuple(
+        one for one in judgement_of(robot, constraints=Constraints()) if one not in found
+    )
+
+
+def test_risks_are_told_last_as_they_are(unchecked: None) -> None:
+    robot = gallery_robot("squid")
+    found = judgement_of(robot, constraints=Constraints())
+    assert [one.text for one in found if one.weight is Weight.MIND] == find_risks(robot)
+    order = [list(Weight).index(one.weight) for one in found]
+    assert order == sorted(order)
+
+
+def test_the_motor_of_the_judgement_is_that_of_the_poses(unchecked: None) -> None:
+    """Oracle: the strongest motor, asked for by its name."""
+    robot = gallery_robot("squid")
+    demand = find_demand(replace(robot, poses=dict(list(robot.poses.items())[:1])))
+    strong = replace(demand, torques=np.full(len(robot.winches), 10.0))
+    assert refused(robot, demand=strong) == refused(robot, options=KitOptions(motor=MOTORS[-1].key))
+    assert refused(robot, demand=strong) != []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "winches", "cables"),
+    [("starfish", 2, 3), ("letter_s", 1, 2), ("letter_e", 2, 2), ("puppy", 2, 2), ("pig", 1, 2)],
+)
+def test_a_kit_never_refuses_what_a_design_returned(name: str, winches: int, cables: int, unchecked: None) -> None:
+    robot = gallery_robot(name)
+    pose = next(iter(robot.poses.values()))
+    network = design_cables(robot, [pose], winches=winches, cables=cables, options=SMALL)
+    made = replace(network.robot, poses={pose.name: pose})
+    assert refused(made, demand=demand_of(made, network.reached)) == []
+    kit = build_kit(made, options=KitOptions(tension=network.constraints.tension_limit))
+    assert kit.problems == ()
+    assert find_demand(made, tension=network.constraints.tension_limit).tensions.max() <= 1.001 * 20.0
+
+
+@pytest.mark.slow
+def test_a_network_that_can_be_built_comes_before_a_better_one_that_cannot(
+    monkeypatch: pytest.MonkeyPatch, unchecked: None
+) -> None:
+    """Oracle: the same search, whose best network is then said to be refused."""
+    robot = gallery_robot("letter_s")
+    poses = [next(iter(robot.poses.values()))]
+
+    def found() -> Network:
+        return design_cables(robot, poses, winches=1, cables=2, options=SMALL)
+
+    free = found()
+    assert free.alternatives
+    best = robot_hash(free.robot)
+    monkeypatch.setattr(
+        "hydrostat.design.routes.design_routes.find_refusals",
+        lambda made, demand: ("no room",) if robot_hash(made) == best else (),
+    )
+    bound = found()
+    assert robot_hash(bound.robot) == robot_hash(min(free.alternatives, key=lambda other: other.built).robot)
+    assert best in {robot_hash(other.robot) for other in bound.alternatives}
