@@ -36,3 +36,4 @@ void add_ordering(nb::module_& module);
 void add_symbolic(nb::module_& module);
 void add_cables(nb::module_& module);
 void add_improve(nb::module_& module);
+void add_contact(nb::module_& module);

@@ -307,4 +307,5 @@ NB_MODULE(_native, module) {
     add_symbolic(module);
     add_cables(module);
     add_improve(module);
+    add_contact(module);
 }

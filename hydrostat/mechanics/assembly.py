@@ -70,7 +70,9 @@ class Assembly:
         energies = [energy.near(nodes) for energy in self.energies]
         if all(new is old for new, old in zip(energies, self.energies, strict=True)):
             return self
-        pattern = self.pattern.changed([energy.stencils for energy in energies])
+        stencils = [energy.stencils for energy in energies]
+        same = all(new is old for new, old in zip(stencils, self.pattern.stencils, strict=True))
+        pattern = self.pattern if same else self.pattern.changed(stencils)
         return self._like(energies, pattern)
 
     def with_load(self, share: float) -> "Assembly":

@@ -1,0 +1,347 @@
+"""`BoundaryTree`: which parts of a body's boundary come near one another on the way from one place to another."""
+
+from functools import cached_property
+from typing import NamedTuple, no_type_check
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.pair_distances import advanced
+from hydrostat.kernel import INNER, Kernel, njit
+
+Stencils = Int[np.ndarray, "pairs corners"]
+
+
+class Pairs(NamedTuple):
+    """Features of the boundary that are near one another and have no node in common.
+
+    In the plane a node and an edge; in space a node and a triangle, or two edges.
+
+    Attributes:
+        stencils: nodes of each pair, (pairs, 3) in the plane, (pairs, 4) in space; a lone node comes first.
+        edges: whether both features are edges, (pairs,).
+    """
+
+    stencils: Stencils
+    edges: np.ndarray
+
+    def only(self, kept: np.ndarray) -> "Pairs":
+        """Those for which `kept` is true."""
+        return Pairs(self.stencils[kept], self.edges[kept])
+
+
+class BoundaryTree:
+    """Bounding volume hierarchy of the facets of a mesh's boundary: a tree of boxes, made once for a body.
+
+    Each node and each edge belongs to one facet of those around it, so that a pair is found once.
+
+    Attributes:
+        facets: nodes of each facet, (facets, dim).
+        points: nodes that belong to each facet, (facets, dim); -1 where there are fewer.
+        edges: in space, both ends of the edges that belong to each facet, (facets, 6); -1 where there are fewer.
+        children: of each box, those of a leaf being -1 and its facet, (boxes, 2); children come after their parents.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        """Tree of the boundary of a mesh at rest."""
+        self.facets = np.ascontiguousarray(mesh.boundary)
+        count, dim = self.facets.shape
+        self.points = _owned(self.facets[:, :, None])[:, :, 0]
+        turned = np.stack([self.facets, np.roll(self.facets, -1, axis=1)], axis=2)
+        edges = _owned(np.sort(turned, axis=2)) if dim == 3 else np.full((count, 0, 2), -1)
+        self.edges = np.ascontiguousarray(edges.reshape(count, -1))
+        self.children = _tree(mesh.nodes[self.facets].mean(axis=1))
+
+    def pairs(self, low: Nodes, high: Nodes, reach: float) -> Pairs:
+        """Pairs whose boxes come within reach [m], each node being in a box of its own from low to high [m]."""
+        high, room = high + reach, self._room
+        while True:
+            stencils, edges = np.empty((room, low.shape[1] + 1), np.int64), np.empty(room, np.bool_)
+            count = _pairs_within(self.children, self.facets, self.points, self.edges, low, high, stencils, edges)
+            if count <= room:
+                return Pairs(stencils[:count], edges[:count])
+            room = 2 * count
+
+    def admissible_share(self, nodes: Nodes, move: Nodes, rest: Nodes, kept: float) -> float:
+        """Largest share, at most 1, of a straight move after which each pair keeps a share of its distance.
+
+        Args:
+            nodes: where it begins [m].
+            move: of each node [m].
+            rest: where the nodes are at rest [m]: pairs that touch there may do as they like.
+            kept: share of the distance that is to be kept.
+        """
+        return _share_of_way(self.children, self.facets, self.points, self.edges, nodes, move, rest, kept)
+
+    @cached_property
+    def _room(self) -> int:
+        return 64 + 8 * len(self.facets)
+
+
+def facet_areas(mesh: Mesh) -> tuple[Vector, Vector]:
+    """Area (length, in the plane) of each facet of the boundary at rest, and of what is nearest each node [m^dim-1]."""
+    corners = mesh.nodes[mesh.boundary]
+    spans = corners[:, 1:] - corners[:, :1]
+    if mesh.dim == 2:
+        areas = np.linalg.norm(spans[:, 0], axis=1)
+    else:
+        areas = 0.5 * np.linalg.norm(np.cross(spans[:, 0], spans[:, 1]), axis=1)
+    shares = np.repeat(areas / mesh.dim, mesh.dim)
+    return areas, np.bincount(mesh.boundary.ravel(), shares, len(mesh.nodes))
+
+
+def _owned(features: Int[np.ndarray, "facets each corners"]) -> Int[np.ndarray, "facets each corners"]:
+    """Features of facets, each kept by the first facet that has it; -1 elsewhere."""
+    flat = features.reshape(-1, features.shape[2])
+    _, firsts = np.unique(flat, axis=0, return_index=True)
+    owned = np.full_like(flat, -1)
+    owned[firsts] = flat[firsts]
+    return np.ascontiguousarray(owned.reshape(features.shape))
+
+
+def _tree(middles: Float[np.ndarray, "facets dim"]) -> Int[np.ndarray, "boxes 2"]:
+    """Halve the facets at the median along the longest side of what they span, again and again."""
+    children = np.full((max(2 * len(middles) - 1, 0), 2), -1)
+    waiting, made = [(0, np.arange(len(middles)))] if len(middles) else [], 1
+    while waiting:
+        box, own = waiting.pop()
+        if len(own) == 1:
+            children[box, 1] = own[0]
+            continue
+        axis = int(np.argmax(np.ptp(middles[own], axis=0)))
+        half = len(own) // 2
+        order = own[np.argpartition(middles[own, axis], half)]
+        children[box] = made, made + 1
+        waiting += [(made, order[:half]), (made + 1, order[half:])]
+        made += 2
+    return children
+
+
+@njit(**INNER)
+@no_type_check
+def _fit_boxes(children, facets, low, high, boxes):
+    """Fill boxes around the boxes of all nodes, leaves first: lowest corner, then highest."""
+    for box in range(children.shape[0] - 1, -1, -1):
+        one, other = children[box, 0], children[box, 1]
+        for axis in range(low.shape[1]):
+            if one >= 0:
+                boxes[box, axis] = min(boxes[one, axis], boxes[other, axis])
+                boxes[box, 3 + axis] = max(boxes[one, 3 + axis], boxes[other, 3 + axis])
+            else:
+                least, most = np.inf, -np.inf
+                for corner in range(facets.shape[1]):
+                    least = min(least, low[facets[other, corner], axis])
+                    most = max(most, high[facets[other, corner], axis])
+                boxes[box, axis], boxes[box, 3 + axis] = least, most
+
+
+@njit(**INNER)
+@no_type_check
+def _apart(a, b):
+    return a[0] > b[3] or b[0] > a[3] or a[1] > b[4] or b[1] > a[4] or a[2] > b[5] or b[2] > a[5]
+
+
+@Kernel
+@no_type_check
+def _pairs_within(children, facets, points, edges, low, high, stencils, both):
+    """Fill in pairs as long as there is room; return how many there are."""
+    dim, found = facets.shape[1], 0
+    boxes = np.zeros((children.shape[0], 6))
+    _fit_boxes(children, facets, low, high, boxes)
+    if children.shape[0] == 0:
+        return 0
+    stack = np.empty((4 * children.shape[0] + 4, 2), np.int64)
+    stack[0, 0], stack[0, 1], top = 0, 0, 1
+    while top > 0:
+        top -= 1
+        one, other = stack[top, 0], stack[top, 1]
+        left, right = children[one, 0], children[one, 1]
+        if one == other:
+            if left >= 0:
+                stack[top, 0], stack[top, 1] = left, left
+                stack[top + 1, 0], stack[top + 1, 1] = right, right
+                top += 2
+                if not _apart(boxes[left], boxes[right]):
+                    stack[top, 0], stack[top, 1] = left, right
+                    top += 1
+            continue
+        first, second = children[other, 0], children[other, 1]
+        if left < 0 and first < 0:
+            f, g = right, second
+            for _ in range(2):
+                for corner in range(dim):
+                    node = points[f, corner]
+                    if node < 0 or not _node_near(node, facets, g, low, high):
+                        continue
+                    if found < stencils.shape[0]:
+                        stencils[found, 0], both[found] = node, False
+                        for k in range(dim):
+                            stencils[found, 1 + k] = facets[g, k]
+                    found += 1
+                f, g = g, f
+            for i in range(0, edges.shape[1], 2):
+                if edges[f, i] < 0:
+                    continue
+                for j in range(0, edges.shape[1], 2):
+                    if edges[g, j] < 0 or not _edges_near(
+                        edges[f, i], edges[f, i + 1], edges[g, j], edges[g, j + 1], low, high
+                    ):
+                        continue
+                    if found < stencils.shape[0]:
+                        both[found] = True
+                        for k in range(2):
+                            stencils[found, k], stencils[found, 2 + k] = edges[f, i + k], edges[g, j + k]
+                    found += 1
+            continue
+        if left < 0 or (first >= 0 and _size(boxes[other]) > _size(boxes[one])):
+            one, left, right = other, first, second
+            other = stack[top, 0]
+        if not _apart(boxes[left], boxes[other]):
+            stack[top, 0], stack[top, 1] = left, other
+            top += 1
+        if not _apart(boxes[right], boxes[other]):
+            stack[top, 0], stack[top, 1] = right, other
+            top += 1
+    return found
+
+
+@Kernel
+@no_type_check
+def _share_of_way(children, facets, points, edges, x, move, rest, kept):
+    """Largest share of a move."""
+    dim, limit = facets.shape[1], 1.0
+    boxes, ways = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
+    _fit_boxes(children, facets, x, x, boxes)
+    _fit_boxes(children, facets, move, move, ways)
+    if children.shape[0] == 0:
+        return limit
+    y, w, dw, c, way = np.zeros((4, 3)), np.empty(4), np.empty((2, 4)), np.empty(3), np.zeros((4, 3))
+    stencil = np.empty(dim + 1, np.int64)
+    stack = np.empty((4 * children.shape[0] + 4, 2), np.int64)
+    stack[0, 0], stack[0, 1], top = 0, 0, 1
+    while top > 0:
+        top -= 1
+        one, other = stack[top, 0], stack[top, 1]
+        left, right = children[one, 0], children[one, 1]
+        if one == other:
+            if left >= 0:
+                stack[top, 0], stack[top, 1] = left, left
+                stack[top + 1, 0], stack[top + 1, 1] = right, right
+                top += 2
+                if not _clear(boxes[left], ways[left], boxes[right], ways[right], limit):
+                    stack[top, 0], stack[top, 1] = left, right
+                    top += 1
+            continue
+        first, second = children[other, 0], children[other, 1]
+        if left < 0 and first < 0:
+            f, g = right, second
+            for _ in range(2):
+                for corner in range(dim):
+                    node = points[f, corner]
+                    if node < 0:
+                        continue
+                    stencil[0], shared = node, False
+                    for k in range(dim):
+                        stencil[1 + k] = facets[g, k]
+                        shared = shared or facets[g, k] == node
+                    if not (shared or _passes(x, move, stencil, 1, limit)):
+                        limit = advanced(x, move, rest, stencil, False, kept, limit, y, way, w, dw, c)
+                f, g = g, f
+            for i in range(0, edges.shape[1], 2):
+                if edges[f, i] < 0:
+                    continue
+                p, q = edges[f, i], edges[f, i + 1]
+                stencil[0], stencil[1] = p, q
+                for j in range(0, edges.shape[1], 2):
+                    a, b = edges[g, j], edges[g, j + 1]
+                    if a < 0 or p == a or p == b or q == a or q == b:
+                        continue
+                    stencil[2], stencil[3] = a, b
+                    if not _passes(x, move, stencil, 2, limit):
+                        limit = advanced(x, move, rest, stencil, True, kept, limit, y, way, w, dw, c)
+            continue
+        if left < 0 or (first >= 0 and _size(boxes[other]) > _size(boxes[one])):
+            one, left, right = other, first, second
+            other = stack[top, 0]
+        for child in (left, right):
+            if not _clear(boxes[child], ways[child], boxes[other], ways[other], limit):
+                stack[top, 0], stack[top, 1] = child, other
+                top += 1
+    return limit
+
+
+@njit(**INNER)
+@no_type_check
+def _clear(a, u, b, v, limit):
+    """Whether two moving boxes stay apart along one axis all the time."""
+    for k in range(3):
+        gap, closing = a[k] - b[3 + k], u[k] - v[3 + k]
+        if gap > 0.0 and gap + limit * closing > 0.0:
+            return True
+        gap, closing = b[k] - a[3 + k], v[k] - u[3 + k]
+        if gap > 0.0 and gap + limit * closing > 0.0:
+            return True
+    return False
+
+
+@njit(**INNER)
+@no_type_check
+def _passes(x, move, stencil, first, limit):
+    """Whether the two features of a pair, in boxes that move, stay apart along one axis all the time."""
+    for k in range(x.shape[1]):
+        low, high = np.inf, -np.inf
+        slow, fast = np.inf, -np.inf
+        for i in range(first):
+            at, by = x[stencil[i], k], move[stencil[i], k]
+            low, high, slow, fast = min(low, at), max(high, at), min(slow, by), max(fast, by)
+        other_low, other_high = np.inf, -np.inf
+        other_slow, other_fast = np.inf, -np.inf
+        for i in range(first, stencil.shape[0]):
+            at, by = x[stencil[i], k], move[stencil[i], k]
+            other_low, other_high = min(other_low, at), max(other_high, at)
+            other_slow, other_fast = min(other_slow, by), max(other_fast, by)
+        gap = low - other_high
+        if gap > 0.0 and gap + limit * (slow - other_fast) > 0.0:
+            return True
+        gap = other_low - high
+        if gap > 0.0 and gap + limit * (other_slow - fast) > 0.0:
+            return True
+    return False
+
+
+@njit(**INNER)
+@no_type_check
+def _size(box):
+    return box[3] - box[0] + box[4] - box[1] + box[5] - box[2]
+
+
+@njit(**INNER)
+@no_type_check
+def _node_near(node, facets, g, low, high):
+    """Whether the boxes of a node and a facet meet, and the node is none of its corners."""
+    for axis in range(low.shape[1]):
+        least, most = np.inf, -np.inf
+        for k in range(facets.shape[1]):
+            if facets[g, k] == node:
+                return False
+            least = min(least, low[facets[g, k], axis])
+            most = max(most, high[facets[g, k], axis])
+        if low[node, axis] > most or least > high[node, axis]:
+            return False
+    return True
+
+
+@njit(**INNER)
+@no_type_check
+def _edges_near(p, q, a, b, low, high):
+    """Whether the boxes of two edges meet, and they have no end in common."""
+    if p == a or p == b or q == a or q == b:
+        return False
+    for axis in range(3):
+        if min(low[p, axis], low[q, axis]) > max(high[a, axis], high[b, axis]):
+            return False
+        if min(low[a, axis], low[b, axis]) > max(high[p, axis], high[q, axis]):
+            return False
+    return True

@@ -1,0 +1,177 @@
+"""`ContactEnergy`: a body does not pass through itself."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, NamedTuple, Self
+
+import numpy as np
+
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.geometry.boundary_tree import BoundaryTree, Pairs, facet_areas
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.pair_distances import admissible_share, squared_distances
+from hydrostat.mechanics.contact_pairs import barrier_energy, barrier_forces, barrier_hessian
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TouchingSkin:
+    """What all states of the contact of one body with itself share.
+
+    Attributes:
+        tree: of its boundary.
+        rest: where its nodes are at rest [m].
+        distance: at which parts begin to feel one another [m].
+        stiffness: pressure at half that distance [Pa].
+        areas: of the boundary around each node [m^2], (nodes,).
+    """
+
+    tree: BoundaryTree
+    rest: Nodes
+    distance: float
+    stiffness: float
+    areas: Vector
+
+    @property
+    def soft(self) -> float:
+        """What makes the nearest points of parallel edges certain [m^2]."""
+        return (_SOFT * self.distance) ** 2
+
+    def squared(self, nodes: Nodes, pairs: Pairs) -> Vector:
+        """Squared distance of each pair [m^2]."""
+        squared = np.empty(len(pairs.edges))
+        squared_distances(nodes, *pairs, self.soft, squared)
+        return squared
+
+    def begins(self, pairs: Pairs) -> Vector:
+        """Squared distance [m^2] at which each pair is felt: below half of what it has at rest, so at rest none is."""
+        return np.minimum(self.distance**2, _REST * self.squared(self.rest, pairs))
+
+    def weights(self, pairs: Pairs, begins: Vector) -> Vector:
+        """Factor of the barrier of each pair [N/m]: half as far as it is felt, it pushes by stiffness x area."""
+        one = self.areas[pairs.stencils[:, 0]]
+        shared = 0.5 * self.areas[pairs.stencils].mean(axis=1)
+        area = np.where(pairs.edges, shared, one)
+        return self.stiffness * area / (_HALF_WAY * np.sqrt(np.maximum(begins, np.finfo(float).tiny)))
+
+
+class Watch(NamedTuple):
+    """All pairs that can be felt while each node stays in a box of its own.
+
+    Attributes:
+        low: lowest corner of the box of each node [m].
+        high: highest corner [m].
+        pairs: what can be felt there, and more.
+    """
+
+    low: Nodes
+    high: Nodes
+    pairs: Pairs
+
+    def serves(self, nodes: Nodes) -> bool:
+        """Whether all nodes are in their boxes."""
+        return bool((self.low <= nodes).all() and (nodes <= self.high).all())
+
+
+class ContactEnergy(Energy):
+    """Barriers between all parts of a body's boundary that come near one another (Li et al. 2020): self-contact.
+
+    A term is a pair: in the plane a node and an edge, in space a node and a triangle or two edges, with no node in
+    common. It is felt below a distance; there its energy grows without bound as the gap closes.
+
+    Terms come and go: an energy knows the pairs that lay within twice the distance of where it was last asked (`near`),
+    and serves as long as no node has moved by half the distance since.
+    """
+
+    convex: ClassVar[bool] = False
+
+    def __init__(self, skin: TouchingSkin, pairs: Pairs, watch: Watch | None = None) -> None:
+        """Contact between the given pairs, and what is known of all others."""
+        self.skin, self.pairs, self.watch = skin, pairs, watch
+        self.stencils: Stencils = pairs.stencils
+
+    @classmethod
+    def of(cls, mesh: Mesh, *, distance: float, young: float, thickness: float | None = None) -> Self:
+        """Contact of a body at rest with itself, in which nothing touches yet.
+
+        Args:
+            mesh: of the body.
+            distance: at which parts begin to feel one another [m].
+            young: pressure at half that distance: Young's modulus [Pa].
+            thickness: of a flat body [m].
+        """
+        areas = facet_areas(mesh)[1] * (thickness or 1.0)
+        skin = TouchingSkin(tree=BoundaryTree(mesh), rest=mesh.nodes, distance=distance, stiffness=young, areas=areas)
+        return cls(skin, Pairs(np.empty((0, mesh.dim + 1), np.int64), np.empty(0, np.bool_)))
+
+    @cached_property
+    def _begins(self) -> Vector:
+        return self.skin.begins(self.pairs)
+
+    @cached_property
+    def _law(self) -> tuple[np.ndarray, np.ndarray, float, Vector, Vector]:
+        return *self.pairs, self.skin.soft, self._begins, self.skin.weights(self.pairs, self._begins)
+
+    def value(self, nodes: Nodes, controls: Vector) -> float:
+        return float(barrier_energy(nodes, *self._law)[0])
+
+    def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
+        blocks = np.empty((*self.stencils.shape, nodes.shape[1]))
+        barrier_forces(nodes, *self._law, blocks)
+        return blocks
+
+    def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
+        return self.projected_hessian(nodes, controls, 0.0)
+
+    def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+        size = self.stencils.shape[1] * nodes.shape[1]
+        blocks = np.empty((len(self.stencils), size, size))
+        barrier_hessian(nodes, *self._law, share, blocks)
+        return blocks
+
+    def largest_step(self, nodes: Nodes, move: Nodes) -> float:
+        watch, skin = self.watch, self.skin
+        if watch is not None and watch.serves(nodes) and watch.serves(nodes + move):
+            share = admissible_share(nodes, move, skin.rest, *watch.pairs, _KEPT)
+        else:
+            share = skin.tree.admissible_share(nodes, move, skin.rest, _KEPT)
+        return max(float(share), _LEAST_STEP)
+
+    def near(self, nodes: Nodes) -> "ContactEnergy":
+        watch = self.watch
+        if watch is None or not watch.serves(nodes):
+            watch = self._look_around(nodes)
+        if watch.pairs is self.pairs or self._felt(watch.pairs, nodes) == self._felt(self.pairs, nodes):
+            return self if watch is self.watch else ContactEnergy(self.skin, self.pairs, watch)
+        return ContactEnergy(self.skin, watch.pairs, watch)
+
+    def _look_around(self, nodes: Nodes) -> Watch:
+        """Pairs that are near, and serve as long as no node moves by more than half of what is looked at beyond."""
+        reach = _LOOK * self.skin.distance
+        margin = 0.5 * (reach - self.skin.distance)
+        pairs = self.skin.tree.pairs(nodes, nodes, reach)
+        close = self.skin.squared(nodes, pairs) < reach**2
+        return Watch(nodes - margin, nodes + margin, pairs.only(close))
+
+    def _felt(self, pairs: Pairs, nodes: Nodes) -> int:
+        """How many of these pairs are felt."""
+        return int((self.skin.squared(nodes, pairs) < self.skin.begins(pairs)).sum())
+
+
+_SOFT = 0.05
+"""Two edges whose middles are nearest are as far apart as they are; at their ends so much of the distance more."""
+
+_REST = 0.25
+"""Pairs that are near at rest, as in a crease, are felt below half of that distance."""
+
+_HALF_WAY = 4.329
+"""Force of the barrier at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2."""
+
+_KEPT = 0.1
+"""No step takes more than 1 less this share of the gap between two parts."""
+
+_LOOK = 2.0
+"""Pairs are looked for so many times farther than they are felt; then they serve until nodes have moved."""
+
+_LEAST_STEP = 1e-12
+"""Steps are above 0."""

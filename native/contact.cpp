@@ -1,0 +1,525 @@
+// Parts of a boundary that come near one another: the loops of geometry/boundary_tree.py, geometry/pair_distances.py and
+// mechanics/contact_pairs.py, where they are explained. Operation by operation as there.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <nanobind/stl/pair.h>
+
+#include "arrays.hpp"
+
+namespace {
+
+using Int = int64_t;
+const double NONE = std::numeric_limits<double>::infinity();
+
+double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Nearest points of a pair whose corners are at y: weights of the corners, and their slopes by what is free.
+struct Nearest {
+    double w[4], dw[2][4], c[3], squared;
+    int free;
+
+    void on_edge(const double (*y)[3], int a, int b) {
+        double along = 0.0, before = 0.0;
+        for (int k = 0; k < 3; k++) {
+            double span = y[b][k] - y[a][k];
+            along += span * span;
+            before += span * (y[0][k] - y[a][k]);
+        }
+        double share = std::min(std::max(before / along, 0.0), 1.0);
+        w[a] = -(1.0 - share), w[b] = -share;
+        dw[0][a] = 1.0, dw[0][b] = -1.0;
+        free = 0.0 < share && share < 1.0 ? 1 : 0;
+    }
+
+    void on_triangle(const double (*y)[3]) {
+        double u[3], v[3], p[3];
+        for (int k = 0; k < 3; k++) u[k] = y[2][k] - y[1][k], v[k] = y[3][k] - y[1][k], p[k] = y[0][k] - y[1][k];
+        double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), up = dot(u, p), vp = dot(v, p);
+        free = 0;
+        if (up <= 0.0 && vp <= 0.0) return void(w[1] = -1.0);
+        if (up >= uu && vp - uv <= up - uu) return void(w[2] = -1.0);
+        if (vp >= vv && up - uv <= vp - vv) return void(w[3] = -1.0);
+        double one = vv * up - uv * vp, two = uu * vp - uv * up, whole = uu * vv - uv * uv;
+        if (two <= 0.0 && 0.0 <= up && up <= uu) return on_edge(y, 1, 2);
+        if (one <= 0.0 && 0.0 <= vp && vp <= vv) return on_edge(y, 1, 3);
+        if (one + two >= whole) return on_edge(y, 2, 3);
+        one = one / whole, two = two / whole;
+        w[1] = -(1.0 - one - two), w[2] = -one, w[3] = -two;
+        dw[0][1] = 1.0, dw[0][2] = -1.0, dw[1][1] = 1.0, dw[1][3] = -1.0;
+        free = 2;
+    }
+
+    void on_edges(const double (*y)[3], double soft) {
+        double u[3], v[3], p[3];
+        for (int k = 0; k < 3; k++) u[k] = y[1][k] - y[0][k], v[k] = y[3][k] - y[2][k], p[k] = y[0][k] - y[2][k];
+        double a = dot(u, u) + soft, b = dot(u, v), c = dot(v, v) + soft;
+        double d = dot(u, p) - 0.5 * soft, e = dot(v, p) + 0.5 * soft;
+        double s = std::min(std::max((b * e - c * d) / std::max(a * c - b * b, 1e-300), 0.0), 1.0);
+        double t = (e + b * s) / c;
+        if (t < 0.0 || t > 1.0) {
+            t = std::min(std::max(t, 0.0), 1.0);
+            s = std::min(std::max((b * t - d) / a, 0.0), 1.0);
+        }
+        w[0] = 1.0 - s, w[1] = s, w[2] = -(1.0 - t), w[3] = -t;
+        free = 0;
+        if (0.0 < s && s < 1.0) dw[free][0] = -1.0, dw[free][1] = 1.0, free++;
+        if (0.0 < t && t < 1.0) dw[free][2] = 1.0, dw[free][3] = -1.0, free++;
+    }
+
+    void find(const double (*y)[3], int corners, bool edges, double soft) {
+        for (int i = 0; i < 4; i++) w[i] = 0.0, dw[0][i] = 0.0, dw[1][i] = 0.0;
+        w[0] = 1.0;
+        if (edges) on_edges(y, soft);
+        else if (corners == 3) on_edge(y, 1, 2);
+        else on_triangle(y);
+        squared = 0.0;
+        for (int k = 0; k < 3; k++) {
+            c[k] = 0.0;
+            for (int i = 0; i < corners; i++) c[k] += w[i] * y[i][k];
+            squared += c[k] * c[k];
+        }
+        if (edges) {
+            double one = w[1] - 0.5, two = -w[3] - 0.5;
+            squared += soft * (one * one + two * two);
+        }
+    }
+};
+
+void place(const double* x, int dim, const Int* stencil, int corners, double (*y)[3]) {
+    for (int i = 0; i < corners; i++)
+        for (int k = 0; k < 3; k++) y[i][k] = k < dim ? x[stencil[i] * dim + k] : 0.0;
+}
+
+// A straight move of all nodes.
+struct Move {
+    const double *x, *move, *rest;
+    int dim;
+    double kept;
+
+    double advanced(const Int* stencil, bool edges, double limit) const {
+        int corners = dim + 1, first = edges ? 2 : 1;
+        double y[4][3], way[4][3];
+        place(move, dim, stencil, corners, way);
+        for (int k = 0; k < 3; k++) {
+            double mean = 0.0;
+            for (int i = 0; i < corners; i++) mean += way[i][k] / corners;
+            for (int i = 0; i < corners; i++) way[i][k] -= mean;
+        }
+        double speeds = 0.0;
+        for (int side = 0; side < 2; side++) {
+            double fastest = 0.0;
+            for (int i = side ? first : 0; i < (side ? corners : first); i++)
+                fastest = std::max(fastest, dot(way[i], way[i]));
+            speeds += std::sqrt(fastest);
+        }
+        if (speeds == 0.0) return limit;
+        Nearest pair;
+        place(x, dim, stencil, corners, y);
+        pair.find(y, corners, edges, 0.0);
+        double distance = std::sqrt(pair.squared);
+        if (distance * (1.0 - kept) > speeds * limit) return limit;
+        place(rest, dim, stencil, corners, y);
+        pair.find(y, corners, edges, 0.0);
+        if (pair.squared == 0.0) return limit;
+        place(x, dim, stencil, corners, y);
+        double least = kept * distance, done = 0.0;
+        for (int round = 0; round < 200; round++) {
+            double step = 0.95 * (distance - least) / speeds;
+            if (done + step >= limit) return limit;
+            done += step;
+            for (int i = 0; i < corners; i++)
+                for (int k = 0; k < 3; k++) y[i][k] += step * way[i][k];
+            pair.find(y, corners, edges, 0.0);
+            distance = std::sqrt(pair.squared);
+            if (distance < 1.1 * least) break;
+        }
+        return done;
+    }
+};
+
+// Boxes in single precision, wide enough for what rounding takes: lowest corner, and less the highest one.
+typedef float Four __attribute__((vector_size(16)));
+typedef int Mask __attribute__((vector_size(16)));
+
+bool any(Mask mask) {
+    typedef int64_t Halves __attribute__((vector_size(16)));
+    Halves halves = (Halves)mask;
+    return (halves[0] | halves[1]) != 0;
+}
+
+struct Box {
+    Four low, high;  // high is that of the highest corner, less
+
+    static Box empty() { return {Four{} + 3e38f, Four{} + 3e38f}; }
+    void join(const Box& other) {
+        low = low < other.low ? low : other.low;
+        high = high < other.high ? high : other.high;
+    }
+    bool apart(const Box& other) const {  // low > other's highest, or the other way round
+        return any((low + other.high > 0.0f) | (other.low + high > 0.0f));
+    }
+};
+
+// Whether two boxes that move, each by any way in a second one, stay apart along one axis up to a share of the way.
+bool passing(const Box& one, const Box& one_way, const Box& other, const Box& other_way, float limit) {
+    Four gap = one.low + other.high, closing = one_way.low + other_way.high;
+    Four back = other.low + one.high, returning = other_way.low + one_way.high;
+    return any(((gap > 0.0f) & (gap + limit * closing > 0.0f)) | ((back > 0.0f) & (back + limit * returning > 0.0f)));
+}
+
+void demand_nodes(const Int* numbers, Int count, Int nodes, const char* what) {
+    for (Int i = 0; i < count; i++) demand(numbers[i] >= -1 && numbers[i] < nodes, what);
+}
+
+// A tree of boxes of facets, with the features that belong to each.
+struct Tree {
+    Int boxes, width;
+    int dim;
+    const Int *children, *facets, *points, *edges;
+
+    Tree(const Counts<2>& children, const Counts<2>& facets, const Counts<2>& points, const Counts<2>& edges, Int nodes)
+        : boxes((Int)children.shape(0)), width((Int)edges.shape(1)), dim((int)facets.shape(1)),
+          children(children.data()), facets(facets.data()), points(points.data()), edges(edges.data()) {
+        Int count = (Int)facets.shape(0);
+        demand((dim == 2 || dim == 3) && children.shape(1) == 2 && (Int)points.shape(0) == count &&
+                   (int)points.shape(1) == dim && (Int)edges.shape(0) == count && width == (dim == 3 ? 6 : 0),
+               "features of each facet");
+        demand_nodes(this->points, count * dim, nodes, "a point is no node");
+        demand_nodes(this->edges, count * width, nodes, "an edge has no nodes");
+        for (Int i = 0; i < count * dim; i++) demand(this->facets[i] >= 0 && this->facets[i] < nodes, "no such node");
+        for (Int box = 0; box < boxes; box++) {
+            Int one = this->children[2 * box], other = this->children[2 * box + 1];
+            demand(one < 0 ? other >= 0 && other < count : one > box && other > box && one < boxes && other < boxes,
+                   "children come after their parents");
+        }
+    }
+
+    bool is_leaf(Int box) const { return children[2 * box] < 0; }
+    Int facet_of(Int leaf) const { return children[2 * leaf + 1]; }
+};
+
+// The boxes of a tree, of its nodes and edges, while every node goes anywhere between two corners.
+struct Boxes {
+    std::vector<Box> tree, nodes, edges;  // of an edge: at the place that it has in the list of its facet
+
+    Boxes(const Tree& all, const double* low, const double* high, Int count)
+        : tree(all.boxes), nodes(count), edges((all.boxes + 1) / 2 * (all.width / 2)) {
+        double widest = 0.0;
+        for (Int i = 0; i < count * all.dim; i++)
+            widest = std::max(widest, std::max(std::abs(low[i]), std::abs(high[i])));
+        float margin = (float)(4e-7 * widest);
+        for (Int node = 0; node < count; node++) {
+            Box box{};
+            for (int k = 0; k < all.dim; k++) {
+                box.low[k] = (float)low[node * all.dim + k] - margin;
+                box.high[k] = -(float)high[node * all.dim + k] - margin;
+            }
+            nodes[node] = box;
+        }
+        for (size_t place = 0; place < edges.size(); place++) {
+            const Int* ends = all.edges + 2 * place;
+            if (ends[0] < 0) continue;
+            edges[place] = nodes[ends[0]];
+            edges[place].join(nodes[ends[1]]);
+        }
+        for (Int at = all.boxes - 1; at >= 0; at--) {
+            Box box = Box::empty();
+            if (all.is_leaf(at)) {
+                for (int corner = 0; corner < all.dim; corner++)
+                    box.join(nodes[all.facets[all.facet_of(at) * all.dim + corner]]);
+            } else {
+                box = tree[all.children[2 * at]];
+                box.join(tree[all.children[2 * at + 1]]);
+            }
+            tree[at] = box;
+        }
+    }
+
+    float size(Int box) const {
+        Four span = -tree[box].high - tree[box].low;
+        return span[0] + span[1] + span[2];
+    }
+};
+
+// Go down all pairs of boxes; `skip(room, one, other)` leaves out pairs of a room of boxes, given by their places in it:
+// `near`, with three rooms: tree, nodes and tree, edges. Each pair of features without a common node goes to `visit`.
+template <class Skip, class Visit>
+void descend(const Tree& tree, const Boxes& boxes, const Skip& skip, const Visit& visit) {
+    if (tree.boxes == 0) return;
+    std::vector<Int> stack(8 * tree.boxes + 8);
+    Int top = 0, dim = tree.dim, each = tree.width / 2;
+    auto push = [&](Int one, Int other) { stack[top++] = one, stack[top++] = other; };
+    auto leaves = [&](Int one, Int other) {
+        Int stencil[4], sides[2] = {one, other};
+        for (int turn = 0; turn < 2; turn++) {
+            Int leaf = sides[1 - turn], f = tree.facet_of(sides[turn]);
+            const Int* facet = tree.facets + tree.facet_of(leaf) * dim;
+            for (int corner = 0; corner < dim; corner++) {
+                Int node = tree.points[f * dim + corner];
+                if (node < 0 || skip.node(node, leaf)) continue;
+                if (node == facet[0] || node == facet[1] || (dim == 3 && node == facet[2])) continue;
+                stencil[0] = node;
+                for (int k = 0; k < dim; k++) stencil[1 + k] = facet[k];
+                visit(stencil, 1);
+            }
+        }
+        Int f = tree.facet_of(one), g = tree.facet_of(other);
+        for (Int i = f * each; i < (f + 1) * each; i++) {
+            Int p = tree.edges[2 * i], q = tree.edges[2 * i + 1];
+            if (p < 0) continue;
+            stencil[0] = p, stencil[1] = q;
+            for (Int j = g * each; j < (g + 1) * each; j++) {
+                Int a = tree.edges[2 * j], b = tree.edges[2 * j + 1];
+                if (a < 0 || p == a || p == b || q == a || q == b || skip.edges(i, j)) continue;
+                stencil[2] = a, stencil[3] = b;
+                visit(stencil, 2);
+            }
+        }
+    };
+    push(0, 0);
+    while (top > 0) {
+        Int other = stack[--top], one = stack[--top];
+        Int left = tree.children[2 * one], right = tree.children[2 * one + 1];
+        if (one == other) {
+            if (left < 0) continue;
+            push(left, left), push(right, right);
+            if (!skip.boxes(left, right)) push(left, right);
+            continue;
+        }
+        if (left < 0 && tree.is_leaf(other)) {
+            leaves(one, other);
+            continue;
+        }
+        if (left < 0 || (!tree.is_leaf(other) && boxes.size(other) > boxes.size(one))) {
+            left = tree.children[2 * other], right = tree.children[2 * other + 1];
+            other = one;
+        }
+        if (!skip.boxes(left, other)) push(left, other);
+        if (!skip.boxes(right, other)) push(right, other);
+    }
+}
+
+struct Apart {
+    const Boxes& own;
+    bool boxes(Int one, Int other) const { return own.tree[one].apart(own.tree[other]); }
+    bool node(Int node, Int leaf) const { return own.nodes[node].apart(own.tree[leaf]); }
+    bool edges(Int one, Int other) const { return own.edges[one].apart(own.edges[other]); }
+};
+
+struct Passing {
+    const Boxes &own, &ways;
+    const float& limit;
+    bool test(const std::vector<Box>& a, const std::vector<Box>& u, Int one, const std::vector<Box>& b,
+              const std::vector<Box>& v, Int other) const {
+        return passing(a[one], u[one], b[other], v[other], limit);
+    }
+    bool boxes(Int one, Int other) const { return test(own.tree, ways.tree, one, own.tree, ways.tree, other); }
+    bool node(Int node, Int leaf) const { return test(own.nodes, ways.nodes, node, own.tree, ways.tree, leaf); }
+    bool edges(Int one, Int other) const { return test(own.edges, ways.edges, one, own.edges, ways.edges, other); }
+};
+
+Int pairs_within(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges, Reals<2> low, Reals<2> high,
+                 Array<Int, 2> stencils, Array<bool, 1> both) {
+    Tree tree(children, facets, points, edges, (Int)low.shape(0));
+    int dim = tree.dim;
+    demand((int)low.shape(1) == dim && (int)high.shape(1) == dim && high.shape(0) == low.shape(0) &&
+               (int)stencils.shape(1) == dim + 1 && both.shape(0) == stencils.shape(0), "shapes of boxes and pairs");
+    const double *least = low.data(), *most = high.data();
+    Int found = 0, room = (Int)stencils.shape(0);
+    Free free(100.0 * tree.boxes);
+    Boxes boxes(tree, least, most, (Int)low.shape(0));
+    auto visit = [&](const Int* stencil, int first) {
+        for (int k = 0; k < dim; k++) {
+            double ends[2][2] = {{NONE, -NONE}, {NONE, -NONE}};
+            for (int i = 0; i < dim + 1; i++) {
+                double* side = ends[i < first ? 0 : 1];
+                side[0] = std::min(side[0], least[stencil[i] * dim + k]);
+                side[1] = std::max(side[1], most[stencil[i] * dim + k]);
+            }
+            if (ends[0][0] > ends[1][1] || ends[1][0] > ends[0][1]) return;
+        }
+        if (found < room) {
+            std::copy(stencil, stencil + dim + 1, stencils.data() + found * (dim + 1));
+            both.data()[found] = first == 2;
+        }
+        found++;
+    };
+    descend(tree, boxes, Apart{boxes}, visit);
+    return found;
+}
+
+double share_of_way(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges, Reals<2> nodes,
+                    Reals<2> move, Reals<2> rest, double kept) {
+    Tree tree(children, facets, points, edges, (Int)nodes.shape(0));
+    demand((int)nodes.shape(1) == tree.dim && move.size() == nodes.size() && rest.size() == nodes.size(),
+           "shapes of the nodes");
+    Move all{nodes.data(), move.data(), rest.data(), tree.dim, kept};
+    double limit = 1.0;
+    float rounded = 1.0f;
+    Free free(100.0 * tree.boxes);
+    Boxes boxes(tree, nodes.data(), nodes.data(), (Int)nodes.shape(0));
+    Boxes ways(tree, move.data(), move.data(), (Int)nodes.shape(0));
+    auto visit = [&](const Int* stencil, int first) {
+        limit = all.advanced(stencil, first == 2, limit);
+        rounded = (float)limit * 1.000001f;
+    };
+    descend(tree, boxes, Passing{boxes, ways, rounded}, visit);
+    return limit;
+}
+
+// Pairs as they come from Python.
+struct Listed {
+    Int count, nodes;
+    int dim, corners;
+    const double* x;
+    const Int* stencils;
+    const bool* edges;
+
+    Listed(const Reals<2>& x, const Counts<2>& stencils, const Array<const bool, 1>& edges)
+        : count((Int)stencils.shape(0)), nodes((Int)x.shape(0)), dim((int)x.shape(1)), corners(dim + 1), x(x.data()),
+          stencils(stencils.data()), edges(edges.data()) {
+        demand((dim == 2 || dim == 3) && (int)stencils.shape(1) == corners && (Int)edges.shape(0) == count,
+               "as many pairs of each");
+        for (Int i = 0; i < count * corners; i++)
+            demand(this->stencils[i] >= 0 && this->stencils[i] < nodes, "a corner is no node");
+    }
+
+    Nearest nearest(Int pair, double soft, double (*y)[3]) const {
+        Nearest found;
+        place(x, dim, stencils + pair * corners, corners, y);
+        found.find(y, corners, edges[pair], soft);
+        return found;
+    }
+};
+
+void squared_distances(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft,
+                       Array<double, 1> squared) {
+    Listed all(x, stencils, edges);
+    demand((Int)squared.shape(0) == all.count, "a distance of each pair");
+    double y[4][3];
+    for (Int pair = 0; pair < all.count; pair++) squared.data()[pair] = all.nearest(pair, soft, y).squared;
+}
+
+double admissible_share(Reals<2> x, Reals<2> move, Reals<2> rest, Counts<2> stencils, Array<const bool, 1> edges,
+                        double kept) {
+    Listed all(x, stencils, edges);
+    demand(move.size() == x.size() && rest.size() == x.size(), "shapes of the nodes");
+    Move way{x.data(), move.data(), rest.data(), all.dim, kept};
+    double limit = 1.0;
+    for (Int pair = 0; pair < all.count; pair++)
+        limit = way.advanced(all.stencils + pair * all.corners, all.edges[pair], limit);
+    return limit;
+}
+
+struct Barrier {
+    double value, slope, curve;
+
+    Barrier(double squared, double begin, double weight) : value(0.0), slope(0.0), curve(0.0) {
+        double r = squared / begin;
+        if (r >= 1.0) return;
+        if (r <= 0.0) {
+            value = NONE, slope = -NONE, curve = NONE;
+            return;
+        }
+        double log = -std::log(r), below = r - 1.0;
+        value = weight * begin * below * below * log;
+        slope = weight * (2.0 * below * log - below * below / r);
+        curve = weight * (2.0 * log - 4.0 * below / r + below * below / (r * r)) / begin;
+    }
+};
+
+void demand_laws(const Listed& all, const Reals<1>& begins, const Reals<1>& weights) {
+    demand((Int)begins.shape(0) == all.count && (Int)weights.shape(0) == all.count, "a law of each pair");
+}
+
+std::pair<double, Int> barrier_energy(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft,
+                                      Reals<1> begins, Reals<1> weights) {
+    Listed all(x, stencils, edges);
+    demand_laws(all, begins, weights);
+    double y[4][3], total = 0.0;
+    Int felt = 0;
+    for (Int pair = 0; pair < all.count; pair++) {
+        double squared = all.nearest(pair, soft, y).squared;
+        if (!(squared < begins.data()[pair])) continue;
+        total += Barrier(squared, begins.data()[pair], weights.data()[pair]).value;
+        felt++;
+    }
+    return {total, felt};
+}
+
+void barrier_forces(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft, Reals<1> begins,
+                    Reals<1> weights, Array<double, 3> blocks) {
+    Listed all(x, stencils, edges);
+    demand_laws(all, begins, weights);
+    demand((Int)blocks.shape(0) == all.count && (int)blocks.shape(1) == all.corners && (int)blocks.shape(2) == all.dim,
+           "forces of each pair");
+    double y[4][3];
+    for (Int pair = 0; pair < all.count; pair++) {
+        Nearest near = all.nearest(pair, soft, y);
+        Barrier law(near.squared, begins.data()[pair], weights.data()[pair]);
+        double* block = blocks.data() + pair * all.corners * all.dim;
+        for (int i = 0; i < all.corners; i++)
+            for (int k = 0; k < all.dim; k++) block[i * all.dim + k] = 2.0 * law.slope * near.w[i] * near.c[k];
+    }
+}
+
+void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft, Reals<1> begins,
+                     Reals<1> weights, double share, Array<double, 3> blocks) {
+    Listed all(x, stencils, edges);
+    demand_laws(all, begins, weights);
+    int corners = all.corners, dim = all.dim, rows = corners * dim;
+    demand((Int)blocks.shape(0) == all.count && (int)blocks.shape(1) == rows && (int)blocks.shape(2) == rows,
+           "a block of each pair");
+    double y[4][3];
+    for (Int pair = 0; pair < all.count; pair++) {
+        double* block = blocks.data() + pair * rows * rows;
+        std::fill(block, block + rows * rows, 0.0);
+        Nearest near = all.nearest(pair, soft, y);
+        if (near.squared >= begins.data()[pair]) continue;
+        Barrier law(near.squared, begins.data()[pair], weights.data()[pair]);
+        double length = std::max(dot(near.c, near.c), 1e-300);
+        double across = 2.0 * law.slope * (1.0 - share), along = 4.0 * length * law.curve + 2.0 * law.slope;
+        if (along < 0.0) along *= 1.0 - share;
+        for (int i = 0; i < corners; i++)
+            for (int j = 0; j < corners; j++)
+                for (int a = 0; a < dim; a++)
+                    for (int b = 0; b < dim; b++) {
+                        double one = (along - across) * near.c[a] * near.c[b] / length;
+                        if (a == b) one += across;
+                        block[(dim * i + a) * rows + dim * j + b] = near.w[i] * near.w[j] * one;
+                    }
+        if (near.free == 0) continue;
+        double lines[2][3] = {}, mixed[2][12] = {};
+        for (int q = 0; q < near.free; q++) {
+            for (int k = 0; k < 3; k++)
+                for (int i = 0; i < corners; i++) lines[q][k] += near.dw[q][i] * y[i][k];
+            for (int i = 0; i < corners; i++)
+                for (int k = 0; k < dim; k++)
+                    mixed[q][dim * i + k] = near.w[i] * lines[q][k] + near.dw[q][i] * near.c[k];
+        }
+        double extra = all.edges[pair] ? soft : 0.0;
+        double a00 = dot(lines[0], lines[0]) + extra, a11 = 1.0, a01 = 0.0;
+        if (near.free == 2) a11 = dot(lines[1], lines[1]) + extra, a01 = dot(lines[0], lines[1]);
+        double push = -2.0 * law.slope / (a00 * a11 - a01 * a01);
+        for (int i = 0; i < rows; i++)
+            for (int j = 0; j < rows; j++)
+                block[i * rows + j] += push * (a11 * mixed[0][i] * mixed[0][j] + a00 * mixed[1][i] * mixed[1][j] -
+                                               a01 * (mixed[0][i] * mixed[1][j] + mixed[1][i] * mixed[0][j]));
+    }
+}
+
+}  // namespace
+
+void add_contact(nb::module_& module) {
+    module.def("pairs_within", &pairs_within, given(), given(), given(), given(), given(), given(), filled(), filled());
+    module.def("share_of_way", &share_of_way);
+    module.def("squared_distances", &squared_distances, given(), given(), given(), given(), filled());
+    module.def("admissible_share", &admissible_share);
+    module.def("barrier_energy", &barrier_energy);
+    module.def("barrier_forces", &barrier_forces, given(), given(), given(), given(), given(), given(), filled());
+    module.def("barrier_hessian", &barrier_hessian, given(), given(), given(), given(), given(), given(), given(),
+               filled());
+}
