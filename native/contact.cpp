@@ -99,7 +99,8 @@ struct Move {
     int dim;
     double kept;
 
-    double advanced(const Int* stencil, bool edges, double limit) const {
+    // The share of the move that a pair admits; `close` tells whether it may come within reach up to there.
+    double advanced(const Int* stencil, bool edges, double limit, double reach, bool& close) const {
         int corners = dim + 1, first = edges ? 2 : 1;
         double y[4][3], way[4][3];
         place(move, dim, stencil, corners, way);
@@ -115,11 +116,11 @@ struct Move {
                 fastest = std::max(fastest, dot(way[i], way[i]));
             speeds += std::sqrt(fastest);
         }
-        if (speeds == 0.0) return limit;
         Nearest pair;
         place(x, dim, stencil, corners, y);
         pair.find(y, corners, edges, 0.0);
         double distance = std::sqrt(pair.squared);
+        close = distance - speeds * limit < reach;
         if (distance * (1.0 - kept) > speeds * limit) return limit;
         place(rest, dim, stencil, corners, y);
         pair.find(y, corners, edges, 0.0);
@@ -205,12 +206,12 @@ struct Tree {
 struct Boxes {
     std::vector<Box> tree, nodes, edges;  // of an edge: at the place that it has in the list of its facet
 
-    Boxes(const Tree& all, const double* low, const double* high, Int count)
+    Boxes(const Tree& all, const double* low, const double* high, Int count, double wider)
         : tree(all.boxes), nodes(count), edges((all.boxes + 1) / 2 * (all.width / 2)) {
         double widest = 0.0;
         for (Int i = 0; i < count * all.dim; i++)
             widest = std::max(widest, std::max(std::abs(low[i]), std::abs(high[i])));
-        float margin = (float)(4e-7 * widest);
+        float margin = (float)(4e-7 * widest + wider);
         for (Int node = 0; node < count; node++) {
             Box box{};
             for (int k = 0; k < all.dim; k++) {
@@ -321,7 +322,7 @@ struct Passing {
     bool edges(Int one, Int other) const { return test(own.edges, ways.edges, one, own.edges, ways.edges, other); }
 };
 
-Int pairs_within(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges, Reals<2> low, Reals<2> high,
+std::pair<double, Int> pairs_within(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges, Reals<2> low, Reals<2> high,
                  Array<Int, 2> stencils, Array<bool, 1> both) {
     Tree tree(children, facets, points, edges, (Int)low.shape(0));
     int dim = tree.dim;
@@ -330,7 +331,7 @@ Int pairs_within(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<
     const double *least = low.data(), *most = high.data();
     Int found = 0, room = (Int)stencils.shape(0);
     Free free(100.0 * tree.boxes);
-    Boxes boxes(tree, least, most, (Int)low.shape(0));
+    Boxes boxes(tree, least, most, (Int)low.shape(0), 0.0);
     auto visit = [&](const Int* stencil, int first) {
         for (int k = 0; k < dim; k++) {
             double ends[2][2] = {{NONE, -NONE}, {NONE, -NONE}};
@@ -348,26 +349,36 @@ Int pairs_within(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<
         found++;
     };
     descend(tree, boxes, Apart{boxes}, visit);
-    return found;
+    return {1.0, found};
 }
 
-double share_of_way(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges, Reals<2> nodes,
-                    Reals<2> move, Reals<2> rest, double kept) {
+std::pair<double, Int> share_of_way(Counts<2> children, Counts<2> facets, Counts<2> points, Counts<2> edges,
+                                    Reals<2> nodes, Reals<2> move, Reals<2> rest, double kept, double reach,
+                                    Array<Int, 2> stencils, Array<bool, 1> both) {
     Tree tree(children, facets, points, edges, (Int)nodes.shape(0));
-    demand((int)nodes.shape(1) == tree.dim && move.size() == nodes.size() && rest.size() == nodes.size(),
-           "shapes of the nodes");
-    Move all{nodes.data(), move.data(), rest.data(), tree.dim, kept};
+    int dim = tree.dim;
+    demand((int)nodes.shape(1) == dim && move.size() == nodes.size() && rest.size() == nodes.size() &&
+               (int)stencils.shape(1) == dim + 1 && both.shape(0) == stencils.shape(0), "shapes of nodes and pairs");
+    Move all{nodes.data(), move.data(), rest.data(), dim, kept};
     double limit = 1.0;
     float rounded = 1.0f;
+    Int found = 0, room = (Int)stencils.shape(0);
     Free free(100.0 * tree.boxes);
-    Boxes boxes(tree, nodes.data(), nodes.data(), (Int)nodes.shape(0));
-    Boxes ways(tree, move.data(), move.data(), (Int)nodes.shape(0));
+    Boxes boxes(tree, nodes.data(), nodes.data(), (Int)nodes.shape(0), 0.5 * reach);
+    Boxes ways(tree, move.data(), move.data(), (Int)nodes.shape(0), 0.0);
     auto visit = [&](const Int* stencil, int first) {
-        limit = all.advanced(stencil, first == 2, limit);
+        bool close;
+        limit = all.advanced(stencil, first == 2, limit, reach, close);
         rounded = (float)limit * 1.000001f;
+        if (!close) return;
+        if (found < room) {
+            std::copy(stencil, stencil + dim + 1, stencils.data() + found * (dim + 1));
+            both.data()[found] = first == 2;
+        }
+        found++;
     };
     descend(tree, boxes, Passing{boxes, ways, rounded}, visit);
-    return limit;
+    return {limit, found};
 }
 
 // Pairs as they come from Python.
@@ -409,8 +420,9 @@ double admissible_share(Reals<2> x, Reals<2> move, Reals<2> rest, Counts<2> sten
     demand(move.size() == x.size() && rest.size() == x.size(), "shapes of the nodes");
     Move way{x.data(), move.data(), rest.data(), all.dim, kept};
     double limit = 1.0;
+    bool close;
     for (Int pair = 0; pair < all.count; pair++)
-        limit = way.advanced(all.stencils + pair * all.corners, all.edges[pair], limit);
+        limit = way.advanced(all.stencils + pair * all.corners, all.edges[pair], limit, 0.0, close);
     return limit;
 }
 
@@ -515,7 +527,8 @@ void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges,
 
 void add_contact(nb::module_& module) {
     module.def("pairs_within", &pairs_within, given(), given(), given(), given(), given(), given(), filled(), filled());
-    module.def("share_of_way", &share_of_way);
+    module.def("share_of_way", &share_of_way, given(), given(), given(), given(), given(), given(), given(), given(),
+               given(), filled(), filled());
     module.def("squared_distances", &squared_distances, given(), given(), given(), given(), filled());
     module.def("admissible_share", &admissible_share);
     module.def("barrier_energy", &barrier_energy);

@@ -1,6 +1,6 @@
 """`BoundaryTree`: which parts of a body's boundary come near one another on the way from one place to another."""
 
-from functools import cached_property
+from collections.abc import Callable
 from typing import NamedTuple, no_type_check
 
 import numpy as np
@@ -54,30 +54,35 @@ class BoundaryTree:
         self.edges = np.ascontiguousarray(edges.reshape(count, -1))
         self.children = _tree(mesh.nodes[self.facets].mean(axis=1))
 
-    def pairs(self, low: Nodes, high: Nodes, reach: float) -> Pairs:
-        """Pairs whose boxes come within reach [m], each node being in a box of its own from low to high [m]."""
-        high, room = high + reach, self._room
-        while True:
-            stencils, edges = np.empty((room, low.shape[1] + 1), np.int64), np.empty(room, np.bool_)
-            count = _pairs_within(self.children, self.facets, self.points, self.edges, low, high, stencils, edges)
-            if count <= room:
-                return Pairs(stencils[:count], edges[:count])
-            room = 2 * count
+    def pairs(self, nodes: Nodes, reach: float) -> Pairs:
+        """Pairs of features whose boxes come within reach [m] of one another."""
+        return self._filled(lambda *pairs: _pairs_within(*self._parts, nodes, nodes + reach, *pairs))[1]
 
-    def admissible_share(self, nodes: Nodes, move: Nodes, rest: Nodes, kept: float) -> float:
-        """Largest share, at most 1, of a straight move after which each pair keeps a share of its distance.
+    def sweep(self, nodes: Nodes, move: Nodes, rest: Nodes, *, kept: float, reach: float) -> tuple[float, Pairs]:
+        """Largest share of a straight move, at most 1, that is admissible, and the pairs that come near on the way.
 
         Args:
             nodes: where it begins [m].
             move: of each node [m].
             rest: where the nodes are at rest [m]: pairs that touch there may do as they like.
-            kept: share of the distance that is to be kept.
+            kept: share of its distance that each pair is to keep.
+            reach: all pairs that come within this distance [m] are told, and more.
         """
-        return _share_of_way(self.children, self.facets, self.points, self.edges, nodes, move, rest, kept)
+        return self._filled(lambda *pairs: _share_of_way(*self._parts, nodes, move, rest, kept, reach, *pairs))
 
-    @cached_property
-    def _room(self) -> int:
-        return 64 + 8 * len(self.facets)
+    def _filled(self, fill: Callable[[np.ndarray, np.ndarray], tuple[float, int]]) -> tuple[float, Pairs]:
+        """What a loop tells, and the pairs that it fills in; again with more room where that was too little."""
+        room = 64 + 8 * len(self.facets)
+        while True:
+            stencils, edges = np.empty((room, self.facets.shape[1] + 1), np.int64), np.empty(room, np.bool_)
+            told, count = fill(stencils, edges)
+            if count <= room:
+                return told, Pairs(stencils[:count], edges[:count])
+            room = 2 * count
+
+    @property
+    def _parts(self) -> tuple[np.ndarray, ...]:
+        return self.children, self.facets, self.points, self.edges
 
 
 def facet_areas(mesh: Mesh) -> tuple[Vector, Vector]:
@@ -146,12 +151,12 @@ def _apart(a, b):
 @Kernel
 @no_type_check
 def _pairs_within(children, facets, points, edges, low, high, stencils, both):
-    """Fill in pairs as long as there is room; return how many there are."""
+    """Fill in pairs as long as there is room; return 1 and how many there are."""
     dim, found = facets.shape[1], 0
     boxes = np.zeros((children.shape[0], 6))
     _fit_boxes(children, facets, low, high, boxes)
     if children.shape[0] == 0:
-        return 0
+        return 1.0, 0
     stack = np.empty((4 * children.shape[0] + 4, 2), np.int64)
     stack[0, 0], stack[0, 1], top = 0, 0, 1
     while top > 0:
@@ -204,19 +209,19 @@ def _pairs_within(children, facets, points, edges, low, high, stencils, both):
         if not _apart(boxes[right], boxes[other]):
             stack[top, 0], stack[top, 1] = right, other
             top += 1
-    return found
+    return 1.0, found
 
 
 @Kernel
 @no_type_check
-def _share_of_way(children, facets, points, edges, x, move, rest, kept):
-    """Largest share of a move."""
-    dim, limit = facets.shape[1], 1.0
+def _share_of_way(children, facets, points, edges, x, move, rest, kept, reach, stencils, both):
+    """Fill in pairs that may come within reach as long as there is room; return the largest share, and their number."""
+    dim, limit, found = facets.shape[1], 1.0, 0
     boxes, ways = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
-    _fit_boxes(children, facets, x, x, boxes)
+    _fit_boxes(children, facets, x - 0.5 * reach, x + 0.5 * reach, boxes)
     _fit_boxes(children, facets, move, move, ways)
     if children.shape[0] == 0:
-        return limit
+        return limit, 0
     y, w, dw, c, way = np.zeros((4, 3)), np.empty(4), np.empty((2, 4)), np.empty(3), np.zeros((4, 3))
     stencil = np.empty(dim + 1, np.int64)
     stack = np.empty((4 * children.shape[0] + 4, 2), np.int64)
@@ -246,8 +251,11 @@ def _share_of_way(children, facets, points, edges, x, move, rest, kept):
                     for k in range(dim):
                         stencil[1 + k] = facets[g, k]
                         shared = shared or facets[g, k] == node
-                    if not (shared or _passes(x, move, stencil, 1, limit)):
-                        limit = advanced(x, move, rest, stencil, False, kept, limit, y, way, w, dw, c)
+                    if shared or _passes(x, move, stencil, 1, limit, reach):
+                        continue
+                    limit, close = advanced(x, move, rest, stencil, False, kept, limit, reach, y, way, w, dw, c)
+                    if close:
+                        found = _add(found, stencil, False, stencils, both)
                 f, g = g, f
             for i in range(0, edges.shape[1], 2):
                 if edges[f, i] < 0:
@@ -259,8 +267,11 @@ def _share_of_way(children, facets, points, edges, x, move, rest, kept):
                     if a < 0 or p == a or p == b or q == a or q == b:
                         continue
                     stencil[2], stencil[3] = a, b
-                    if not _passes(x, move, stencil, 2, limit):
-                        limit = advanced(x, move, rest, stencil, True, kept, limit, y, way, w, dw, c)
+                    if _passes(x, move, stencil, 2, limit, reach):
+                        continue
+                    limit, close = advanced(x, move, rest, stencil, True, kept, limit, reach, y, way, w, dw, c)
+                    if close:
+                        found = _add(found, stencil, True, stencils, both)
             continue
         if left < 0 or (first >= 0 and _size(boxes[other]) > _size(boxes[one])):
             one, left, right = other, first, second
@@ -269,7 +280,7 @@ def _share_of_way(children, facets, points, edges, x, move, rest, kept):
             if not _clear(boxes[child], ways[child], boxes[other], ways[other], limit):
                 stack[top, 0], stack[top, 1] = child, other
                 top += 1
-    return limit
+    return limit, found
 
 
 @njit(**INNER)
@@ -288,8 +299,8 @@ def _clear(a, u, b, v, limit):
 
 @njit(**INNER)
 @no_type_check
-def _passes(x, move, stencil, first, limit):
-    """Whether the two features of a pair, in boxes that move, stay apart along one axis all the time."""
+def _passes(x, move, stencil, first, limit, reach):
+    """Whether the two features of a pair, in boxes that move, stay out of reach along one axis all the time."""
     for k in range(x.shape[1]):
         low, high = np.inf, -np.inf
         slow, fast = np.inf, -np.inf
@@ -302,10 +313,10 @@ def _passes(x, move, stencil, first, limit):
             at, by = x[stencil[i], k], move[stencil[i], k]
             other_low, other_high = min(other_low, at), max(other_high, at)
             other_slow, other_fast = min(other_slow, by), max(other_fast, by)
-        gap = low - other_high
+        gap = low - other_high - reach
         if gap > 0.0 and gap + limit * (slow - other_fast) > 0.0:
             return True
-        gap = other_low - high
+        gap = other_low - high - reach
         if gap > 0.0 and gap + limit * (other_slow - fast) > 0.0:
             return True
     return False
@@ -345,3 +356,14 @@ def _edges_near(p, q, a, b, low, high):
         if min(low[a, axis], low[b, axis]) > max(high[p, axis], high[q, axis]):
             return False
     return True
+
+
+@njit(**INNER)
+@no_type_check
+def _add(found, stencil, edges, stencils, both):
+    """Put a pair behind those found, if there is room."""
+    if found < stencils.shape[0]:
+        both[found] = edges
+        for i in range(stencil.shape[0]):
+            stencils[found, i] = stencil[i]
+    return found + 1

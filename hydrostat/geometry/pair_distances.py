@@ -136,8 +136,10 @@ def squared_distances(x, stencils, edges, soft, squared):
 
 @njit(**INNER)
 @no_type_check
-def advanced(x, move, rest, stencil, edges, kept, limit, y, way, w, dw, c):
+def advanced(x, move, rest, stencil, edges, kept, limit, reach, y, way, w, dw, c):
     """Share of a straight move, at most `limit`, after which a pair keeps a share of its distance.
+
+    And whether it may come within reach up to `limit`.
 
     By conservative advancement: a pair whose corners move no faster than `speed` against one another cannot meet
     before distance / speed (additive continuous collision detection: Li, Kaufman and Jiang 2021). Pairs that touch at
@@ -158,23 +160,22 @@ def advanced(x, move, rest, stencil, edges, kept, limit, y, way, w, dw, c):
         for i in range(begin, end):
             fastest = max(fastest, dot(way[i], way[i]))
         speeds += math.sqrt(fastest)
-    if speeds == 0.0:
-        return limit
     place(x, stencil, y)
     _, squared = nearest(y, corners, edges, 0.0, w, dw, c)
     distance = math.sqrt(squared)
+    close = distance - speeds * limit < reach
     if distance * (1.0 - kept) > speeds * limit:
-        return limit
+        return limit, close
     place(rest, stencil, y)
     _, squared = nearest(y, corners, edges, 0.0, w, dw, c)
     if squared == 0.0:
-        return limit
+        return limit, close
     place(x, stencil, y)
     least, done = kept * distance, 0.0
     for _ in range(200):
         step = 0.95 * (distance - least) / speeds
         if done + step >= limit:
-            return limit
+            return limit, close
         done += step
         for i in range(corners):
             for k in range(3):
@@ -183,7 +184,7 @@ def advanced(x, move, rest, stencil, edges, kept, limit, y, way, w, dw, c):
         distance = math.sqrt(squared)
         if distance < 1.1 * least:
             break
-    return done
+    return done, close
 
 
 @Kernel
@@ -193,5 +194,5 @@ def admissible_share(x, move, rest, stencils, edges, kept):
     y, w, dw, c, way = np.zeros((4, 3)), np.empty(4), np.empty((2, 4)), np.empty(3), np.zeros((4, 3))
     limit = 1.0
     for pair in range(stencils.shape[0]):
-        limit = advanced(x, move, rest, stencils[pair], edges[pair], kept, limit, y, way, w, dw, c)
+        limit, _ = advanced(x, move, rest, stencils[pair], edges[pair], kept, limit, 0.0, y, way, w, dw, c)
     return limit

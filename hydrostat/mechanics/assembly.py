@@ -204,11 +204,18 @@ class Assembly:
 
     def _values(self, nodes: Nodes, controls: Vector, projection: float) -> Vector:
         """Values of the sparse part of the Hessian."""
+        self.pattern.settle()
         data = self._quadratic.copy()
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
             if not energy.quadratic:
-                energy.add_hessian(nodes, controls, projection, Places(slots, self.pattern.strides, data))
+                share = 1.0 if projection and energy.lifts_early else projection
+                energy.add_hessian(nodes, controls, share, Places(slots, self.pattern.strides, data))
         return data
+
+    @property
+    def lifts_early(self) -> bool:
+        """Whether terms are felt whose negative part is taken out before that of the others."""
+        return any(energy.lifts_early and len(energy.stencils) for energy in self.energies)
 
     @cached_property
     def _quadratic(self) -> Vector:

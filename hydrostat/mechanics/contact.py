@@ -84,10 +84,12 @@ class ContactEnergy(Energy):
     """
 
     convex: ClassVar[bool] = False
+    lifts_early: ClassVar[bool] = True
 
     def __init__(self, skin: TouchingSkin, pairs: Pairs, watch: Watch | None = None) -> None:
         """Contact between the given pairs, and what is known of all others."""
         self.skin, self.pairs, self.watch = skin, pairs, watch
+        self.swept: tuple[Nodes, Pairs] | None = None
         self.stencils: Stencils = pairs.stencils
 
     @classmethod
@@ -134,7 +136,8 @@ class ContactEnergy(Energy):
         if watch is not None and watch.serves(nodes) and watch.serves(nodes + move):
             share = admissible_share(nodes, move, skin.rest, *watch.pairs, _KEPT)
         else:
-            share = skin.tree.admissible_share(nodes, move, skin.rest, _KEPT)
+            share, pairs = skin.tree.sweep(nodes, move, skin.rest, kept=_KEPT, reach=self._reach)
+            self.swept = nodes + share * move, pairs
         return max(float(share), _LEAST_STEP)
 
     def near(self, nodes: Nodes) -> "ContactEnergy":
@@ -145,12 +148,17 @@ class ContactEnergy(Energy):
             return self if watch is self.watch else ContactEnergy(self.skin, self.pairs, watch)
         return ContactEnergy(self.skin, watch.pairs, watch)
 
+    @property
+    def _reach(self) -> float:
+        return _LOOK * self.skin.distance
+
     def _look_around(self, nodes: Nodes) -> Watch:
         """Pairs that are near, and serve as long as no node moves by more than half of what is looked at beyond."""
-        reach = _LOOK * self.skin.distance
-        margin = 0.5 * (reach - self.skin.distance)
-        pairs = self.skin.tree.pairs(nodes, nodes, reach)
-        close = self.skin.squared(nodes, pairs) < reach**2
+        margin = 0.5 * (self._reach - self.skin.distance)
+        end, pairs = self.swept or (None, None)
+        if end is None or pairs is None or np.abs(nodes - end).max() > _ROUNDING * self.skin.distance:
+            pairs = self.skin.tree.pairs(nodes, self._reach)
+        close = self.skin.squared(nodes, pairs) < self._reach**2
         return Watch(nodes - margin, nodes + margin, pairs.only(close))
 
     def _felt(self, pairs: Pairs, nodes: Nodes) -> int:
@@ -175,3 +183,6 @@ _LOOK = 2.0
 
 _LEAST_STEP = 1e-12
 """Steps are above 0."""
+
+_ROUNDING = 1e-6
+"""Nodes that are off by less than this share of the distance are the same."""

@@ -92,6 +92,7 @@ class Energy(ABC):
         supports: index of the support that holds each term, (terms,); None for an energy that nothing outside holds.
         convex: whether every Hessian block is positive semidefinite wherever the energy is defined.
         quadratic: whether the Hessian is the same for all nodes and controls; then it is added up once.
+        lifts_early: whether what is negative in its Hessian is taken out first, and whole, where the sum is indefinite.
         has_history: whether it depends on the loading path, as friction does; then a solve follows the path by
             `imbalance`, `corrected` and `after`, and `history` is kept with the pose.
     """
@@ -101,6 +102,7 @@ class Energy(ABC):
     supports: Int[np.ndarray, " terms"] | None = None
     convex: ClassVar[bool] = True
     quadratic: ClassVar[bool] = False
+    lifts_early: ClassVar[bool] = False
     has_history: ClassVar[bool] = False
 
     @abstractmethod

@@ -44,7 +44,7 @@ ORDERING = 12e-6
 """What it takes to find an order [s], for each node."""
 
 FACTORISATIONS = 200
-"""So many factorisations of one pattern are counted on, where an order that is known competes with one to be found."""
+"""So many factorisations of one pattern are counted on."""
 
 
 @runtime_checkable
@@ -79,6 +79,7 @@ class Analysis:
     Attributes:
         backend: which one factorises, "supernodal" or "superlu".
         tree: supernodes of the order of elimination; only of the supernodal one.
+        found: modelled time [s] of a factorisation of the pattern for which this order was found.
     """
 
     def __init__(
@@ -89,6 +90,7 @@ class Analysis:
         dim: int,
         points: Nodes | None = None,
         like: "Analysis | None" = None,
+        uses: int = FACTORISATIONS,
         backend: Backend = "auto",
     ) -> None:
         """Analyse the pattern of a symmetric matrix.
@@ -99,6 +101,7 @@ class Analysis:
             dim: degrees of freedom of a node, side by side.
             points: where the nodes are, (nodes, any dimension).
             like: of a pattern with fewer entries; its order is taken where a better one would not pay.
+            uses: how many factorisations are counted on, where that order competes with one to be found.
             backend: who factorises.
 
         Raises:
@@ -112,8 +115,8 @@ class Analysis:
         indptr, indices = (np.require(array, np.int32, ["C", "W"]) for array in (indptr, indices))
         self._indptr, self._indices, self._size = indptr, indices, size
         if self.backend == "supernodal":
-            known = None if like is None or like.backend != self.backend else like.tree
-            self.tree = _cheapest_tree(indptr, indices, dim, points, known)
+            known = None if like is None or like.backend != self.backend else (like.tree, like.found, uses)
+            self.tree, self.found = _cheapest_tree(indptr, indices, dim, points, known)
             self._supernodal = SupernodalAnalysis(self.tree, indptr, indices, dim)
 
     def factorise(self, data: Vector) -> "Factorisation":
@@ -211,14 +214,17 @@ def _cheapest_tree(
     indices: np.ndarray,
     dim: int,
     points: Nodes | None,
-    known: symbolic.EliminationTree | None,
-) -> symbolic.EliminationTree:
-    """Supernodes of the best of the orders that we know; of a known order where making others would not pay."""
+    known: tuple[symbolic.EliminationTree, float, int] | None,
+) -> tuple[symbolic.EliminationTree, float]:
+    """Supernodes of the best of the orders that we know; of a known order where making others would not pay.
+
+    With the modelled time of a factorisation for which the order was found [s].
+    """
     starts, neighbours = ordering.block_graph(indptr, indices, dim)
     if known is not None:
-        tree = symbolic.supernodes(starts, neighbours, known.order, dim)
-        if FACTORISATIONS * (tree.seconds - known.seconds) <= ORDERING * len(tree.order):
-            return tree
+        tree, (_, found, uses) = symbolic.supernodes(starts, neighbours, known[0].order, dim), known
+        if uses * (tree.seconds - found) <= ORDERING * len(tree.order):
+            return tree, found
     distances = ordering.graph_coordinates(starts, neighbours, DISTANCES)
     coordinates = distances if points is None else np.hstack([points, distances])
     orders = [
@@ -226,7 +232,8 @@ def _cheapest_tree(
         _minimum_degree(starts, neighbours),
     ]
     trees = [symbolic.supernodes(starts, neighbours, order, dim) for order in orders]
-    return min(trees, key=lambda tree: tree.seconds)
+    best = min(trees, key=lambda tree: tree.seconds)
+    return best, best.seconds
 
 
 def _minimum_degree(starts: np.ndarray, neighbours: np.ndarray) -> np.ndarray:

@@ -238,7 +238,8 @@ class _EnergyDescent:
                 return stiffness
             if self.share == 1.0:
                 break
-            self.share = min(16 * self.share, 1.0) if self.share else 1.0
+            first = _EARLY if place.assembly.lifts_early else 1.0
+            self.share = (min(16 * self.share, 1.0) if self.share > _EARLY else _LEAST_SHARE) if self.share else first
         for shift in _SHIFTS:
             stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=1.0, shift=shift)
             if stiffness.definite:
@@ -371,6 +372,9 @@ _PAYS = 0.1
 
 _LEAST_SHARE = 1 / 32
 """Below this share of what is negative, try the full Hessian."""
+
+_EARLY = 1e-6
+"""A share so small that of most energies it takes out nothing."""
 
 _FAST = 0.1
 """After a step that leaves less than this share of the residual the full Hessian is tried at once."""

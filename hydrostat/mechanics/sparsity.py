@@ -8,7 +8,7 @@ from jaxtyping import Int
 
 from hydrostat.arrays import Nodes
 from hydrostat.mechanics.energy import Stencils
-from hydrostat.mechanics.factorisation import Analysis
+from hydrostat.mechanics.factorisation import FACTORISATIONS, Analysis
 
 AnyStencils = Int[np.ndarray, "_ _"]
 """Stencils of one of several energies, which differ in terms and corners."""
@@ -32,6 +32,7 @@ class SparsityPattern:
         """
         self.stencils, self.shape = tuple(stencils), rest.shape
         self.rest, self._base = rest, base
+        self._passing = False
 
     def extended(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
         """Pattern of these stencils behind those of this one."""
@@ -40,11 +41,16 @@ class SparsityPattern:
     def changed(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
         """Pattern of other stencils that keeps all pairs of this one; its analysis too, if no new pair comes."""
         other = SparsityPattern(stencils, self.rest, base=self)
-        if len(other.entries) == len(self.entries):
-            other.__dict__["analysis"] = self.analysis
-        _ = other.analysis, other._places  # then what it was made from can be forgotten
-        other._base = None
+        other._passing = True
         return other
+
+    def settle(self) -> None:
+        """Find what factorisations need of a pattern of terms that come and go; then it keeps no other pattern."""
+        if self._base is not None and self._passing:
+            if len(self.entries) == len(self._base.entries):
+                self.__dict__["analysis"] = self._base.analysis
+            _ = self.analysis, self._places
+            self._base = None
 
     @cached_property
     def entries(self) -> np.ndarray:
@@ -60,7 +66,8 @@ class SparsityPattern:
     def analysis(self) -> Analysis:
         """What the factorisations of all matrices of this pattern have in common."""
         like = None if self._base is None else self._base.analysis
-        return Analysis(self.indptr, self.indices, dim=self.shape[1], points=self.rest, like=like)
+        uses = _USES if self._passing else FACTORISATIONS
+        return Analysis(self.indptr, self.indices, dim=self.shape[1], points=self.rest, like=like, uses=uses)
 
     @cached_property
     def indptr(self) -> np.ndarray:
@@ -131,3 +138,7 @@ def _joined(rising: np.ndarray, others: np.ndarray) -> np.ndarray:
     places = np.searchsorted(rising, others)
     new = rising[np.minimum(places, len(rising) - 1)] != others
     return np.insert(rising, places[new], others[new])
+
+
+_USES = 10
+"""So often is a matrix factorised before terms come that it has no place for."""

@@ -178,7 +178,7 @@ def _goes_on(result: NewtonResult) -> bool:
     return result.reason not in (Reason.CONVERGED, Reason.TIME_LIMIT)
 
 
-_DIRECT_ITERATIONS = 20
+_DIRECT_ITERATIONS = 200
 """So many steps of Newton before a command is approached in load steps."""
 
 _STEP_ITERATIONS = 30
