@@ -169,12 +169,17 @@ class Assembly:
         """Springs of each energy that couple many nodes; None where it has none."""
         return [energy.coupling(nodes, controls) for energy in self.energies]
 
-    def stiffness(self, nodes: Nodes, controls: Vector, *, projection: float = 0.0, shift: float = 0.0) -> Stiffness:
+    def stiffness(
+        self, nodes: Nodes, controls: Vector, *, projection: float = 0.0, shift: float = 0.0, damping: float = 0.0
+    ) -> Stiffness:
         """The whole of d2E/dx2, ready to be solved with.
 
-        `projection` is as in `hessian`; `shift`, a share of the largest diagonal entry, is added to the diagonal.
+        `projection` is as in `hessian`; `damping` [N/m], and `shift`, a share of the largest diagonal entry, are added to
+        the diagonal.
         """
         values = self._values(nodes, controls, projection)
+        if damping:
+            values[self.pattern.diagonal] += damping
         if shift:
             values[self.pattern.diagonal] += shift * values[self.pattern.diagonal].max()
         factors = self.pattern.analysis.factorise(values)

@@ -129,7 +129,7 @@ class _EnergyDescent:
         self.exact = exact
         self.assembly, self.controls = assembly, controls
         self.noise, self.options, self.warp = round_off, options, warp
-        self.share = 0.0
+        self.share = self.damping = 0.0
         self.whole = self.fast = False
         self.left = np.inf
         self.saddles = 0
@@ -196,14 +196,29 @@ class _EnergyDescent:
         self.last = None  # its memory serves for new factors
         stiffness = reused or self._definite(place)
         self.last, self.sharp = (
-            (stiffness, self.left < _NEAR and (reused is None or self.exact)) if self.share == 0.0 else (None, False)
+            (stiffness, self.left < _NEAR and (reused is None or self.exact))
+            if self.share == 0.0 == self.damping
+            else (None, False)
         )
         if stiffness is None:
             return None
         step = self._step(place, stiffness)
-        if reused is None and self.share == 0.0 and self._within_accuracy(place, step):
+        if reused is None and self.share == 0.0 == self.damping and self._within_accuracy(place, step):
             return place
-        return self._search(place, step)
+        found = self._search(place, step)
+        self._damp(place, step, found)
+        return found
+
+    def _damp(self, place: _Iterate, step: Vector, found: _Iterate | None) -> None:
+        """Levenberg and Marquardt's damping, where parts of a body that touch cut steps short; less again where not."""
+        if found is None:
+            return
+        taken = float(np.linalg.norm(found.nodes - place.nodes) / np.linalg.norm(step))
+        if taken < _SHORT and place.assembly.lifts_early:
+            curvature = -float(place.gradient @ step) / float(step @ step)
+            self.damping = max(_DAMPS * self.damping, curvature * min(1.0 / max(taken, 1e-3) - 1.0, 1e3))
+        elif taken > 0.5:
+            self.damping = self.damping / 8 if self.damping * float(step @ step) > _FREE * abs(float(place.gradient @ step)) else 0.0
 
     def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
         """Whether a step with the very Hessian of a place tells that it lies as near to equilibrium as was asked."""
@@ -233,7 +248,9 @@ class _EnergyDescent:
         """
         self.share = self.share / 16 if self.share > _LEAST_SHARE and not self.fast else 0.0
         while True:
-            stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=self.share)
+            stiffness = place.assembly.stiffness(
+                place.nodes, self.controls, projection=self.share, damping=self.damping
+            )
             if stiffness.definite:
                 return stiffness
             if self.share == 1.0:
@@ -375,6 +392,15 @@ _LEAST_SHARE = 1 / 32
 
 _EARLY = 1e-6
 """A share so small that of most energies it takes out nothing."""
+
+_SHORT = 0.25
+"""A step of which less is taken is damped from then on."""
+
+_DAMPS = 4.0
+"""So many times more."""
+
+_FREE = 0.05
+"""Damping that takes less than this share of a step's curvature is left out."""
 
 _FAST = 0.1
 """After a step that leaves less than this share of the residual the full Hessian is tried at once."""
