@@ -40,7 +40,19 @@ if TYPE_CHECKING:
         solve_ik_trajectory,
     )
     from hydrostat.mechanics import NewtonOptions
-    from hydrostat.robot import Cable, Marker, Material, Pin, Pose, Robot, Winch, load_robot, save_robot
+    from hydrostat.robot import (
+        Cable,
+        Contact,
+        Marker,
+        Material,
+        Obstacle,
+        Pin,
+        Pose,
+        Robot,
+        Winch,
+        load_robot,
+        save_robot,
+    )
     from hydrostat.simulation import (
         Branch,
         ManyPoses,
@@ -63,6 +75,7 @@ __all__ = [
     "CentreGoal",
     "Closeness",
     "Constraints",
+    "Contact",
     "Effort",
     "HydrostatError",
     "InputError",
@@ -82,6 +95,7 @@ __all__ = [
     "NewtonOptions",
     "NotConvergedError",
     "Objective",
+    "Obstacle",
     "PathDependence",
     "PatternOptions",
     "Pin",
@@ -164,6 +178,8 @@ _HOMES = {
     "TrajectoryOptions": "ik",
     "TreeOptions": "design",
     "UnbuildableError": "fabrication",
+    "Contact": "robot",
+    "Obstacle": "robot",
     "Winch": "robot",
     "Uncertainty": "design",
     "Zone": "design",

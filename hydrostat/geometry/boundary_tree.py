@@ -124,6 +124,37 @@ def _tree(middles: Float[np.ndarray, "facets dim"]) -> Int[np.ndarray, "boxes 2"
     return children
 
 
+@Kernel
+@no_type_check
+def _pairs_within(children, facets, points, edges, low, high, stencils, both):
+    """Fill in pairs whose boxes meet, as long as there is room; return 1 and how many there are."""
+    boxes, still = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
+    _fit_boxes(children, facets, low, high, boxes)
+    listed, kinds = _features(_leaves(children, boxes, still), children, facets, points, edges)
+    found = 0
+    for pair in range(listed.shape[0]):
+        if not _apart(low, high, listed[pair], 2 if kinds[pair] else 1):
+            found = _add(found, listed[pair], kinds[pair], stencils, both)
+    return 1.0, found
+
+
+@Kernel
+@no_type_check
+def _share_of_way(children, facets, points, edges, x, move, rest, kept, reach, stencils, both):
+    """Fill in pairs that may come within reach, as long as there is room; return the largest share and their number."""
+    boxes, ways = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
+    _fit_boxes(children, facets, x - 0.5 * reach, x + 0.5 * reach, boxes)
+    _fit_boxes(children, facets, move, move, ways)
+    listed, kinds = _features(_leaves(children, boxes, ways), children, facets, points, edges)
+    y, w, dw, c, way = np.zeros((4, 3)), np.empty(4), np.empty((2, 4)), np.empty(3), np.zeros((4, 3))
+    limit, found = 1.0, 0
+    for pair in range(listed.shape[0]):
+        limit, close = advanced(x, move, rest, listed[pair], kinds[pair], kept, limit, reach, y, way, w, dw, c)
+        if close:
+            found = _add(found, listed[pair], kinds[pair], stencils, both)
+    return limit, found
+
+
 @njit(**INNER)
 @no_type_check
 def _fit_boxes(children, facets, low, high, boxes):
@@ -144,180 +175,48 @@ def _fit_boxes(children, facets, low, high, boxes):
 
 @njit(**INNER)
 @no_type_check
-def _apart(a, b):
-    return a[0] > b[3] or b[0] > a[3] or a[1] > b[4] or b[1] > a[4] or a[2] > b[5] or b[2] > a[5]
-
-
-@Kernel
-@no_type_check
-def _pairs_within(children, facets, points, edges, low, high, stencils, both):
-    """Fill in pairs as long as there is room; return 1 and how many there are."""
-    dim, found = facets.shape[1], 0
-    boxes = np.zeros((children.shape[0], 6))
-    _fit_boxes(children, facets, low, high, boxes)
+def _leaves(children, boxes, ways):
+    """Pairs of leaves whose boxes may meet while they move by `ways`."""
+    leaves, found = np.empty((1024, 2), np.int64), 0
     if children.shape[0] == 0:
-        return 1.0, 0
+        return leaves[:0]
     stack = np.empty((4 * children.shape[0] + 4, 2), np.int64)
     stack[0, 0], stack[0, 1], top = 0, 0, 1
     while top > 0:
         top -= 1
         one, other = stack[top, 0], stack[top, 1]
-        left, right = children[one, 0], children[one, 1]
         if one == other:
+            left, right = children[one, 0], children[one, 1]
             if left >= 0:
                 stack[top, 0], stack[top, 1] = left, left
                 stack[top + 1, 0], stack[top + 1, 1] = right, right
-                top += 2
-                if not _apart(boxes[left], boxes[right]):
-                    stack[top, 0], stack[top, 1] = left, right
-                    top += 1
-            continue
-        first, second = children[other, 0], children[other, 1]
-        if left < 0 and first < 0:
-            f, g = right, second
-            for _ in range(2):
-                for corner in range(dim):
-                    node = points[f, corner]
-                    if node < 0 or not _node_near(node, facets, g, low, high):
-                        continue
-                    if found < stencils.shape[0]:
-                        stencils[found, 0], both[found] = node, False
-                        for k in range(dim):
-                            stencils[found, 1 + k] = facets[g, k]
-                    found += 1
-                f, g = g, f
-            for i in range(0, edges.shape[1], 2):
-                if edges[f, i] < 0:
-                    continue
-                for j in range(0, edges.shape[1], 2):
-                    if edges[g, j] < 0 or not _edges_near(
-                        edges[f, i], edges[f, i + 1], edges[g, j], edges[g, j + 1], low, high
-                    ):
-                        continue
-                    if found < stencils.shape[0]:
-                        both[found] = True
-                        for k in range(2):
-                            stencils[found, k], stencils[found, 2 + k] = edges[f, i + k], edges[g, j + k]
-                    found += 1
-            continue
-        if left < 0 or (first >= 0 and _size(boxes[other]) > _size(boxes[one])):
-            one, left, right = other, first, second
-            other = stack[top, 0]
-        if not _apart(boxes[left], boxes[other]):
-            stack[top, 0], stack[top, 1] = left, other
-            top += 1
-        if not _apart(boxes[right], boxes[other]):
-            stack[top, 0], stack[top, 1] = right, other
-            top += 1
-    return 1.0, found
-
-
-@Kernel
-@no_type_check
-def _share_of_way(children, facets, points, edges, x, move, rest, kept, reach, stencils, both):
-    """Fill in pairs that may come within reach as long as there is room; return the largest share, and their number."""
-    dim, limit, found = facets.shape[1], 1.0, 0
-    boxes, ways = np.zeros((children.shape[0], 6)), np.zeros((children.shape[0], 6))
-    _fit_boxes(children, facets, x - 0.5 * reach, x + 0.5 * reach, boxes)
-    _fit_boxes(children, facets, move, move, ways)
-    if children.shape[0] == 0:
-        return limit, 0
-    y, w, dw, c, way = np.zeros((4, 3)), np.empty(4), np.empty((2, 4)), np.empty(3), np.zeros((4, 3))
-    stencil = np.empty(dim + 1, np.int64)
-    stack = np.empty((4 * children.shape[0] + 4, 2), np.int64)
-    stack[0, 0], stack[0, 1], top = 0, 0, 1
-    while top > 0:
-        top -= 1
-        one, other = stack[top, 0], stack[top, 1]
-        left, right = children[one, 0], children[one, 1]
-        if one == other:
-            if left >= 0:
-                stack[top, 0], stack[top, 1] = left, left
-                stack[top + 1, 0], stack[top + 1, 1] = right, right
-                top += 2
-                if not _clear(boxes[left], ways[left], boxes[right], ways[right], limit):
-                    stack[top, 0], stack[top, 1] = left, right
-                    top += 1
-            continue
-        first, second = children[other, 0], children[other, 1]
-        if left < 0 and first < 0:
-            f, g = right, second
-            for _ in range(2):
-                for corner in range(dim):
-                    node = points[f, corner]
-                    if node < 0:
-                        continue
-                    stencil[0], shared = node, False
-                    for k in range(dim):
-                        stencil[1 + k] = facets[g, k]
-                        shared = shared or facets[g, k] == node
-                    if shared or _passes(x, move, stencil, 1, limit, reach):
-                        continue
-                    limit, close = advanced(x, move, rest, stencil, False, kept, limit, reach, y, way, w, dw, c)
-                    if close:
-                        found = _add(found, stencil, False, stencils, both)
-                f, g = g, f
-            for i in range(0, edges.shape[1], 2):
-                if edges[f, i] < 0:
-                    continue
-                p, q = edges[f, i], edges[f, i + 1]
-                stencil[0], stencil[1] = p, q
-                for j in range(0, edges.shape[1], 2):
-                    a, b = edges[g, j], edges[g, j + 1]
-                    if a < 0 or p == a or p == b or q == a or q == b:
-                        continue
-                    stencil[2], stencil[3] = a, b
-                    if _passes(x, move, stencil, 2, limit, reach):
-                        continue
-                    limit, close = advanced(x, move, rest, stencil, True, kept, limit, reach, y, way, w, dw, c)
-                    if close:
-                        found = _add(found, stencil, True, stencils, both)
-            continue
-        if left < 0 or (first >= 0 and _size(boxes[other]) > _size(boxes[one])):
-            one, left, right = other, first, second
-            other = stack[top, 0]
-        for child in (left, right):
-            if not _clear(boxes[child], ways[child], boxes[other], ways[other], limit):
-                stack[top, 0], stack[top, 1] = child, other
+                stack[top + 2, 0], stack[top + 2, 1] = left, right
+                top += 3
+        elif not _clear(boxes[one], ways[one], boxes[other], ways[other]):
+            if children[one, 0] < 0 and children[other, 0] < 0:
+                if found == leaves.shape[0]:
+                    leaves = np.concatenate((leaves, np.empty_like(leaves)))
+                leaves[found, 0], leaves[found, 1] = one, other
+                found += 1
+                continue
+            if children[one, 0] < 0 or (children[other, 0] >= 0 and _size(boxes[other]) > _size(boxes[one])):
+                one, other = other, one
+            for side in range(2):
+                stack[top, 0], stack[top, 1] = children[one, side], other
                 top += 1
-    return limit, found
+    return leaves[:found]
 
 
 @njit(**INNER)
 @no_type_check
-def _clear(a, u, b, v, limit):
+def _clear(a, u, b, v):
     """Whether two moving boxes stay apart along one axis all the time."""
     for k in range(3):
-        gap, closing = a[k] - b[3 + k], u[k] - v[3 + k]
-        if gap > 0.0 and gap + limit * closing > 0.0:
+        gap = a[k] - b[3 + k]
+        if gap > 0.0 and gap + u[k] - v[3 + k] > 0.0:
             return True
-        gap, closing = b[k] - a[3 + k], v[k] - u[3 + k]
-        if gap > 0.0 and gap + limit * closing > 0.0:
-            return True
-    return False
-
-
-@njit(**INNER)
-@no_type_check
-def _passes(x, move, stencil, first, limit, reach):
-    """Whether the two features of a pair, in boxes that move, stay out of reach along one axis all the time."""
-    for k in range(x.shape[1]):
-        low, high = np.inf, -np.inf
-        slow, fast = np.inf, -np.inf
-        for i in range(first):
-            at, by = x[stencil[i], k], move[stencil[i], k]
-            low, high, slow, fast = min(low, at), max(high, at), min(slow, by), max(fast, by)
-        other_low, other_high = np.inf, -np.inf
-        other_slow, other_fast = np.inf, -np.inf
-        for i in range(first, stencil.shape[0]):
-            at, by = x[stencil[i], k], move[stencil[i], k]
-            other_low, other_high = min(other_low, at), max(other_high, at)
-            other_slow, other_fast = min(other_slow, by), max(other_fast, by)
-        gap = low - other_high - reach
-        if gap > 0.0 and gap + limit * (slow - other_fast) > 0.0:
-            return True
-        gap = other_low - high - reach
-        if gap > 0.0 and gap + limit * (other_slow - fast) > 0.0:
+        gap = b[k] - a[3 + k]
+        if gap > 0.0 and gap + v[k] - u[3 + k] > 0.0:
             return True
     return False
 
@@ -330,32 +229,54 @@ def _size(box):
 
 @njit(**INNER)
 @no_type_check
-def _node_near(node, facets, g, low, high):
-    """Whether the boxes of a node and a facet meet, and the node is none of its corners."""
-    for axis in range(low.shape[1]):
-        least, most = np.inf, -np.inf
-        for k in range(facets.shape[1]):
-            if facets[g, k] == node:
-                return False
-            least = min(least, low[facets[g, k], axis])
-            most = max(most, high[facets[g, k], axis])
-        if low[node, axis] > most or least > high[node, axis]:
-            return False
-    return True
+def _features(leaves, children, facets, points, edges):
+    """All pairs of features that belong to pairs of leaves and have no node in common; whether both are edges."""
+    dim = facets.shape[1]
+    each = 2 * dim + (edges.shape[1] // 2) ** 2
+    listed, kinds = np.empty((each * leaves.shape[0], dim + 1), np.int64), np.empty(each * leaves.shape[0], np.bool_)
+    stencil, found = np.empty(dim + 1, np.int64), 0
+    for pair in range(leaves.shape[0]):
+        f, g = children[leaves[pair, 0], 1], children[leaves[pair, 1], 1]
+        for _ in range(2):
+            stencil[1:] = facets[g]
+            for corner in range(dim):
+                stencil[0] = points[f, corner]
+                if stencil[0] >= 0 and not _shared(stencil, 1):
+                    found = _add(found, stencil, False, listed, kinds)
+            f, g = g, f
+        for i in range(0, edges.shape[1], 2):
+            for j in range(0, edges.shape[1], 2):
+                if edges[f, i] >= 0 and edges[g, j] >= 0:
+                    stencil[:2], stencil[2:] = edges[f, i : i + 2], edges[g, j : j + 2]
+                    if not _shared(stencil, 2):
+                        found = _add(found, stencil, True, listed, kinds)
+    return listed[:found], kinds[:found]
 
 
 @njit(**INNER)
 @no_type_check
-def _edges_near(p, q, a, b, low, high):
-    """Whether the boxes of two edges meet, and they have no end in common."""
-    if p == a or p == b or q == a or q == b:
-        return False
-    for axis in range(3):
-        if min(low[p, axis], low[q, axis]) > max(high[a, axis], high[b, axis]):
-            return False
-        if min(low[a, axis], low[b, axis]) > max(high[p, axis], high[q, axis]):
-            return False
-    return True
+def _shared(stencil, first):
+    """Whether the two features of a pair have a node in common."""
+    for i in range(first):
+        for j in range(first, stencil.shape[0]):
+            if stencil[i] == stencil[j]:
+                return True
+    return False
+
+
+@njit(**INNER)
+@no_type_check
+def _apart(low, high, stencil, first):
+    """Whether the boxes of the two features of a pair do not meet."""
+    for axis in range(low.shape[1]):
+        ends = np.array([np.inf, -np.inf, np.inf, -np.inf])
+        for i in range(stencil.shape[0]):
+            side = 0 if i < first else 2
+            ends[side] = min(ends[side], low[stencil[i], axis])
+            ends[side + 1] = max(ends[side + 1], high[stencil[i], axis])
+        if ends[0] > ends[3] or ends[2] > ends[1]:
+            return True
+    return False
 
 
 @njit(**INNER)

@@ -17,6 +17,7 @@ from hydrostat.kernel import INNER, Kernel, njit
 @njit(**INNER)
 @no_type_check
 def dot(a, b):
+    """Inner product of two vectors in space."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 

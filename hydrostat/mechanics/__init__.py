@@ -3,13 +3,16 @@
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
 from hydrostat.mechanics.chain_law import ChainLaw
+from hydrostat.mechanics.contact import ContactEnergy
 from hydrostat.mechanics.energy import Compliance, Coupling, Energy, Law, nearest_semidefinite
 from hydrostat.mechanics.factorisation import Analysis, Factorisation, factorise
 from hydrostat.mechanics.fibre import FibreEnergy
 from hydrostat.mechanics.friction import FrictionCableEnergy
 from hydrostat.mechanics.neo_hookean import NeoHookean
-from hydrostat.mechanics.newton import NewtonResult, minimise
+from hydrostat.mechanics.newton import minimise
 from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
+from hydrostat.mechanics.newton_result import NewtonResult
+from hydrostat.mechanics.obstacle import ObstacleEnergy
 from hydrostat.mechanics.pin import PinEnergy
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.tension_law import TensionLaw
@@ -24,6 +27,7 @@ __all__ = [
     "CableSegments",
     "ChainLaw",
     "Compliance",
+    "ContactEnergy",
     "Coupling",
     "Energy",
     "Factorisation",
@@ -33,6 +37,7 @@ __all__ = [
     "NeoHookean",
     "NewtonOptions",
     "NewtonResult",
+    "ObstacleEnergy",
     "PinEnergy",
     "Reason",
     "RoundOff",

@@ -174,8 +174,8 @@ class Assembly:
     ) -> Stiffness:
         """The whole of d2E/dx2, ready to be solved with.
 
-        `projection` is as in `hessian`; `damping` [N/m], and `shift`, a share of the largest diagonal entry, are added to
-        the diagonal.
+        `projection` is as in `hessian`; `damping` [N/m] is added to the diagonal, as is `shift`, a share of its largest
+        entry.
         """
         values = self._values(nodes, controls, projection)
         if damping:

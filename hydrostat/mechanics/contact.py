@@ -112,7 +112,8 @@ class ContactEnergy(Energy):
 
     @cached_property
     def _law(self) -> tuple[np.ndarray, np.ndarray, float, Vector, Vector]:
-        return *self.pairs, self.skin.soft, self._begins, self.skin.weights(self.pairs, self._begins)
+        stencils, edges = self.pairs
+        return stencils, edges, self.skin.soft, self._begins, self.skin.weights(self.pairs, self._begins)
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         return float(barrier_energy(nodes, *self._law)[0])

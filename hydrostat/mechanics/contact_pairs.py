@@ -1,9 +1,9 @@
 """Barriers between pairs of features that may touch: energy, forces, Hessian.
 
 A pair of squared distance D has the energy W h phi(D/h), phi(r) = -(r - 1)^2 ln r below r = 1, 0 above (the barrier of
-Li et al. 2020), h being the square of the distance at which it begins to be felt. D is the least F(x, l) over the nearest
-points l (`geometry.pair_distances`): by the envelope theorem dD = dF and d2D = F_xx - F_xl F_ll^-1 F_lx, exactly, with the
-parts of l that are free, none at a corner.
+Li et al. 2020), h being the square of the distance at which it begins to be felt. D is the least F(x, l) over the
+nearest points l (`geometry.pair_distances`): by the envelope theorem dD = dF and d2D = F_xx - F_xl F_ll^-1 F_lx,
+exactly, with the parts of l that are free, none at a corner.
 """
 
 import math

@@ -132,7 +132,7 @@ class Energy(ABC):
             blocks = self.projected_hessian(nodes, controls, share)
         else:
             blocks = self.hessian(nodes, controls)
-        _add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
+        add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
     def coupling(self, nodes: Nodes, controls: Vector) -> Coupling | None:
         """Springs that couple many nodes, whose Hessian G D G^T is kept as the low rank it has. None for most."""
@@ -254,7 +254,7 @@ def _add_vectors(stencils, vectors, total):
 
 @Kernel
 @no_type_check
-def _add_blocks(stencils, slots, strides, blocks, data):
+def add_blocks(stencils, slots, strides, blocks, data):
     """Add every dim x dim block of symmetric blocks to the values of the sparse matrix."""
     corners = stencils.shape[1]
     dim = blocks.shape[1] // corners

@@ -1,7 +1,6 @@
 """Projected Newton with a line search: the statics solver."""
 
 import time
-from dataclasses import dataclass, field
 from itertools import count
 from typing import NamedTuple
 
@@ -11,44 +10,9 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.falling_mode import falling_mode
 from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
+from hydrostat.mechanics.newton_result import NewtonResult
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.warp import Warp
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class NewtonResult:
-    """Where Newton stopped.
-
-    Attributes:
-        nodes: the best positions found [m]; every element has J > 0.
-        reason: why it stopped.
-        residual: largest component of a nodal force [N].
-        allowed: residual [N] at which it counts as converged.
-        energy: total energy [J].
-        iterations: steps taken.
-        stable: whether the full Hessian there is positive definite: a minimum, no saddle.
-        buckled: whether a saddle was left on the way: the body could as well have gone elsewhere.
-        stiffness: the Hessian there, factorised, or where the last step began, if that was with less than 1e-5 of the
-            applied force left over, or within the accuracy.
-        error: about how far a node is from equilibrium [m], where an accuracy was asked for, infinite where it was not
-            reached; 0 where none was asked for.
-    """
-
-    nodes: Nodes
-    reason: Reason
-    residual: float
-    allowed: float
-    energy: float
-    iterations: int
-    stable: bool
-    buckled: bool
-    stiffness: Stiffness | None = field(repr=False)
-    error: float = 0.0
-
-    @property
-    def converged(self) -> bool:
-        """Whether the residual is as small as allowed."""
-        return self.reason is Reason.CONVERGED
 
 
 def minimise(
@@ -213,12 +177,12 @@ class _EnergyDescent:
         """Levenberg and Marquardt's damping, where parts of a body that touch cut steps short; less again where not."""
         if found is None:
             return
-        taken = float(np.linalg.norm(found.nodes - place.nodes) / np.linalg.norm(step))
+        square, curvature = float(step @ step), -float(place.gradient @ step) / float(step @ step)
+        taken = float(np.linalg.norm(found.nodes - place.nodes)) / square**0.5
         if taken < _SHORT and place.assembly.lifts_early:
-            curvature = -float(place.gradient @ step) / float(step @ step)
-            self.damping = max(_DAMPS * self.damping, curvature * min(1.0 / max(taken, 1e-3) - 1.0, 1e3))
-        elif taken > 0.5:
-            self.damping = self.damping / 8 if self.damping * float(step @ step) > _FREE * abs(float(place.gradient @ step)) else 0.0
+            self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, _LEAST_TAKEN) - 1.0))
+        elif taken > _LONG:
+            self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
 
     def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
         """Whether a step with the very Hessian of a place tells that it lies as near to equilibrium as was asked."""
@@ -397,7 +361,16 @@ _SHORT = 0.25
 """A step of which less is taken is damped from then on."""
 
 _DAMPS = 4.0
-"""So many times more."""
+"""So many times more than before."""
+
+_LEAST_TAKEN = 1e-3
+"""Damping is chosen for steps of at least this share."""
+
+_LONG = 0.5
+"""After a step of which more was taken there is less damping."""
+
+_EASES = 8.0
+"""So many times less."""
 
 _FREE = 0.05
 """Damping that takes less than this share of a step's curvature is left out."""

@@ -3,6 +3,7 @@
 from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
+from hydrostat.robot.contact import Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gallery import gallery_folder, gallery_names
 from hydrostat.robot.gravity import STANDARD_GRAVITY
@@ -24,10 +25,13 @@ __all__ = [
     "STANDARD_GRAVITY",
     "Body",
     "Cable",
+    "Contact",
     "Face",
     "Marker",
     "Material",
     "Mount",
+    "Obstacle",
+    "ObstacleShape",
     "Pin",
     "Point",
     "Pose",

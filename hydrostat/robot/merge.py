@@ -13,6 +13,7 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.read import RobotReader, read_material
@@ -105,9 +106,19 @@ def _parted(text: str, *, last: bool) -> tuple[str, str, str]:
     return own + "".join(lines[:first]), "".join(lines[first:final]), "".join(lines[final:])
 
 
-_RECORDS = {"body": Body, "pin": Pin, "winch": Winch, "cable": Cable, "marker": Marker, "pose": Pose}
-_LISTS = ("pin", "winch", "cable", "marker", "pose")
-_ORDER = ("", "body", *_LISTS)
+_RECORDS = {
+    "body": Body,
+    "contact": Contact,
+    "pin": Pin,
+    "winch": Winch,
+    "cable": Cable,
+    "marker": Marker,
+    "pose": Pose,
+    "obstacle": Obstacle,
+}
+_LISTS = ("pin", "winch", "cable", "marker", "pose", "obstacle")
+_SINGLE = ("body", "contact")
+_ORDER = ("", *_SINGLE, *_LISTS)
 _TOP = ("name", "length_unit", "gravity", "face")
 
 
@@ -169,7 +180,9 @@ def _side(text: str, unit: str | None = None) -> _Side:
     table = RobotReader(Path("robot.toml"), text).table
     factor = units.unit_factor(unit or table.length_unit, units.LENGTH)
     means = {kind: [_effective(kind, entry, factor) for entry in getattr(table, kind)] for kind in _LISTS}
-    means["body"] = [_effective("body", table.body, factor)]
+    for kind in _SINGLE:
+        entry = getattr(table, kind)
+        means[kind] = [] if entry is None else [_effective(kind, entry, factor)]
     means[""] = [{key: getattr(table, key) for key in _TOP}]
     blocks, tail = split_blocks(text)
     return _Side(blocks, tail, tomllib.loads(text, parse_float=Decimal), means)
@@ -282,7 +295,7 @@ def _updated(block: TomlBlock, old: _Side, new: _Side, kind: str, before: int, n
 def _entry(document: Any, kind: str) -> Any:
     if not kind:
         return document
-    return document[kind] if kind == "body" else document[kind][0]
+    return document[kind] if kind in _SINGLE else document[kind][0]
 
 
 def _set(table: Any, key: str, item: Any) -> None:

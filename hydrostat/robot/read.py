@@ -11,6 +11,7 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import Material, Relaxation, find_material
@@ -61,6 +62,7 @@ class RobotReader(TablesFile):
             "winches": self.records("winch", self._winch),
             "cables": self.records("cable", self._cable),
             "markers": self.records("marker", self._marker),
+            "obstacles": self.records("obstacle", self._obstacle),
         }
         poses: dict[str, Pose] = {}
         for index, pose in enumerate(self.records("pose", self._pose)):
@@ -69,7 +71,10 @@ class RobotReader(TablesFile):
             poses[pose.name] = pose
         body = self._body()
         gravity = self.at("", lambda: _gravity(table.gravity, body.mesh.dim))
-        options = {"length_unit": self.unit, "gravity": gravity, "face": table.face}
+        contact = (
+            None if table.contact is None else self.at("contact", lambda: Contact(**_given(table.contact, "distance")))
+        )
+        options = {"length_unit": self.unit, "gravity": gravity, "face": table.face, "contact": contact}
         return self.at("", lambda: Robot(name=table.name, body=body, poses=poses, **options, **parts))
 
     def _pin(self, entry: Any) -> Pin:
@@ -79,6 +84,16 @@ class RobotReader(TablesFile):
             box=None if entry.box is None else (self.point(entry.box[0]), self.point(entry.box[1])),
             **_given(entry, "stiffness"),
         )
+
+    def _obstacle(self, entry: Any) -> Obstacle:
+        given: dict[str, Any] = {}
+        if entry.to is not None:
+            given["to"] = self.point(entry.to)
+        if entry.radius is not None:
+            given["radius"] = units.scale_up(entry.radius, self.unit, units.LENGTH)
+        if entry.normal is not None:
+            given["normal"] = tuple(float(value) for value in entry.normal)
+        return Obstacle(name=entry.name, shape=entry.shape, at=self.point(entry.at), **given)
 
     def _winch(self, entry: Any) -> Winch:
         return Winch(

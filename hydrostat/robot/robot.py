@@ -13,6 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.checks import Point
+from hydrostat.robot.contact import DISTANCE, Contact, Obstacle
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.marker import Marker, Pose
@@ -40,6 +41,8 @@ class Robot:
         length_unit: of the coordinates in its file.
         gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
         face: on which face of a flat body its cables run, or a word such as "pairs"; None: not said.
+        contact: how the body feels itself and obstacles; None: it passes through itself.
+        obstacles: rigid things that stand still beside the body.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -55,6 +58,8 @@ class Robot:
     length_unit: str = "mm"
     gravity: tuple[float, ...] | None = None
     face: Face | None = None
+    contact: Contact | None = None
+    obstacles: tuple[Obstacle, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.name:
@@ -77,6 +82,7 @@ class Robot:
         if self.gravity is not None:
             check_gravity(self.gravity, self.body.mesh.dim)
         self._check_pins()
+        self._check_contact()
         self._check_markers_and_poses()
         self._check_cables()
 
@@ -98,6 +104,12 @@ class Robot:
         if name not in self.poses:
             raise InputError(f'there is no pose "{name}"; {_choices("poses", list(self.poses))}')
         return self.poses[name]
+
+    @property
+    def contact_distance(self) -> float:
+        """Distance at which parts that touch, and obstacles, begin to be felt [m]."""
+        given = None if self.contact is None else self.contact.distance
+        return DISTANCE * self.body.mesh.size if given is None else given
 
     @property
     def spool_ratios(self) -> Vector:
@@ -140,6 +152,29 @@ class Robot:
             yield f"marker[{index}].at", marker.at
         for index, pose in enumerate(self.poses.values()):
             yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
+
+    def _check_contact(self) -> None:
+        """Obstacles fit the body, and do not stand in it."""
+        mesh, distance = self.body.mesh, self.contact_distance
+        if distance > 0.1 * mesh.size:
+            raise InputError(
+                f"contact.distance of {1e3 * distance:.4g} mm is large beside a body of {1e3 * mesh.size:.4g} mm; "
+                f"it is usually {DISTANCE:.1%} of that"
+            )
+        _unique("obstacle", [obstacle.name for obstacle in self.obstacles])
+        skin = mesh.nodes[np.unique(mesh.boundary)]
+        for index, obstacle in enumerate(self.obstacles):
+            if len(obstacle.at) != mesh.dim:
+                raise InputError(
+                    f"obstacle[{index}].at has {len(obstacle.at)} entries, but the body has {mesh.dim} axes"
+                )
+            gaps = obstacle.field()(skin).values
+            if not gaps.min() > 0:
+                place = ", ".join(f"{1e3 * value:.4g}" for value in skin[int(np.argmin(gaps))])
+                raise InputError(
+                    f'obstacle[{index}]: the body at rest stands in "{obstacle.name}", {-1e3 * gaps.min():.3g} mm '
+                    f"deep at ({place}) mm; move it away"
+                )
 
     def _check_pins(self) -> None:
         if not self.pins:

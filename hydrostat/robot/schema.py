@@ -21,6 +21,7 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Volume
 from hydrostat.robot.checks import check_name
+from hydrostat.robot.contact import ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.materials import MOST_BRANCHES
@@ -210,6 +211,23 @@ class PoseTable(TomlTable):
     targets: dict[str, Coordinates]
 
 
+class ContactTable(TomlTable):
+    """[contact]."""
+
+    distance: Length | None = None
+
+
+class ObstacleTable(TomlTable):
+    """[[obstacle]]."""
+
+    name: Name
+    shape: ObstacleShape
+    at: Coordinates
+    to: Coordinates | None = None
+    radius: Number | None = None
+    normal: Coordinates | None = None
+
+
 class RobotTable(TomlTable):
     """The whole file."""
 
@@ -224,6 +242,8 @@ class RobotTable(TomlTable):
     cable: list[CableTable] = []
     marker: list[MarkerTable] = []
     pose: list[PoseTable] = []
+    contact: ContactTable | None = None
+    obstacle: list[ObstacleTable] = []
 
 
 _NAMED = "a material with a name has its own; remove this key, or the name"

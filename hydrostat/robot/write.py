@@ -4,6 +4,7 @@ import hashlib
 import os
 from collections.abc import Iterable
 from contextlib import suppress
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
+from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
@@ -87,12 +89,15 @@ def robot_text(robot: Robot) -> str:
     if robot.face is not None:
         document["face"] = str(robot.face)
     document["body"] = writer.body(robot.body)
+    if robot.contact is not None:
+        document["contact"] = writer.contact(robot.contact)
     groups: dict[str, Iterable[dict[str, Any]]] = {
         "pin": map(writer.pin, robot.pins),
         "winch": map(writer.winch, robot.winches),
         "cable": map(writer.cable, robot.cables, robot.given_cable_names),
         "marker": ({"name": marker.name, "at": writer.point(marker.at)} for marker in robot.markers),
         "pose": map(writer.pose, robot.poses.values()),
+        "obstacle": map(writer.obstacle, robot.obstacles),
     }
     for key, entries in groups.items():
         tables = tomlkit.aot()
@@ -164,6 +169,24 @@ class _Writer:
     def gravity(self, gravity: tuple[float, ...]) -> Any:
         """A direction such as "-y", or one acceleration for each axis."""
         return direction_of(gravity) or [units.format_quantity(value, units.ACCELERATION) for value in gravity]
+
+    def contact(self, contact: Contact) -> Any:
+        table = self._toml.table()
+        if contact.distance is not None:
+            table["distance"] = units.format_quantity(contact.distance, units.LENGTH)
+        return table
+
+    def obstacle(self, obstacle: Obstacle) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": obstacle.name, "shape": str(obstacle.shape), "at": self.point(obstacle.at)}
+        if obstacle.to is not None:
+            entry["to"] = self.point(obstacle.to)
+        if obstacle.radius is not None:
+            entry["radius"] = self.number(obstacle.radius)
+        if obstacle.normal is not None:
+            entry["normal"] = self._array(
+                self._toml.value(units.plain(Decimal(repr(value)))) for value in obstacle.normal
+            )
+        return entry
 
     def pin(self, pin: Pin) -> dict[str, Any]:
         entry: dict[str, Any] = {}

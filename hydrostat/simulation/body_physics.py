@@ -8,9 +8,11 @@ from jaxtyping import Float
 from hydrostat.errors import InputError
 from hydrostat.mechanics import (
     Assembly,
+    ContactEnergy,
     Energy,
     Factorisation,
     NeoHookean,
+    ObstacleEnergy,
     PinEnergy,
     RoundOff,
     Warp,
@@ -42,7 +44,7 @@ class BodyPhysics:
             InputError: a part of the mesh that no pin holds.
         """
         body = robot.body
-        self._given = body, robot.pins, robot.gravity
+        self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.material.lame
         patched = body.volume is Volume.PATCH
@@ -55,12 +57,13 @@ class BodyPhysics:
             energies.append(PatchVolume(mesh.nodes, mesh.elements, patches, lame=lame, thickness=thickness))
         if robot.gravity is not None:
             energies.append(WeightEnergy(mesh.nodes, self.masses[:, None] * np.array(robot.gravity)))
+        energies += _contact(robot)
         self.assembly = Assembly(energies, rest=mesh.nodes, control_count=0)
 
     def fits(self, robot: Robot) -> bool:
-        """Tell whether this is the physics of the body of a robot: the same body, equal pins and gravity."""
-        body, pins, gravity = self._given
-        return robot.body is body and robot.pins == pins and robot.gravity == gravity
+        """Tell whether this is the physics of the body of a robot: the same body, equal pins, gravity, contact."""
+        body, *others = self._given
+        return robot.body is body and [robot.pins, robot.gravity, robot.contact, robot.obstacles] == others
 
     def check(self, robot: Robot) -> None:
         """Check that this is the physics of the body of a robot.
@@ -69,7 +72,7 @@ class BodyPhysics:
             InputError: it is that of another body, of other pins or of another gravity.
         """
         if not self.fits(robot):
-            raise InputError("these body physics are of another body, other pins or another gravity; make new ones")
+            raise InputError("these body physics are of another body, other pins, gravity or contact; make new ones")
 
     @cached_property
     def warp(self) -> Warp:
@@ -97,11 +100,19 @@ class BodyPhysics:
     @cached_property
     def _scales(self) -> tuple[float, float, float, float]:
         """Modulus x volume [J], largest coordinate [m], stiffest pin [N/m], size [m]."""
-        body, pins, _ = self._given
+        body, pins, *_ = self._given
         mu, lame = body.material.lame
         scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         return scale, reach, max((pin.stiffness for pin in pins), default=0.0), body.mesh.size
+
+
+def _contact(robot: Robot) -> list[Energy]:
+    """What keeps the body of a robot from passing through itself, if it has contact, and through obstacles."""
+    body, distance = robot.body, robot.contact_distance
+    felt = {"distance": distance, "young": body.material.young, "thickness": body.thickness}
+    own = [] if robot.contact is None else [ContactEnergy.of(body.mesh, **felt)]
+    return [*own, *(ObstacleEnergy(body.mesh, obstacle.field(), **felt) for obstacle in robot.obstacles)]
 
 
 def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
