@@ -28,7 +28,7 @@ struct Nearest {
             along += span * span;
             before += span * (y[0][k] - y[a][k]);
         }
-        double share = std::min(std::max(before / along, 0.0), 1.0);
+        double share = std::min(std::max(before / std::max(along, 1e-300), 0.0), 1.0);
         w[a] = -(1.0 - share), w[b] = -share;
         dw[0][a] = 1.0, dw[0][b] = -1.0;
         free = 0.0 < share && share < 1.0 ? 1 : 0;
@@ -58,10 +58,10 @@ struct Nearest {
         double a = dot(u, u) + soft, b = dot(u, v), c = dot(v, v) + soft;
         double d = dot(u, p) - 0.5 * soft, e = dot(v, p) + 0.5 * soft;
         double s = std::min(std::max((b * e - c * d) / std::max(a * c - b * b, 1e-300), 0.0), 1.0);
-        double t = (e + b * s) / c;
+        double t = (e + b * s) / std::max(c, 1e-300);
         if (t < 0.0 || t > 1.0) {
             t = std::min(std::max(t, 0.0), 1.0);
-            s = std::min(std::max((b * t - d) / a, 0.0), 1.0);
+            s = std::min(std::max((b * t - d) / std::max(a, 1e-300), 0.0), 1.0);
         }
         w[0] = 1.0 - s, w[1] = s, w[2] = -(1.0 - t), w[3] = -t;
         free = 0;
@@ -138,6 +138,24 @@ struct Move {
             if (distance < 1.1 * least) break;
         }
         return done;
+    }
+
+    // Whether the two features of a pair, in boxes that move, stay out of reach along one axis all the time.
+    bool passes(const Int* stencil, int first, double limit, double reach) const {
+        for (int k = 0; k < dim; k++) {
+            double ends[2][4] = {{NONE, -NONE, NONE, -NONE}, {NONE, -NONE, NONE, -NONE}};
+            for (int i = 0; i < dim + 1; i++) {
+                double *side = ends[i < first ? 0 : 1], at = x[stencil[i] * dim + k], by = move[stencil[i] * dim + k];
+                side[0] = std::min(side[0], at), side[1] = std::max(side[1], at);
+                side[2] = std::min(side[2], by), side[3] = std::max(side[3], by);
+            }
+            for (int turn = 0; turn < 2; turn++) {
+                const double *a = ends[turn], *b = ends[1 - turn];
+                double gap = a[0] - b[1] - reach;
+                if (gap > 0.0 && gap + limit * (a[2] - b[3]) > 0.0) return true;
+            }
+        }
+        return false;
     }
 };
 
@@ -239,10 +257,6 @@ struct Boxes {
         }
     }
 
-    float size(Int box) const {
-        Four span = -tree[box].high - tree[box].low;
-        return span[0] + span[1] + span[2];
-    }
 };
 
 // Go down all pairs of boxes; `skip(room, one, other)` leaves out pairs of a room of boxes, given by their places in it:
@@ -294,7 +308,7 @@ void descend(const Tree& tree, const Boxes& boxes, const Skip& skip, const Visit
             leaves(one, other);
             continue;
         }
-        if (left < 0 || (!tree.is_leaf(other) && boxes.size(other) > boxes.size(one))) {
+        if (left < 0 || (!tree.is_leaf(other) && other < one)) {  // the larger box: they are numbered level by level
             left = tree.children[2 * other], right = tree.children[2 * other + 1];
             other = one;
         }
@@ -368,6 +382,7 @@ std::pair<double, Int> share_of_way(Counts<2> children, Counts<2> facets, Counts
     Boxes ways(tree, move.data(), move.data(), (Int)nodes.shape(0), 0.0);
     auto visit = [&](const Int* stencil, int first) {
         bool close;
+        if (all.passes(stencil, first, limit, reach)) return;
         limit = all.advanced(stencil, first == 2, limit, reach, close);
         rounded = (float)limit * 1.000001f;
         if (!close) return;

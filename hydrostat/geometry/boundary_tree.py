@@ -1,5 +1,6 @@
 """`BoundaryTree`: which parts of a body's boundary come near one another on the way from one place to another."""
 
+from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple, no_type_check
 
@@ -109,9 +110,9 @@ def _owned(features: Int[np.ndarray, "facets each corners"]) -> Int[np.ndarray, 
 def _tree(middles: Float[np.ndarray, "facets dim"]) -> Int[np.ndarray, "boxes 2"]:
     """Halve the facets at the median along the longest side of what they span, again and again."""
     children = np.full((max(2 * len(middles) - 1, 0), 2), -1)
-    waiting, made = [(0, np.arange(len(middles)))] if len(middles) else [], 1
+    waiting, made = deque([(0, np.arange(len(middles)))] if len(middles) else []), 1
     while waiting:
-        box, own = waiting.pop()
+        box, own = waiting.popleft()
         if len(own) == 1:
             children[box, 1] = own[0]
             continue
@@ -119,7 +120,7 @@ def _tree(middles: Float[np.ndarray, "facets dim"]) -> Int[np.ndarray, "boxes 2"
         half = len(own) // 2
         order = own[np.argpartition(middles[own, axis], half)]
         children[box] = made, made + 1
-        waiting += [(made, order[:half]), (made + 1, order[half:])]
+        waiting.extend([(made, order[:half]), (made + 1, order[half:])])
         made += 2
     return children
 
@@ -149,6 +150,8 @@ def _share_of_way(children, facets, points, edges, x, move, rest, kept, reach, s
     y, w, dw, c, way = np.zeros((4, 3)), np.empty(4), np.empty((2, 4)), np.empty(3), np.zeros((4, 3))
     limit, found = 1.0, 0
     for pair in range(listed.shape[0]):
+        if _passes(x, move, listed[pair], 2 if kinds[pair] else 1, limit, reach):
+            continue
         limit, close = advanced(x, move, rest, listed[pair], kinds[pair], kept, limit, reach, y, way, w, dw, c)
         if close:
             found = _add(found, listed[pair], kinds[pair], stencils, both)
@@ -199,8 +202,8 @@ def _leaves(children, boxes, ways):
                 leaves[found, 0], leaves[found, 1] = one, other
                 found += 1
                 continue
-            if children[one, 0] < 0 or (children[other, 0] >= 0 and _size(boxes[other]) > _size(boxes[one])):
-                one, other = other, one
+            if children[one, 0] < 0 or (children[other, 0] >= 0 and other < one):
+                one, other = other, one  # the larger box: they are numbered level by level
             for side in range(2):
                 stack[top, 0], stack[top, 1] = children[one, side], other
                 top += 1
@@ -219,12 +222,6 @@ def _clear(a, u, b, v):
         if gap > 0.0 and gap + v[k] - u[3 + k] > 0.0:
             return True
     return False
-
-
-@njit(**INNER)
-@no_type_check
-def _size(box):
-    return box[3] - box[0] + box[4] - box[1] + box[5] - box[2]
 
 
 @njit(**INNER)
@@ -276,6 +273,24 @@ def _apart(low, high, stencil, first):
             ends[side + 1] = max(ends[side + 1], high[stencil[i], axis])
         if ends[0] > ends[3] or ends[2] > ends[1]:
             return True
+    return False
+
+
+@njit(**INNER)
+@no_type_check
+def _passes(x, move, stencil, first, limit, reach):
+    """Whether the two features of a pair, in boxes that move, stay out of reach along one axis all the time."""
+    for k in range(x.shape[1]):
+        ends = np.array([[np.inf, -np.inf, np.inf, -np.inf], [np.inf, -np.inf, np.inf, -np.inf]])
+        for i in range(stencil.shape[0]):
+            side, at, by = ends[0 if i < first else 1], x[stencil[i], k], move[stencil[i], k]
+            side[0], side[1] = min(side[0], at), max(side[1], at)
+            side[2], side[3] = min(side[2], by), max(side[3], by)
+        for turn in range(2):
+            a, b = ends[turn], ends[1 - turn]
+            gap = a[0] - b[1] - reach
+            if gap > 0.0 and gap + limit * (a[2] - b[3]) > 0.0:
+                return True
     return False
 
 

@@ -33,7 +33,9 @@ class Crossings:
         if not len(self):
             return ""
         first = ", ".join(f"{1e3 * value:.0f}" for value in self.places[0])
-        return f"the body passes through itself, for instance at [{first}] mm: contact is not simulated"
+        return (
+            f"the body passes through itself, for instance at [{first}] mm: contact is not simulated without [contact]"
+        )
 
 
 def find_crossings(mesh: Mesh, nodes: Nodes) -> Crossings:

@@ -38,7 +38,7 @@ def _on_edge(y, a, b, w, dw):
     for k in range(3):
         along += (y[b, k] - y[a, k]) ** 2
         before += (y[b, k] - y[a, k]) * (y[0, k] - y[a, k])
-    share = min(max(before / along, 0.0), 1.0)
+    share = min(max(before / max(along, 1e-300), 0.0), 1.0)
     w[a], w[b] = -(1.0 - share), -share
     dw[0, a], dw[0, b] = 1.0, -1.0
     return 1 if 0.0 < share < 1.0 else 0
@@ -86,10 +86,10 @@ def _on_edges(y, soft, w, dw):
     a, b, c = dot(u, u) + soft, dot(u, v), dot(v, v) + soft
     d, e = dot(u, p) - 0.5 * soft, dot(v, p) + 0.5 * soft
     s = min(max((b * e - c * d) / max(a * c - b * b, 1e-300), 0.0), 1.0)
-    t = (e + b * s) / c
+    t = (e + b * s) / max(c, 1e-300)
     if t < 0.0 or t > 1.0:
         t = min(max(t, 0.0), 1.0)
-        s = min(max((b * t - d) / a, 0.0), 1.0)
+        s = min(max((b * t - d) / max(a, 1e-300), 0.0), 1.0)
     w[0], w[1], w[2], w[3] = 1.0 - s, s, -(1.0 - t), -t
     free = 0
     if 0.0 < s < 1.0:

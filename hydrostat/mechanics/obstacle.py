@@ -5,7 +5,7 @@ from typing import ClassVar
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.boundary_tree import facet_areas
 from hydrostat.geometry.distance_field import DistanceField, Distances
 from hydrostat.geometry.mesh import Mesh
@@ -38,7 +38,7 @@ class ObstacleEnergy(Energy):
         self.stencils, self.shares, areas = _samples(mesh)
         self.weights = young * areas * (thickness or 1.0) / (_HALF_WAY * distance)
 
-    def places(self, nodes: Nodes) -> Nodes:
+    def places(self, nodes: Nodes) -> Points:
         """Where the samples are [m]."""
         return np.einsum("tc,tcd->td", self.shares, nodes[self.stencils])
 

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from hydrostat.arrays import Points
 from hydrostat.errors import InputError
 from hydrostat.geometry.distance_field import (
     DistanceField,
@@ -63,7 +64,7 @@ class Obstacle:
     """
 
     name: str
-    shape: ObstacleShape
+    shape: ObstacleShape | str
     at: Point
     to: Point | None = None
     radius: float | None = None
@@ -71,8 +72,11 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         check_name(self.name)
+        kinds = [str(shape) for shape in ObstacleShape]
+        if self.shape not in kinds:
+            raise InputError(f'there is no shape "{self.shape}"; there are: {", ".join(kinds)}')
         object.__setattr__(self, "shape", ObstacleShape(self.shape))
-        needed = _NEEDED[self.shape]
+        needed = _NEEDED[ObstacleShape(self.shape)]
         for key in ("to", "radius", "normal"):
             given = getattr(self, key) is not None
             if given != (key in needed):
@@ -94,10 +98,20 @@ class Obstacle:
         if self.shape is ObstacleShape.CYLINDER and len(self.at) == 2:
             raise InputError("a flat body meets no cylinder; use a sphere, which is a disc in the plane, or a box")
 
+    def spine(self) -> Points:
+        """Points within it, (points, dim): along the way from `at` to `to`; none of a plane, which has no end [m]."""
+        at = np.array(self.at)
+        if self.shape == ObstacleShape.PLANE:
+            return np.zeros((0, len(at)))
+        return at + np.linspace(0, 1, _SPINE)[:, None] * ((self.to or self.at) - at)
+
     def field(self) -> DistanceField:
         """Distance of points from it."""
-        return _FIELDS[self.shape](self)
+        return _FIELDS[ObstacleShape(self.shape)](self)
 
+
+_SPINE = 41
+"""Points along an obstacle that are looked for in the body."""
 
 _NEEDED = {
     ObstacleShape.PLANE: ("normal",),

@@ -10,6 +10,7 @@ from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import locate
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.checks import Point
@@ -169,6 +170,8 @@ class Robot:
                     f"obstacle[{index}].at has {len(obstacle.at)} entries, but the body has {mesh.dim} axes"
                 )
             gaps = obstacle.field()(skin).values
+            if locate(mesh, obstacle.spine()).inside.any():
+                raise InputError(f'obstacle[{index}]: "{obstacle.name}" stands in the body at rest; move it out')
             if not gaps.min() > 0:
                 place = ", ".join(f"{1e3 * value:.4g}" for value in skin[int(np.argmin(gaps))])
                 raise InputError(

@@ -129,7 +129,10 @@ class Bordered:
             step = -back - change * ahead
             if not self.farthest(step.reshape(nodes.shape), change) <= 2 * reach:
                 return None
-            nodes, share = self.bend(nodes, step), share + change
+            bent = self.bend(nodes, step)
+            if assembly.largest_step(nodes, bent - nodes) < 1.0:  # parts of the body, or an obstacle, are in the way
+                return None
+            nodes, share = bent, share + change
             distance = self.farthest(nodes - first_nodes, share - first_share)
             if not distance <= reach:
                 return None

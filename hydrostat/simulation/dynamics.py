@@ -216,6 +216,8 @@ class Dynamics:
         assembly = self._assembly.with_energies(energies)
         flown = base.nodes + step * base.velocities
         guesses = [flown + step**2 * acceleration, flown, before]
+        near = assembly.near(before)
+        guesses = [before + near.largest_step(before, guess - before) * (guess - before) for guess in guesses]
         values = [assembly.near(guess).value(guess, controls) for guess in guesses]
         start = guesses[int(np.argmin(values))]
         noise = self._noise(step)

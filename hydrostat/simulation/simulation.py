@@ -23,7 +23,7 @@ from hydrostat.simulation.profile import Profile
 from hydrostat.simulation.response import response
 from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.rubbing_slopes import RubbingSlopes, rubbing_sensitivity, rubbing_slopes
-from hydrostat.simulation.solved_pose import Contractions, SolvedPose, check_pose, contraction_values
+from hydrostat.simulation.solved_pose import Contractions, SolvedPose, check_apart, check_pose, contraction_values
 from hydrostat.simulation.static_solver import StaticSolver
 
 
@@ -178,11 +178,13 @@ class Simulation:
         """Check that a solve can begin from a pose.
 
         Raises:
-            InputError: it is no pose, one of another robot, not finite, or without slips where cables rub.
+            InputError: no pose of this robot, not finite, without slips where cables rub, or crossing itself.
         """
         if start is not None:
             history = self.assembly.history if self.assembly.has_history else None
             check_pose(start, self.robot.body.mesh.nodes.shape, len(self.robot.winches), history)
+            if self.robot.contact and self.stiffness_of(start) is None:
+                check_apart(self.robot.body.mesh, start.nodes)
 
     def jacobian(self, pose: SolvedPose) -> Float[np.ndarray, "nodes dim winches"]:
         """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da (R33, E16).

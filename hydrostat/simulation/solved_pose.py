@@ -7,6 +7,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
+from hydrostat.geometry.crossings import find_crossings
+from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics import NewtonResult
 from hydrostat.robot import Robot
 
@@ -45,6 +47,16 @@ class SolvedPose:
 def largest_distance(one: Nodes, other: Nodes) -> float:
     """Largest distance of a node between two poses [m]."""
     return float(np.linalg.norm(one - other, axis=1).max())
+
+
+def check_apart(mesh: Mesh, nodes: Nodes) -> None:
+    """Check that a body whose parts cannot pass through each other does not do so where a solve is to begin.
+
+    Raises:
+        InputError: it does; with a place.
+    """
+    if words := str(find_crossings(mesh, nodes)):
+        raise InputError(f"no solve can begin there: {words.partition(':')[0]}")
 
 
 def check_pose(pose: object, shape: tuple[int, ...], winches: int, history: Vector | None) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from builders import box_mesh, strip_mesh, strip_robot
+from touching import fork_robot
 
 from hydrostat import kernel
 from hydrostat.errors import InputError
@@ -220,6 +221,8 @@ def test_kernels(twice: set[str]) -> None:
     NeoHookean(box.nodes, box.elements, mu=1.0, lame=1.0).least_volume(moved(box, 0.2))
     solid = Solid(Surface(box.nodes, box.boundary))
     stage = ImproveStage(rounds=2, sweeps=2, power=3.0, pull=10.0)
+    touching = Simulation(fork_robot(3))
+    touching.solve({"up": 0.002}, start=touching.solve({"up": 0.012, "down": 0.01}))
     improve(Mesh(moved(box, 0.1), box.elements), solid, element_size=0.02, stages=(stage,))
     assert twice == kernels().keys()
 

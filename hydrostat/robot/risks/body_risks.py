@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
 from hydrostat.geometry.surface import Solid
 from hydrostat.geometry.tetrahedra.manifold import euler
@@ -41,12 +42,21 @@ def body_risks(robot: Robot) -> Iterator[str]:
     yield from _flat_angles(mesh) if mesh.dim == 2 else _slivers(mesh)
     yield from _unlike(robot.body)
     yield from _locking(robot.body)
+    yield from _crossing(mesh)
     yield from _thin(robot.body)
 
 
 def _flat_angles(mesh: Mesh) -> Iterator[str]:
     if smallest_angle(mesh) < LEAST_ANGLE:
         yield f"body: the mesh has an angle of {smallest_angle(mesh):.0f} degrees; try another element_size"
+
+
+def _crossing(mesh: Mesh) -> Iterator[str]:
+    """A body that passes through itself, or touches itself, before it moves."""
+    found = find_crossings(mesh, mesh.nodes)
+    if len(found):
+        where = place(found.places[0])
+        yield f"body: at rest it passes through itself, for instance at {where}; contact does not mend that"
 
 
 def _slivers(mesh: Mesh) -> Iterator[str]:

@@ -1,0 +1,122 @@
+"""Pairs of a boundary, their distances and admissible moves. Oracles: all pairs by brute force, ipctk, samples."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from touching import fork_mesh
+
+from hydrostat.geometry.boundary_tree import BoundaryTree, facet_areas
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.pair_distances import admissible_share, squared_distances
+
+
+def bent(mesh: Mesh, amount: float, seed: int = 0) -> np.ndarray:
+    """Nodes of a body bent at random, smoothly."""
+    waves = np.random.default_rng(seed).normal(size=(3, mesh.dim, mesh.dim))
+    x = mesh.nodes / mesh.size
+    return mesh.nodes + amount * mesh.size * sum(np.sin(3.0 * x @ wave + number) for number, wave in enumerate(waves))
+
+
+def surface(mesh: Mesh) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
+    """All nodes and edges of the boundary."""
+    facets = mesh.boundary
+    edges = {tuple(sorted(pair)) for facet in facets for pair in combinations(facet.tolist(), 2)}
+    return [(int(node),) for node in np.unique(facets)], sorted(edges)
+
+
+def samples(features: np.ndarray, count: int) -> np.ndarray:
+    """Points of a feature, (points, dim), by its corners."""
+    corners = len(features)
+    if corners == 1:
+        return features
+    shares = np.linspace(0, 1, count)
+    if corners == 2:
+        return features[0] + shares[:, None] * (features[1] - features[0])
+    one, two = (grid.ravel() for grid in np.meshgrid(shares, shares))
+    inside = one + two <= 1 + 1e-12
+    weights = np.column_stack([1 - one - two, one, two])[inside]
+    return weights @ features
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_all_pairs_within_reach_are_found(dim: int) -> None:
+    mesh = fork_mesh(dim, columns=6)
+    nodes, reach = bent(mesh, 0.05), 0.012
+    points, edges = surface(mesh)
+    facets = [tuple(facet) for facet in mesh.boundary.tolist()]
+    others = [(point, facet) for point in points for facet in facets]
+    others += list(combinations(edges, 2)) if dim == 3 else []
+    apart = np.array([one + other for one, other in others if not set(one) & set(other)])
+    lone = np.array([len(one) == 1 for one, other in others if not set(one) & set(other)])
+    squared = np.empty(len(apart))
+    squared_distances(nodes, apart, ~lone, 0.0, squared)
+    wanted = {(bool(e), *sorted(map(int, s))) for s, e, q in zip(apart, ~lone, squared, strict=True) if q < reach**2}
+    _, found = BoundaryTree(mesh).sweep(nodes, np.zeros_like(nodes), mesh.nodes, kept=0.1, reach=reach)
+    assert len(wanted) > 10
+    assert wanted <= {(bool(e), *sorted(map(int, s))) for s, e in zip(*found, strict=True)}
+    near = BoundaryTree(mesh).pairs(nodes, reach)
+    assert wanted <= {(bool(e), *sorted(map(int, s))) for s, e in zip(*near, strict=True)}
+    assert len({(bool(e), *map(int, s)) for s, e in zip(*near, strict=True)}) == len(near.edges)
+
+
+@pytest.mark.parametrize("kind", ["node and edge", "node and triangle", "edges"])
+def test_distances_are_those_of_the_nearest_samples(kind: str) -> None:
+    dim, first, random = (2, 1, 0) if kind == "node and edge" else (3, 2 if kind == "edges" else 1, 1), 0, 0
+    dim, first = dim[0], dim[1]
+    points = np.random.default_rng(random).normal(size=(60, dim + 1, dim))
+    stencils = np.arange(60 * (dim + 1)).reshape(60, dim + 1)
+    squared = np.empty(60)
+    squared_distances(points.reshape(-1, dim), stencils, np.full(60, first == 2), 0.0, squared)
+    for corners, found in zip(points, squared, strict=True):
+        one, other = samples(corners[:first], 201), samples(corners[first:], 201)
+        nearest = np.linalg.norm(one[:, None] - other[None], axis=2).min()
+        assert nearest - 0.02 <= found**0.5 <= nearest + 1e-12
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_no_move_passes_through(seed: int) -> None:
+    """As far as a move is admitted the body does not cross itself by ipctk; beyond the first touch it does."""
+    ipctk = pytest.importorskip("ipctk")
+    mesh = fork_mesh(3)
+    move = bent(mesh, 0.4, seed) - mesh.nodes
+    share, _ = BoundaryTree(mesh).sweep(mesh.nodes, move, mesh.nodes, kept=0.1, reach=0.0)
+    points, edges = surface(mesh)
+    outer = np.concatenate(points)
+    place = {int(node): number for number, node in enumerate(outer)}
+    mapped = [np.array([[place[int(node)] for node in each] for each in some]) for some in (edges, mesh.boundary)]
+    collisions = ipctk.CollisionMesh(mesh.nodes[outer], *mapped)
+    assert 0 < share < 1
+    for part in np.linspace(0, share, 7):
+        assert not ipctk.has_intersections(collisions, (mesh.nodes + part * move)[outer])
+    assert any(
+        ipctk.has_intersections(collisions, (mesh.nodes + part * move)[outer])
+        for part in np.linspace(share, min(3 * share, 1), 30)
+    )
+
+
+def test_a_move_as_a_whole_is_admitted_whole() -> None:
+    mesh = fork_mesh(3)
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    for move in (np.full(mesh.nodes.shape, 0.3), 0.01 * mesh.nodes @ turn.T):
+        assert BoundaryTree(mesh).sweep(mesh.nodes, move, mesh.nodes, kept=0.1, reach=0.0)[0] == 1.0
+
+
+def test_pairs_that_touch_at_rest_may_move() -> None:
+    """Two triangles that stand on one place without a common node, and move apart."""
+    nodes = np.array([[0.0, 0], [1, 0], [0, 1], [0, 0], [-1, 0], [0, -1]])
+    move = np.where(np.arange(6)[:, None] < 3, 0.0, -0.5) * np.ones(2)
+    stencils = np.array([[0, 3, 4], [3, 0, 1]])
+    still, apart = np.zeros(2, np.bool_), np.repeat([[0.0], [9.0]], 3, axis=0)
+    assert admissible_share(nodes, move, nodes, stencils, still, 0.1) == 1.0
+    assert admissible_share(nodes, -move, nodes + apart, stencils, still, 0.1) < 1e-6
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_areas_are_those_of_the_boundary(dim: int) -> None:
+    """The box less its slot, counted by hand [mm]."""
+    areas, around = facet_areas(fork_mesh(dim))
+    slot, rim = 2 * 90 + 40 / 3, 2 * (120 + 40) - 40 / 3
+    plate = (120 * 40 - 90 * 40 / 3) * 2e-6
+    wanted = 1e-3 * (slot + rim) if dim == 2 else 1e-3 * (slot + rim) * 0.02 + plate
+    np.testing.assert_allclose([areas.sum(), around.sum()], wanted, rtol=1e-12)

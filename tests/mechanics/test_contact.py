@@ -1,0 +1,127 @@
+"""Energies of contact. Oracles: differences (`check_energy`), balance of forces, ipctk's distances, rest."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from touching import DISTANCE, fork_robot
+
+from hydrostat.geometry.boundary_tree import Pairs
+from hydrostat.geometry.distance_field import sphere_field
+from hydrostat.mechanics import ContactEnergy, ObstacleEnergy
+from hydrostat.simulation import Simulation, SolvedPose
+from hydrostat.testing import check_energy
+
+IDLE = np.zeros(2)
+
+
+@cache
+def closed(dim: int) -> SolvedPose:
+    """The fork with its prongs pulled against each other."""
+    return Simulation(fork_robot(dim)).solve({"up": 0.012, "down": 0.01})
+
+
+def own(dim: int) -> ContactEnergy:
+    robot = fork_robot(dim)
+    return ContactEnergy.of(
+        robot.body.mesh, distance=DISTANCE, young=robot.body.material.young, thickness=robot.body.thickness
+    )
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_derivatives_where_prongs_touch(dim: int) -> None:
+    nodes = closed(dim).nodes
+    energy = own(dim).near(nodes)
+    assert energy.value(nodes, IDLE) > 0
+    check_energy(energy, nodes, IDLE)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_forces_balance(dim: int) -> None:
+    """Parts push one another off: no force and no torque on the whole."""
+    nodes = closed(dim).nodes
+    forces = np.zeros_like(nodes)
+    own(dim).near(nodes).add_gradient(nodes, IDLE, forces)
+    scale = np.abs(forces).sum()
+    assert scale > 0.01
+    assert np.abs(forces.sum(axis=0)).max() < 1e-12 * scale
+    torque = np.einsum("ni,nj->nij", nodes, forces)
+    assert np.abs((torque - torque.swapaxes(1, 2)).sum(axis=0)).max() < 1e-9 * np.abs(torque).sum()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_nothing_is_felt_at_rest(dim: int) -> None:
+    """Not even in a slot narrower than the distance, nor between parts of one mesh that lie near."""
+    mesh = fork_robot(dim).body.mesh
+    energy = ContactEnergy.of(mesh, distance=0.05, young=3e4).near(mesh.nodes)
+    assert energy.watch is not None
+    energy = ContactEnergy(energy.skin, energy.watch.pairs)
+    assert len(energy.stencils) > 100
+    assert energy.value(mesh.nodes, IDLE) == 0.0
+    assert not energy.gradient(mesh.nodes, IDLE).any()
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_what_is_kept_serves(dim: int) -> None:
+    """An energy that has gone along with small moves is the one found anew, to the same forces."""
+    nodes, energy = closed(dim).nodes, own(dim).near(closed(dim).nodes)
+    random = np.random.default_rng(2)
+    for _ in range(12):
+        nodes = nodes + 1e-4 * random.uniform(-1, 1, nodes.shape)
+        energy, fresh = energy.near(nodes), own(dim).near(nodes)
+        forces, anew = np.zeros_like(nodes), np.zeros_like(nodes)
+        energy.add_gradient(nodes, IDLE, forces)
+        fresh.add_gradient(nodes, IDLE, anew)
+        np.testing.assert_allclose(forces, anew, atol=1e-12 * np.abs(anew).max())
+        assert energy.value(nodes, IDLE) == pytest.approx(fresh.value(nodes, IDLE), rel=1e-12)
+
+
+def test_parallel_edges_have_a_hessian() -> None:
+    """Two edges side by side, whose nearest points are not certain: the block is the slope of the forces."""
+    rest = np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.1, 0], [0.01, 0.1, 0]])
+    skin = replace(own(3).skin, rest=rest, areas=np.ones(4))
+    pair = ContactEnergy(skin, Pairs(np.array([[0, 1, 2, 3]]), np.array([True])))
+    for turn in (0.0, 1e-7, 1e-3):
+        nodes = np.array([[0, 0, 0], [0.01, 0, 0], [0.001, 4e-4, 0], [0.012, 4e-4, turn]])
+        block, slopes, step = pair.hessian(nodes, IDLE)[0], np.empty((12, 12)), 1e-9
+        for row, move in enumerate(step * np.eye(12).reshape(12, 4, 3)):
+            ahead, behind = (pair.gradient(nodes + sign * move, IDLE).ravel() for sign in (1, -1))
+            slopes[row] = (ahead - behind) / (2 * step)
+        assert pair.value(nodes, IDLE) > 0
+        np.testing.assert_allclose(block, slopes, atol=1e-6 * np.abs(slopes).max())
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_an_obstacle(dim: int) -> None:
+    """A ball next to the upper prong, some of which it touches."""
+    robot = fork_robot(dim)
+    mesh, at = robot.body.mesh, np.array([0.06, 0.0307, 0.011][:dim])
+    energy = ObstacleEnergy(mesh, sphere_field(at, 0.01), distance=DISTANCE, young=3e4, thickness=robot.body.thickness)
+    nodes = mesh.nodes + 1e-4 * np.sin(40 * mesh.nodes)
+    assert energy.value(nodes, IDLE) > 0
+    check_energy(energy, nodes, IDLE)
+    down = np.zeros_like(nodes)
+    down[:, 1] = 0.02
+    share = energy.largest_step(nodes, down)
+    assert 0 < share < 0.05
+    assert energy.gap(nodes + share * down) == pytest.approx(0.1 * energy.gap(nodes), rel=0.2)
+    assert energy.largest_step(nodes, -down) == 1.0
+    assert energy.value(nodes + down, IDLE) == np.inf
+    assert energy.shares.sum(axis=1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_samples_stand_for_the_whole_boundary(dim: int) -> None:
+    """Their weights are those of an exact rule: the integral of a square over the boundary, by many more points."""
+    mesh = fork_robot(dim).body.mesh
+    energy = ObstacleEnergy(mesh, sphere_field(np.ones(dim), 0.1), distance=1.0, young=4.329)
+    squares = (energy.places(mesh.nodes) ** 2).sum(axis=1)
+    corners = mesh.nodes[mesh.boundary]
+    if dim == 2:
+        areas = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
+    else:
+        areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    outer = (corners**2).sum(axis=(1, 2)) + (corners.sum(axis=1) ** 2).sum(axis=1)
+    wanted = (areas * outer).sum() / (dim * (dim + 1))
+    assert energy.weights @ squares == pytest.approx(wanted, rel=1e-9)

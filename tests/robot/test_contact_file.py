@@ -1,0 +1,95 @@
+"""[contact] and [[obstacle]] in robot.toml. Oracle: what was written, and the lines told of what is wrong."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from builders import gallery_robot
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Contact, Obstacle, Robot, find_risks, load_robot, save_robot
+from hydrostat.robot.merge import merged_text
+
+WALL = Obstacle(name="wall", shape="plane", at=(0.0, -0.16), normal=(0.0, 1.0))
+OTHERS = (
+    WALL,
+    Obstacle(name="ball", shape="sphere", at=(0.3, 0.0), radius=0.02),
+    Obstacle(name="rod", shape="capsule", at=(0.3, 0.1), to=(0.4, 0.2), radius=0.01),
+    Obstacle(name="step", shape="box", at=(-0.3, 0.0), to=(-0.2, 0.1)),
+)
+
+
+def starfish(contact: Contact | None = None, *obstacles: Obstacle) -> Robot:
+    return replace(gallery_robot("starfish"), contact=contact, obstacles=obstacles)
+
+
+@pytest.mark.parametrize("contact", [None, Contact(), Contact(distance=2e-3)])
+def test_what_is_written_is_read(contact: Contact | None, tmp_path: Path) -> None:
+    robot = starfish(contact, *OTHERS)
+    save_robot(robot, tmp_path / "star")
+    found = load_robot(tmp_path / "star")
+    assert (found.contact, found.obstacles) == (contact, OTHERS)
+
+
+def test_contact_comes_and_goes_in_a_text_that_keeps_its_comments(tmp_path: Path) -> None:
+    save_robot(starfish(), tmp_path / "star")
+    text = "# mine\n" + (tmp_path / "star" / "robot.toml").read_text("utf-8")
+    with_contact = merged_text(text, starfish(Contact(distance=1e-3), WALL))
+    assert "# mine" in with_contact
+    assert '[contact]\ndistance = "1 mm"' in with_contact
+    changed = merged_text(with_contact, starfish(Contact(distance=2e-3), WALL))
+    assert changed == with_contact.replace('distance = "1 mm"', 'distance = "2 mm"')
+    gone = merged_text(changed, starfish())
+    assert "contact" not in gone
+    assert "obstacle" not in gone
+
+
+def test_the_distance_is_a_share_of_the_size() -> None:
+    robot = starfish(Contact())
+    assert robot.contact_distance == pytest.approx(robot.body.mesh.size / 200)
+    assert starfish(Contact(distance=3e-3)).contact_distance == 3e-3
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        ('[contact]\ndistance = "-1 mm"', r"line \d+: contact.distance must be finite and above 0, not -0.001 m"),
+        (
+            '[contact]\ndistance = "90 mm"',
+            r"contact.distance of 90 mm is large beside a body of 279.3 mm; it is usually",
+        ),
+        ("[contact]\ndistance = 1", r"line \d+: contact.distance: 1 has no unit"),
+        ("[contact]\nfriction = 0.3", r'contact: unknown key "friction"|contact.friction'),
+        ('[[obstacle]]\nname = "a"\nshape = "cone"\nat = [900, 0]', r"obstacle\[0\].shape"),
+        ('[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]', r"obstacle\[0\]: a sphere needs a radius"),
+        ('[[obstacle]]\nname = "a"\nshape = "plane"\nat = [0, 0]\nnormal = [0, 0]', "normal must not be 0"),
+        ('[[obstacle]]\nname = "a"\nshape = "box"\nat = [900, 0]\nto = [900, 9]', "leave nothing between them"),
+        ('[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]\nto = [0, 0]\nradius = 3', "a sphere has no to"),
+        (
+            '[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [0, 0]\nradius = 9',
+            '"a" stands in the body at rest; move it out',
+        ),
+        (
+            '[[obstacle]]\nname = "a"\nshape = "plane"\nat = [0, 0]\nnormal = [0, 1]',
+            'body at rest stands in "a", [0-9.]+ mm deep',
+        ),
+        ('[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [0, 0, 9]\nradius = 9', "at has 3 entries"),
+        (
+            '[[obstacle]]\nname = "a"\nshape = "cylinder"\nat = [900, 0]\nto = [950, 0]\nradius = 9',
+            "a flat body meets no cylinder",
+        ),
+        (2 * '[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]\nradius = 9\n', 'two of the name "a"|"a"'),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path) -> None:
+    save_robot(starfish(), tmp_path / "star")
+    file = tmp_path / "star" / "robot.toml"
+    file.write_text(file.read_text("utf-8") + "\n" + table + "\n", "utf-8")
+    with pytest.raises(InputError, match=told) as caught:
+        load_robot(tmp_path / "star")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_body_that_crosses_itself_at_rest_is_risky() -> None:
+    robot = starfish(Contact())
+    assert not any("passes through itself" in risk for risk in find_risks(robot))

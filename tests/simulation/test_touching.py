@@ -1,0 +1,145 @@
+"""Robots that touch themselves and obstacles. Oracles: ipctk, crossings, whole solves, the body without contact."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import gallery_robot
+from touching import DISTANCE, fork_robot
+
+from hydrostat.errors import InputError
+from hydrostat.geometry.crossings import find_crossings
+from hydrostat.ik import solve_ik
+from hydrostat.mechanics import ContactEnergy, NewtonOptions
+from hydrostat.robot import Contact, Obstacle, Pose, Robot
+from hydrostat.simulation import Simulation
+
+PULLED = {"up": 0.02, "down": 0.016}
+
+
+def crossings(robot: Robot, nodes: np.ndarray) -> int:
+    return len(find_crossings(robot.body.mesh, nodes))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_prongs_meet_and_do_not_cross(dim: int) -> None:
+    free, touching = (Simulation(fork_robot(dim, contact=contact)) for contact in (False, True))
+    assert crossings(free.robot, free.solve(PULLED).nodes) > 0
+    pose = touching.solve(PULLED)
+    assert crossings(touching.robot, pose.nodes) == 0
+    assert np.abs(touching.forces(pose.nodes, pose.contractions)).max() <= pose.result.allowed
+    energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy)).near(pose.nodes)
+    squared, begins = energy.skin.squared(pose.nodes, energy.pairs), energy.skin.begins(energy.pairs)
+    felt = squared < begins
+    assert felt.any()
+    assert (squared[felt] / begins[felt]).min() ** 0.5 > 0.3
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_random_contractions(dim: int) -> None:
+    """None crosses, by ipctk in space; where nothing touches the pose is the one without contact."""
+    robot = fork_robot(dim)
+    free, touching = Simulation(fork_robot(dim, contact=False)), Simulation(robot)
+    touched = 0
+    for contractions in np.random.default_rng(4).uniform(0, 0.03, (12, 2)):
+        pose, other = touching.solve(contractions), free.solve(contractions)
+        assert crossings(robot, pose.nodes) == 0
+        if dim == 3:
+            assert not crosses(robot, pose.nodes)
+        energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy))
+        if energy.near(pose.nodes).value(pose.nodes, contractions) == 0.0 and not crossings(robot, other.nodes):
+            np.testing.assert_allclose(pose.nodes, other.nodes, atol=1e-8)
+        else:
+            touched += 1
+    assert 3 <= touched <= 12
+
+
+def crosses(robot: Robot, nodes: np.ndarray) -> bool:
+    """Whether a body in space crosses itself, by an independent program."""
+    ipctk = pytest.importorskip("ipctk")
+    facets = robot.body.mesh.boundary
+    outer, mapped = np.unique(facets, return_inverse=True)
+    mapped = mapped.reshape(facets.shape)
+    mesh = ipctk.CollisionMesh(robot.body.mesh.nodes[outer], ipctk.edges(mapped), mapped)
+    return bool(ipctk.has_intersections(mesh, nodes[outer]))
+
+
+def test_the_way_does_not_matter() -> None:
+    """From rest at once, or step by step from pose to pose, where prongs cannot slide past each other sideways."""
+    simulation = Simulation(fork_robot(2))
+    pose = simulation.solve(PULLED)
+    streamed = None
+    for share in np.linspace(0.05, 1, 20):
+        streamed = simulation.solve({name: share * pull for name, pull in PULLED.items()}, start=streamed)
+    assert streamed is not None
+    np.testing.assert_allclose(streamed.nodes, pose.nodes, atol=1e-7)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_slopes_through_contact(dim: int) -> None:
+    """Jacobian and adjoint against differences of whole solves."""
+    simulation = Simulation(fork_robot(dim), options=NewtonOptions(tolerance=1e-12))
+    pose = simulation.solve(PULLED)
+    slopes, step = simulation.jacobian(pose), 1e-7
+    weights = np.random.default_rng(1).normal(size=pose.nodes.shape)
+    for number, move in enumerate(step * np.eye(2)):
+        ends = [simulation.solve(pose.contractions + sign * move, start=pose).nodes for sign in (1, -1)]
+        wanted = (ends[0] - ends[1]) / (2 * step)
+        assert np.abs(slopes[:, :, number] - wanted).max() < 1e-5 * np.abs(wanted).max()
+    found = simulation.adjoint(pose, weights).contractions
+    np.testing.assert_allclose(found, np.einsum("nd,ndw->w", weights, slopes), rtol=1e-8)
+
+
+def test_inverse_kinematics_keeps_prongs_apart() -> None:
+    """A target behind the other prong: the answer without contact lies within it, the one with contact does not."""
+    pose = Pose(name="through", targets={"tip": (0.1, -0.012)})
+    free, touching = (replace(fork_robot(2, contact=contact), poses={"through": pose}) for contact in (False, True))
+    assert crossings(free, solve_ik(Simulation(free), pose).pose.nodes) > 0
+    reached = solve_ik(Simulation(touching), pose)
+    assert crossings(touching, reached.pose.nodes) == 0
+
+
+def test_motion_does_not_pass_through() -> None:
+    """Pulled at once, without viscosity: the prongs fly together."""
+    simulation = Simulation(fork_robot(2))
+    motion = simulation.still()
+    least = np.inf
+    for _ in range(25):
+        motion = simulation.step(motion, PULLED, 4e-3)
+        assert crossings(simulation.robot, motion.nodes) == 0
+        least = min(least, motion.markers["tip"][1])
+    assert least < 0.0  # it has bent as far as the other prong lets it
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_wall_stops_a_prong(dim: int) -> None:
+    """The outer side rests on a plane: its gap is a share of the distance, and pulling more presses more."""
+    up = (0.0, 1.0, 0.0)[:dim]
+    wall = Obstacle(name="wall", shape="plane", at=(0.0, -0.03, 0.0)[:dim], normal=up)
+    robot = replace(fork_robot(dim), obstacles=(wall,))
+    simulation = Simulation(robot)
+    gaps = []
+    for pull in (0.012, 0.02):
+        nodes = simulation.solve({"up": pull}).nodes
+        gaps.append(wall.field()(nodes).values.min())
+        assert crossings(robot, nodes) == 0
+    free = Simulation(replace(robot, obstacles=())).solve({"up": 0.02}).nodes
+    assert wall.field()(free).values.min() < 0
+    assert 0.3 * DISTANCE < gaps[1] < gaps[0] < DISTANCE
+
+
+def test_a_start_that_crosses_itself_is_refused() -> None:
+    crossed = Simulation(fork_robot(2, contact=False)).solve(PULLED)
+    with pytest.raises(
+        InputError, match=r"no solve can begin there: the body passes through itself, for instance at \["
+    ):
+        Simulation(fork_robot(2)).solve(PULLED, start=crossed)
+
+
+def test_a_gallery_body() -> None:
+    """The starfish, pulled so far that its limbs meet: with contact of its default distance none crosses."""
+    robot = replace(gallery_robot("starfish"), contact=Contact())
+    simulation = Simulation(robot)
+    pulled = {winch.name: 0.9 * winch.travel for winch in robot.winches}
+    assert crossings(robot, simulation.solve(pulled).nodes) == 0
+    assert crossings(robot, Simulation(gallery_robot("starfish")).solve(pulled).nodes) > 0
