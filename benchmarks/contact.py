@@ -3,8 +3,8 @@
     python benchmarks/contact.py [--count 100] [--seed 0] [--share 1.0] [EXAMPLE ...]
 
 Each winch draws from 0 to a share of its travel. A pose with contact counts as wrong if the solver says so, if an
-independent program (ipctk in space, our cuts of edges in the plane) finds that the body crosses itself, if an element has
-J <= 0, or if a gap is below 0.3 of the distance at which it is felt. CPU time is of this process, one pose with contact
+independent program (ipctk in space, our cuts of edges in the plane) finds that the body crosses itself, if an element
+has J <= 0, or if a gap is below 0.3 of the distance at which it is felt. CPU time is of this process, one pose with contact
 after the same pose without; the exit code is 1 if one pose is wrong.
 """
 
@@ -76,7 +76,7 @@ def study(name: str, count: int, seed: int, share: float) -> int:
         if not good:
             wrong += 1
             print(
-                f"  {name} {number}: {pose.result.reason}, least gap {least:.2f}, J {touching.assembly.least_volume(pose.nodes):.2g}"
+                f"  {name} {number}: {pose.result.reason}, least gap {least:.2f}, residual {pose.result.residual:.2g} N"
             )
         crossed = crosses(robot, other.nodes)
         rows.append((middle - start, end - middle, pose.result.iterations, len(found), least, crossed))
@@ -85,7 +85,8 @@ def study(name: str, count: int, seed: int, share: float) -> int:
     parts = [f"{np.median(ratio[kind]):.2f}" if kind.any() else "" for kind in (touch, ~touch)]
     parts.append(f"{np.quantile(ratio, 0.99):.1f}")
     print(
-        f"| {name} | {len(robot.body.mesh.nodes)} | {count - wrong}/{count} | {crossed.mean():.0%} | {touch.mean():.0%} | "
+        f"| {name} | {len(robot.body.mesh.nodes)} | {count - wrong}/{count} | "
+        f"{crossed.mean():.0%} | {touch.mean():.0%} | "
         f"{least_gap.min():.2f} | {np.median(iterations):.0f}, {iterations.max():.0f} | {1e3 * np.median(cpu):.1f} | "
         f"{1e3 * np.median(cpu_contact):.1f} | {' | '.join(parts)} |",
         flush=True,
