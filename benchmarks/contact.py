@@ -4,8 +4,8 @@
 
 Each winch draws from 0 to a share of its travel. A pose with contact counts as wrong if the solver says so, if an
 independent program (ipctk in space, our cuts of edges in the plane) finds that the body crosses itself, if an element
-has J <= 0, or if a gap is below 0.3 of the distance at which it is felt. CPU time is of this process, one pose with contact
-after the same pose without; the exit code is 1 if one pose is wrong.
+has J <= 0, or if a gap is below 0.3 of the distance at which it is felt. CPU time is of this process, one pose with
+contact after the same pose without; the exit code is 1 if one pose is wrong.
 """
 
 import argparse
