@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from builders import strip_robot
+from builders import gallery_robot, strip_robot
 from scipy.optimize import lsq_linear
 
 from hydrostat.design.muscles.activation import activate, edge_fibres, least_effort
 from hydrostat.design.muscles.free_posing import FreePosing
-from hydrostat.geometry.anchors import locate
+from hydrostat.geometry.anchors import Anchors, locate
 from hydrostat.robot import Pose
 
 ROBOT = strip_robot(columns=14, rows=3)
@@ -100,3 +100,32 @@ def test_least_effort_within_bounds_is_that_of_a_general_solver(seed: int) -> No
     expected = lsq_linear(stacked, np.concatenate([wanted, np.zeros(30)]), bounds=(0, most), tol=1e-14).x
     assert found == pytest.approx(expected, abs=1e-6)
     assert (found >= most - 1e-9).any(), "a bound holds"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("farther", [1.0, 1.6], ids=["in reach", "out of reach"])
+def test_markers_that_nobody_holds_rather_stay(farther: float) -> None:
+    """Oracle: the same drag of an arm of the starfish by 45 degrees without the wish, which turns all others."""
+    robot = gallery_robot("starfish")
+    mesh, places = robot.body.mesh, np.array([marker.at for marker in robot.markers])
+    number = [marker.name for marker in robot.markers].index("right")
+    centre, turn = mesh.nodes.mean(axis=0), np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
+    goal = (centre + farther * turn @ (places[number] - centre))[None]
+    markers = locate(mesh, places)
+    held, calm = markers.chosen([number]), markers.chosen([own for own in range(len(places)) if own != number])
+
+    def dragged(stays: Anchors | None) -> tuple[float, np.ndarray]:
+        """Miss [m], and how far each other marker is from rest [m]."""
+        posing = FreePosing(robot)
+        for share in np.linspace(0, 1, 21)[1:]:
+            posing.update(held, places[[number]] + share * (goal - places[[number]]), stays)
+        for _ in range(200):
+            if not posing.update(held, goal, stays):
+                break
+        moved = calm.positions(posing.nodes) - calm.positions(mesh.nodes)
+        return float(np.linalg.norm(held.positions(posing.nodes) - goal)), np.linalg.norm(moved, axis=1)
+
+    (free, all_turn), (kept, some_turn) = dragged(None), dragged(calm)
+    assert all_turn.min() > 0.04, "without the wish every arm goes along"
+    assert (some_turn < 0.5 * all_turn).all()
+    assert kept < free + 0.001 * mesh.size

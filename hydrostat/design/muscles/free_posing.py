@@ -1,5 +1,7 @@
 """`FreePosing`: a body that follows points held by hand as if full of muscles, fit for dragging (R36 to R38)."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Float
 from scipy.sparse import csc_array
@@ -19,6 +21,9 @@ class FreePosing:
     on from where it is. An update linearises equilibrium and goal together (sequential quadratic programming): one
     solve for each coordinate held, the dual of least effort, and a step or two of Newton whose last Hessian begins the
     next update. The bound on tensions keeps a goal out of reach from crushing the body.
+
+    Points named as calm should rather stay where they rest: the square of what they move weighs |miss| / (2 size), as
+    in `solve_ik` (`InverseOptions.stay`), and never so little that it takes too much effort to keep them.
 
     Attributes:
         robot: whose body it is.
@@ -65,17 +70,21 @@ class FreePosing:
         self._radius = _LARGEST
         self._settle(self._resting, np.zeros(len(self.fibres)))
 
-    def update(self, held: Anchors, goals: Points) -> bool:
-        """One step towards where held points should be [m], back to rest without any; whether there is more to gain."""
-        wanted, rho = self._wanted(held, goals)
+    def update(self, held: Anchors, goals: Points, calm: Anchors | None = None) -> bool:
+        """One step towards where held points should be [m], back to rest without any; whether there is more to gain.
+
+        Points of `calm` are those that nobody holds and that should rather stay.
+        """
+        aims = self._aims(held, goals, calm)
+        wanted, rho = self._wanted(aims)
         change = wanted - self.tensions
         farthest = self._farthest(change)
-        before = self._objective(self.nodes, self.tensions, held, goals, rho)
+        before = self._objective(self.nodes, self.tensions, aims, rho)
         for _ in range(_TRIES):
             length = min(1.0, self._radius / farthest) if farthest > 0 else 1.0
             tensions = self.tensions + length * change
             found = self._relaxed(tensions, _ITERATIONS)
-            if self._objective(found.nodes, tensions, held, goals, rho) <= before:
+            if self._objective(found.nodes, tensions, aims, rho) <= before:
                 self._radius = min(2.0 * self._radius, _LARGEST)
                 return self._settle(found, tensions)
             self._radius = max(0.25 * length * farthest, _SMALLEST)
@@ -106,19 +115,28 @@ class FreePosing:
         self._stiffness = stiffness
         return moved > _STILL * self._size
 
-    def _wanted(self, held: Anchors, goals: Points) -> tuple[Vector, float]:
+    def _aims(self, held: Anchors, goals: Points, calm: Anchors | None) -> list["_Aim"]:
+        """What is held, then what should stay; nothing has to stay while nothing is held."""
+        aims = [_Aim(held, goals, 1.0)]
+        if calm is not None and len(goals):
+            missed = float(np.linalg.norm(held.positions(self.nodes) - goals))
+            weight = max(_CALM, np.sqrt(0.5 * missed / self._size))
+            aims.append(_Aim(calm, calm.positions(self._resting.nodes), weight))
+        return aims
+
+    def _wanted(self, aims: list["_Aim"]) -> tuple[Vector, float]:
         """Tensions that the linearised problem asks for, and the weight of their squares [m^2/N^2].
 
         Effort weighs more for a goal out of reach, so that the strongest fibre pulls as hard as it can and the others
         by their leverage; were all of them at their bounds, the body would be crushed.
         """
-        rows = place_slopes(held, self.nodes)
+        rows = np.hstack([aim.weight * place_slopes(aim.points, self.nodes) for aim in aims])
         adjoint = self._stiffness.solve(rows)
         jacobian = -(self._pulls(self.nodes, self.tensions).T @ adjoint).T
         gradient = self._assembly.gradient(self.nodes, self.tensions)
-        resting = held.positions(self.nodes).ravel() - adjoint.T @ gradient
-        rho = self._weight(rows)
-        goal = goals.ravel() - resting + jacobian @ self.tensions
+        missed = np.concatenate([aim.weight * (aim.goals - aim.points.positions(self.nodes)).ravel() for aim in aims])
+        rho = self._weight(rows[:, : aims[0].goals.size])
+        goal = missed + adjoint.T @ gradient + jacobian @ self.tensions
         most = self._most()
         wanted = least_effort(jacobian, goal, rho, most=most)
         for _ in range(_SOFTENINGS):
@@ -160,9 +178,9 @@ class FreePosing:
             stiffness=self._stiffness,
         )
 
-    def _objective(self, nodes: Nodes, tensions: Vector, held: Anchors, goals: Points, rho: float) -> float:
-        miss = held.positions(nodes) - goals
-        return float(0.5 * (miss**2).sum() + 0.5 * rho * tensions @ tensions)
+    def _objective(self, nodes: Nodes, tensions: Vector, aims: list["_Aim"], rho: float) -> float:
+        missed = sum(aim.weight**2 * float(((aim.points.positions(nodes) - aim.goals) ** 2).sum()) for aim in aims)
+        return 0.5 * missed + 0.5 * rho * float(tensions @ tensions)
 
     def _largest_move(self) -> float:
         """The square of how far the strongest fibre moves a node along an axis at rest [m^2/N^2], of some nodes."""
@@ -172,6 +190,16 @@ class FreePosing:
         return float(((self._resting_pulls.T @ self._resting_stiffness.solve(rows)) ** 2).max())
 
 
+@dataclass(frozen=True, eq=False)
+class _Aim:
+    """Points, where they should be [m], and how much a metre counts."""
+
+    points: Anchors
+    goals: Points
+    weight: float
+
+
+_CALM = 0.03  # what a metre of a point that should rather stay counts beside one of a point that is held
 _SHORTEST = 0.4
 """A muscle that is so short, as a share of its length at rest, cannot pull: the force falls with the length."""
 

@@ -1,13 +1,14 @@
 """`Mover`: the contract of what makes a body follow points that are held; `MuscleMover`: the body's own muscles."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.muscles.free_posing import FreePosing
-from hydrostat.robot import Robot
+from hydrostat.geometry.anchors import locate
+from hydrostat.robot import Marker, Robot
 from hydrostat.studio.posing.held import Anchored, Held
 from hydrostat.studio.view.things import RobotShape
 
@@ -32,14 +33,21 @@ MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes
 
 
 class MuscleMover(Mover):
-    """Free posing on muscle fibres: no cable pulls (R36 to R38)."""
+    """Free posing on muscle fibres: no cable pulls (R36 to R38); markers that nobody holds rather stay."""
 
     def __init__(self, robot: Robot) -> None:
         """Begin at rest; the sparse pattern is made here."""
         self.robot = robot
         self._posing, self._anchored = FreePosing(robot), Anchored(robot.body.mesh)
+        self.mark(robot.markers)
         self._held: Mapping[str, Held] = {}
         self._updates = 0
+
+    def mark(self, markers: Sequence[Marker]) -> None:
+        """Take these as the markers that should rather stay while they are not held."""
+        mesh = self.robot.body.mesh
+        self._markers = markers
+        self._calm = locate(mesh, np.array([marker.at for marker in markers], dtype=float).reshape(-1, mesh.dim))
 
     @property
     def pulls(self) -> tuple[Nodes, Vector]:
@@ -56,7 +64,9 @@ class MuscleMover(Mover):
         if held is not self._held:
             self._held, self._updates = held, 0
         self._updates += 1
-        more = self._posing.update(self._anchored.anchors(held), self._anchored.goals(held))
+        taken = {point.at for point in held.values()}
+        calm = self._calm.chosen([index for index, marker in enumerate(self._markers) if marker.at not in taken])
+        more = self._posing.update(self._anchored.anchors(held), self._anchored.goals(held), calm)
         more = more and self._updates < PATIENCE
         return self._shape(held, more), more
 

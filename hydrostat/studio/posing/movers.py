@@ -37,6 +37,7 @@ class Movers:
         if mode is Mode.MUSCLES:
             if self._muscles is None or not self.ready(robot, mode):
                 self._muscles = MuscleMover(robot)
+            self._muscles.mark(robot.markers)
             return self._muscles
         before = self._cables
         if before is None or not self.ready(robot, mode):
