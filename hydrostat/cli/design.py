@@ -78,6 +78,10 @@ AsModelled = Annotated[
         help="Design for a robot that is built just as its model, with no hole beside its mark and no friction.",
     ),
 ]
+Filled = Annotated[
+    bool,
+    typer.Option("--filled", help="Compare finalists on the filled body, cables on its skin, by commands found there."),
+]
 Tolerance = Annotated[
     str | None,
     typer.Option(
@@ -117,6 +121,7 @@ def design(
     tolerance: Tolerance = None,
     simplicity: Simplicity = None,
     as_modelled: AsModelled = False,
+    filled: Filled = False,
     fibres: Fibres = None,
     knob: Knobs = None,
     kit: WithKit = False,
@@ -140,6 +145,7 @@ def design(
         tolerance=tolerance,
         simplicity=simplicity,
         as_modelled=as_modelled,
+        filled=filled,
         fibres=fibres,
         knobs=knob or [],
         file=constraints,

@@ -60,6 +60,7 @@ def print_poses(network: "Network", seconds: float) -> None:
 
     from hydrostat.design import craft_of, rest_error
     from hydrostat.geometry import find_crossings
+    from hydrostat.robot import face_words
     from hydrostat.units import counted
 
     robot = network.robot
@@ -79,6 +80,29 @@ def print_poses(network: "Network", seconds: float) -> None:
         f"{counted(network.tried, 'network')} tried in {seconds:.1f} s"
     )
     print(f"to build it: {craft_of(robot, network.reached)}")
+    if words := face_words(robot):
+        print(f"cables: {words}")
+    _print_filled(network)
+
+
+def _print_filled(network: "Network") -> None:
+    """What is reached on the filled body, if that was asked for."""
+    from hydrostat.units import counted
+
+    filled = network.filled
+    if filled is None:
+        if network.request.filled:
+            print("filled: a pose has no equilibrium there")
+        return
+    print(
+        f"filled, the best of {counted(filled.finalists, 'network')}: {1e3 * filled.rms_error:.2f} mm with commands of "
+        f"its own ({1e3 * filled.played:.2f} mm with those above), markers up to {1e3 * filled.out:.1f} mm out of the "
+        "plane"
+    )
+    for reached in filled.reached:
+        taken = zip(network.robot.winches, reached.pose.contractions, strict=True)
+        own = ", ".join(f"{winch.name} {1e3 * value:.1f} mm" for winch, value in taken)
+        print(f"  {reached.wanted.name}: {1e3 * reached.rms_error:.2f} mm, {own}")
 
 
 def print_front(network: "Network") -> None:

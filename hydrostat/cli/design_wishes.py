@@ -26,6 +26,7 @@ class TypedRequest:
     tolerance: str | None = None
     simplicity: float | None = None
     as_modelled: bool = False
+    filled: bool = False
     fibres: str | None = None
     knobs: Sequence[str] = ()
     file: Path | None = None  # of constraints; what follows comes before it
@@ -54,6 +55,7 @@ def asked_of(robot: "Robot", typed: TypedRequest) -> "DesignRequest":
         constraints=_constraints(robot, typed),
         options=_options(typed, trees=trees, open_winches=isinstance(winches, str)),
         improve=typed.improve,
+        filled=typed.filled,
         uncertainty=_uncertainty(robot, typed),
         **given,
     )

@@ -4,6 +4,8 @@ from hydrostat.design.built_error import BuiltErrors, built_errors, expected_err
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.craft import Craft, SewingTimes, craft_of
 from hydrostat.design.design_cables import design_cables, find_network
+from hydrostat.design.faced import faced
+from hydrostat.design.filled_reach import FilledReach
 from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, TreeTrace
 from hydrostat.design.request import AUTO, DesignMethod, DesignRequest, RouteOptions, TreeOptions
@@ -24,6 +26,7 @@ __all__ = [
     "DesignStage",
     "FibreKind",
     "Fibres",
+    "FilledReach",
     "Network",
     "RouteOptions",
     "RouteTrace",
@@ -39,6 +42,7 @@ __all__ = [
     "edge_fibres",
     "element_fibres",
     "expected_error",
+    "faced",
     "find_network",
     "rest_error",
     "score_card",

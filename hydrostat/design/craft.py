@@ -12,7 +12,7 @@ from hydrostat.fabrication.lists.bill import PRICES
 from hydrostat.fabrication.lists.needs import control_needs
 from hydrostat.fabrication.parts.motor import choose_motor
 from hydrostat.ik import ReachedPose
-from hydrostat.robot import Cable, Mount, Robot
+from hydrostat.robot import Cable, Mount, Robot, sewn_sides
 from hydrostat.units import counted
 
 SHARP = 60.0  # a turn of more than this [degrees] is called sharp
@@ -60,13 +60,16 @@ class Craft:
 
 
 def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes | None = None) -> Craft:
-    """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches."""
-    cables = robot.cables
+    """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches.
+
+    Cables in pairs are sewn twice: all but motors counts for both.
+    """
+    cables, twice = robot.cables, len(sewn_sides(robot))
     motors = len({cable.winch for cable in cables})
-    holes = sum(len(cable.points) - 1 for cable in cables)
-    sheaths = sum(len(cable.sheathed) for cable in cables)
-    length = float(sum(cable.length for cable in cables))
-    tube = float(sum(cable.segments[~cable.bare].sum() for cable in cables))
+    holes = twice * sum(len(cable.points) - 1 for cable in cables)
+    sheaths = twice * sum(len(cable.sheathed) for cable in cables)
+    length = twice * float(sum(cable.length for cable in cables))
+    tube = twice * float(sum(cable.segments[~cable.bare].sum() for cable in cables))
     price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
     if motors:
         torques = np.array([shaft_torques(robot, pose.pose.tensions) for pose in reached]).ravel()
@@ -76,8 +79,8 @@ def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes
         key = motor.key
     return Craft(
         holes=holes,
-        crossings=_crossings(robot),
-        sharp_turns=sum(_sharp(cable) for cable in cables),
+        crossings=twice * _crossings(robot),
+        sharp_turns=twice * sum(_sharp(cable) for cable in cables),
         sheaths=sheaths,
         length=length,
         minutes=sewing_minutes(robot, times=times),
@@ -88,11 +91,12 @@ def craft_of(robot: Robot, reached: Sequence[ReachedPose], *, times: SewingTimes
 
 
 def sewing_minutes(robot: Robot, *, times: SewingTimes | None = None) -> float:
-    """Minutes that it takes to cut and stitch the cables and tubes of a robot [min]."""
-    clock = times or SewingTimes()
+    """Minutes that it takes to cut and stitch the cables and tubes of a robot, of pairs both [min]."""
+    clock, twice = times or SewingTimes(), len(sewn_sides(robot))
     holes = sum(len(cable.points) - 1 for cable in robot.cables)
     sheaths = sum(len(cable.sheathed) for cable in robot.cables)
-    return (clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths
+    each = (clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths
+    return twice * each
 
 
 def front(points: Sequence[tuple[float, float]]) -> list[int]:

@@ -6,6 +6,9 @@ from typing import TypedDict, Unpack
 
 from hydrostat.closed_set import member
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.faced import faced
+from hydrostat.design.filled_judge import judged_filled
+from hydrostat.design.filled_reach import check_filled
 from hydrostat.design.network import Network
 from hydrostat.design.progress import Progress, Watch, silent, unseen
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
@@ -26,6 +29,7 @@ class Asked(TypedDict, total=False):
     constraints: Constraints | None
     options: RouteOptions | TreeOptions | None
     improve: bool
+    filled: bool
 
 
 def design_cables(
@@ -43,8 +47,8 @@ def design_cables(
         poses: what the network should reach, all of them with the same cables.
         progress: called as the work goes on.
         watch: called with each better network that is found on the way, not yet judged as those are that are returned.
-        asked: `winches`, `cables`, `method`, `constraints`, `options` and `improve` of a `DesignRequest`. With
-            `winches="auto"` the alternatives of the network hold the best that was found of every size tried.
+        asked: `winches`, `cables`, `method`, `constraints`, `options`, `improve` and `filled` of a `DesignRequest`.
+            With `winches="auto"` the alternatives of the network hold the best that was found of every size tried.
 
     Raises:
         InputError: no pose, a pose of a marker that does not exist, counts, constraints or options that do not fit.
@@ -60,18 +64,28 @@ def find_network(
 ) -> Network:
     """Find the network that a request asks for; `design_cables` for one that is made already.
 
-    `watch` is told each better network that is found on the way.
+    `watch` is told each better network that is found on the way. The cables of a flat robot that does not say where
+    they run are designed to be sewn in pairs (`faced`), and the network's robot says so.
 
     Raises:
         InputError: a request that does not fit the robot.
         HydrostatError: no network can be built.
     """
-    fitted, told, seen = request.fitted(robot), progress or silent, watch or unseen
-    if fitted.method is DesignMethod.TREES:
-        return design_trees(robot, fitted, progress=told, watch=seen)
-    if not isinstance(fitted.winches, int):
-        return design_fewest(robot, fitted, progress=told, watch=seen)
-    return design_routes(robot, fitted, progress=told, watch=seen, hints=lambda body: _trees(robot, fitted, body))
+    stated, told = faced(robot), progress or silent
+    fitted = request.fitted(stated)
+    if fitted.filled:
+        check_filled(stated)  # told before the search
+    found = _search(stated, fitted, told, watch or unseen)
+    return replace(judged_filled(found, progress=told) if fitted.filled else found, source=robot)
+
+
+def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -> Network:
+    """The network of the method that is asked for."""
+    if request.method is DesignMethod.TREES:
+        return design_trees(robot, request, progress=told, watch=seen)
+    if not isinstance(request.winches, int):
+        return design_fewest(robot, request, progress=told, watch=seen)
+    return design_routes(robot, request, progress=told, watch=seen, hints=lambda body: _trees(robot, request, body))
 
 
 def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robot]:

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Int
 
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.filled_reach import FilledReach
 from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
 from hydrostat.design.request import DesignRequest
@@ -55,7 +56,8 @@ class RouteTrace:
     """How priced routes led to a network."""
 
     stages: tuple[DesignStage, ...]  # networks on the way, in order
-    certificate: Certificate | None  # of the one that was returned; None where the work was interrupted
+    # of the one that was returned; None where the work was interrupted, or another did better on the filled body
+    certificate: Certificate | None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,6 +90,7 @@ class Network:
         tried: networks whose poses were solved.
         seconds: CPU time of the design [s].
         complete: whether the search came to its end; False where it was interrupted.
+        filled: what it reaches on the filled body; None where that was not asked for.
     """
 
     robot: Robot
@@ -100,6 +103,7 @@ class Network:
     tried: int
     seconds: float
     complete: bool = True
+    filled: FilledReach | None = None
 
     @property
     def constraints(self) -> Constraints:

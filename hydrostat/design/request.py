@@ -180,6 +180,8 @@ class DesignRequest:
     # begin with the robot's own winches and cables, and move and exchange those that are not locked; what travel,
     # release, slack and spools these have is allowed
     improve: bool = False
+    # finalists of a flat robot are compared on the filled body, their cables on its skin, by commands found there
+    filled: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "poses", tuple(self.poses))
@@ -226,6 +228,8 @@ class DesignRequest:
                     known = f"its markers are: {', '.join(markers)}" if markers else "it has no markers"
                     raise InputError(f'pose "{pose.name}": the robot has no marker "{name}"; {known}')
         self.constraints.check(robot)
+        if self.filled and robot.body.outline is None:
+            raise InputError("filled is for flat robots with a drawing; leave it out")
         fitted = replace(self, uncertainty=self.uncertainty or Uncertainty.of(robot.body))
         return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.improve else fitted
 

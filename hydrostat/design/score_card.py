@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.design.craft import craft_of
+from hydrostat.design.filled_reach import out_of_plane
 from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Robot, robot_hash
@@ -25,6 +26,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "winches": _winches(robot),
         "cables": _cables(robot),
         **_trace(network.trace),
+        **_filled(network),
         "alternatives": [_alternative(other) for other in network.alternatives],
         "networks_tried": network.tried,
         "cpu_seconds": network.seconds,
@@ -92,6 +94,25 @@ def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
         ],
         "certificate": None if trace.certificate is None else asdict(trace.certificate),
     }
+
+
+def _filled(network: Network) -> dict[str, Any]:
+    """What is reached on the filled body; nothing where that was not asked for."""
+    filled = network.filled
+    if filled is None:
+        return {}
+    poses = {
+        pose.wanted.name: {
+            "rms_error": pose.rms_error,
+            "contractions": dict(
+                zip((winch.name for winch in network.robot.winches), map(float, pose.pose.contractions), strict=True)
+            ),
+            "out_of_plane": out_of_plane(pose.pose),
+        }
+        for pose in filled.reached
+    }
+    told = {"face": str(filled.face), "rms_error": filled.rms_error, "rms_error_with_flat_commands": filled.played}
+    return {"filled": {**told, "out_of_plane": filled.out, "finalists": filled.finalists, "poses": poses}}
 
 
 def _alternative(other: Alternative) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from hydrostat.fabrication.parts.motor import MOTORS, Motor, largest_torque
 from hydrostat.fabrication.parts.places import GIVES, seam_of
 from hydrostat.fabrication.parts.winch_unit import unit_room
 from hydrostat.fabrication.solids.construct import Cuboid
-from hydrostat.robot import Body, Cable, Robot, Winch
+from hydrostat.robot import Body, Cable, Robot, Winch, sewn_robot
 
 
 def built_in(robot: Robot, constraints: Constraints, *, winches: int, cables: int) -> Constraints:
@@ -38,7 +38,8 @@ def winch_room(robot: Robot, constraints: Constraints, cables: int) -> tuple[tup
     """Zones in which a winch with so many cables can be built into a flat body, and the motor that fits there.
 
     They are within those of the constraints. The unit lies across the body or in its plane, turned by whole hours of a
-    clock. The motor is the strongest that leaves any room. Zones as given and None: where no motor fits, and in space.
+    clock; it takes both of a pair. The motor is the strongest that leaves any room. Zones as given and None: where no
+    motor fits, and in space.
     """
     body = robot.body
     if body.thickness is None:
@@ -57,13 +58,14 @@ def winch_room(robot: Robot, constraints: Constraints, cables: int) -> tuple[tup
 
 def _example(robot: Robot, constraints: Constraints, cables: int) -> tuple[Robot, Winch]:
     """A robot with such a winch somewhere."""
-    first, second = robot.body.mesh.nodes[robot.body.mesh.elements[0][:2]].tolist()
+    first, second = robot.body.mesh.nodes[robot.body.mesh.elements[0][:2]]
     winch = Winch(
-        name="winch", at=tuple(first), spool_radius=constraints.spool_radius, travel=constraints.travel,
+        name="winch", at=tuple(first.tolist()), spool_radius=constraints.spool_radius, travel=constraints.travel,
         release=constraints.release,
     )  # fmt: skip
-    cable = Cable(winch="winch", points=(tuple(first), tuple(second)))
-    return robot.with_network([winch], [cable] * cables), winch
+    ends = first + np.linspace(1.0, 0.5, cables)[:, None] * (second - first)
+    drawn = [Cable(winch="winch", points=(winch.at, tuple(end))) for end in ends.tolist()]
+    return sewn_robot(robot.with_network([winch], drawn)), winch
 
 
 def _room(body: Body, box: Cuboid) -> BaseGeometry:

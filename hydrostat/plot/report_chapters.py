@@ -11,6 +11,7 @@ from hydrostat.drawing.svg import Html, tag
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
+from hydrostat.plot.report_filled import filled_chapters
 from hydrostat.plot.report_tables import (
     NARROW,
     Chapter,
@@ -45,6 +46,7 @@ def chapters(network: Network) -> list[Html]:
     targets = target_chapter(network.robot, [reached.wanted for reached in network.reached])
     poses = [reached_part(network.robot, reached, index) for index, reached in enumerate(network.reached)]
     told = [_body(network.robot), targets, *way, _network(network), Chapter(*REACHED, poses)]
+    told += filled_chapters(network)
     told += alternative_chapters(network)
     return [section(number, chapter) for number, chapter in enumerate(told, start=1)]
 
@@ -226,6 +228,10 @@ def certificate_words(error: float, certificate: Certificate | None) -> str:
 
 def _certificate(network: Network, certificate: Certificate | None) -> Html:
     words = certificate_words(network.rms_error, certificate)
+    if certificate is None and network.filled is not None and network.complete:
+        words = (
+            "That was found for the network that the flat model holds best; on the filled body this one does better."
+        )
     return tag("p", tag("b", "What is left to gain. "), words, class_="note")
 
 

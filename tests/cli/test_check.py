@@ -12,7 +12,7 @@ from builders import box_mesh
 
 from hydrostat.cli.main import main
 from hydrostat.geometry.files.vtu_file import write_vtu
-from hydrostat.robot import gallery_folder, load_robot, save_robot
+from hydrostat.robot import Face, gallery_folder, load_robot, save_robot
 from hydrostat.simulation import quickly_filled
 
 Check = Callable[[Path], list[str]]
@@ -95,7 +95,7 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check,
     """Oracle: decision 0029: on the front alone centimetres out of the plane, in pairs less than a millimetre."""
     robot = load_robot(gallery_folder("letter_s"))
     found = {}
-    for face in ("front", "pairs"):
+    for face in (Face.FRONT, Face.PAIRS):
         save_robot(replace(robot, face=face), tmp_path / face)
         lines = check(tmp_path / face)
         (place,) = (number for number, line in enumerate(lines) if line.startswith("cables: "))
@@ -104,5 +104,5 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check,
         found[lines[place].removeprefix("cables: ")] = float(out[1])
     assert 10 < found["on the front"] < 30
     assert found["on both faces, in pairs"] < 1
-    fine = replace(robot, face="pairs", body=replace(robot.body, element_size=1e-4))
+    fine = replace(robot, face=Face.PAIRS, body=replace(robot.body, element_size=1e-4))
     assert not quickly_filled(fine, len(fine.poses))

@@ -7,23 +7,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from manifold3d import Manifold
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from shapely import LineString
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Kit, KitOptions, Method, PatternOptions, build_kit
+from hydrostat.fabrication import MOTORS, Kit, KitOptions, Method, PatternOptions, build_kit
 from hydrostat.fabrication.checks.pattern_checks import SeenSvg, pattern_checks
 from hydrostat.fabrication.demand import find_demand
+from hydrostat.fabrication.kit_options import PartOptions
+from hydrostat.fabrication.parts.spool import capacity, wraps
+from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
 from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.sheets.legible import typeset
-from hydrostat.robot import Face, Robot, gallery_folder, load_robot, robot_hash, sewn_robot
+from hydrostat.fabrication.solids.construct import solid_of
+from hydrostat.robot import Face, Robot, find_material, gallery_folder, load_robot, robot_hash, sewn_robot
 
 
-def starfish(face: str | None) -> Robot:
-    return replace(load_robot(gallery_folder("starfish")), face=face)  # type: ignore[arg-type]
+def starfish(face: Face | None) -> Robot:
+    return replace(load_robot(gallery_folder("starfish")), face=face)
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +38,7 @@ def single() -> Kit:
 
 @pytest.fixture(scope="module")
 def pairs() -> Kit:
-    return build_kit(starfish("pairs"))
+    return build_kit(starfish(Face.PAIRS))
 
 
 def table(kit: Kit, name: str) -> list[dict[str, str]]:
@@ -56,12 +61,42 @@ def test_lists_of_pairs_are_those_of_one_face_twice(single: Kit, pairs: Kit) -> 
     printed = [{part.name: part.count for part in kit.printed} for kit in (single, pairs)]
     for name in ("stopper_base", "stopper_lid", "grommet"):
         assert printed[1][name] == 2 * printed[0][name]
+    grooves = {unit.winch: [len(cables) for cables in unit.wound] for unit in _units(pairs)}
+    assert grooves == {"right": [2], "left": [2, 2], "feet": [2, 2]}
     spools = [sum(part.count for part in kit.printed if part.name.startswith("spool")) for kit in (single, pairs)]
     assert spools == [3, 3]
     assert [row["cables"] for row in table(pairs, "motor_sizing")] == ["2", "4", "4"]
     assert (pairs.robot.face, len(pairs.robot.cables)) == (Face.PAIRS, 5)
     assert robot_hash(pairs.robot) in pairs.files["manifest.json"].decode()
     assert "Cables: 10, on both faces, in pairs" in pairs.summary
+
+
+def _units(kit: Kit) -> tuple[WinchUnit, ...]:
+    motor = next(motor for motor in MOTORS if motor.key == kit.motor)
+    return winch_units(sewn_robot(kit.robot), PartOptions(), motor)
+
+
+@pytest.mark.slow
+def test_a_pair_shares_a_groove_and_has_a_channel_each(pairs: Kit) -> None:
+    """Oracle: as much line on the groove as both take; a tube of 2 mm in each seat, two that do not touch."""
+    robot, options = sewn_robot(pairs.robot), PartOptions()
+    for unit in _units(pairs):
+        winch = robot.winch(unit.winch)
+        turns = wraps(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
+        for groove in unit.spool.grooves:
+            length = 2 * turns * 2 * np.pi * groove.radius
+            assert capacity(groove.width, groove.radius, options.cable, groove.layers) >= length
+        exits = {way.cable: np.array(way.point) for way in unit.exits}
+        for one, other in unit.wound:
+            assert other == one + 5
+            np.testing.assert_allclose(exits[one] - exits[other], (0, 0, options.tube + options.fit), atol=1e-9)
+        box = solid_of(unit.housing.box())
+        for way in unit.exits:
+            angle = np.degrees(np.arctan2(way.direction[1], way.direction[0]))
+            tube = (
+                Manifold.cylinder(way.seat - 0.05, options.tube / 2, -1, 48).rotate((0, -90, 0)).rotate((0, 0, angle))
+            )
+            assert (box ^ tube.translate(way.point)).volume() < 1e-6
 
 
 @pytest.mark.slow
@@ -100,7 +135,7 @@ def _sorted(places: np.ndarray) -> np.ndarray:
 @pytest.mark.slow
 def test_motors_are_asked_for_the_same_and_each_line_for_half(pairs: Kit) -> None:
     """Oracle: two equal cables beside each other share what one bore, at the same torque but for their stretch."""
-    robot = starfish("pairs")
+    robot = starfish(Face.PAIRS)
     one, both = find_demand(starfish(None)), find_demand(sewn_robot(robot))
     np.testing.assert_allclose(both.tensions[:5], both.tensions[5:], rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(both.torques, one.torques, rtol=0.03)
@@ -126,8 +161,10 @@ def count(pattern: Pattern, panel: str, part: PatternPart) -> int:
     return sum(shape.part is part for shape in pattern.panel(panel).shapes)
 
 
-@pytest.mark.parametrize(("face", "front", "back"), [(None, 5, 0), ("front", 5, 0), ("back", 0, 5), ("pairs", 5, 5)])
-def test_holes_are_where_the_robot_says(face: str | None, front: int, back: int) -> None:
+@pytest.mark.parametrize(
+    ("face", "front", "back"), [(None, 5, 0), (Face.FRONT, 5, 0), (Face.BACK, 0, 5), (Face.PAIRS, 5, 5)]
+)
+def test_holes_are_where_the_robot_says(face: Face | None, front: int, back: int) -> None:
     pattern = plush_pattern(replace(crossed(), face=face))
     assert [count(pattern, side, PatternPart.PINHOLE) for side in ("front", "back")] == [front, back]
     assert [count(pattern, side, PatternPart.STOPPER) for side in ("front", "back")] == [
@@ -135,14 +172,14 @@ def test_holes_are_where_the_robot_says(face: str | None, front: int, back: int)
         2 * bool(back),
     ]
     alone = [warning for warning in pattern.warnings if "alone" in warning]
-    assert len(alone) == (face != "pairs")
-    if face != "pairs":
+    assert len(alone) == (face is not Face.PAIRS)
+    if face is not Face.PAIRS:
         assert alone[0].startswith(f"the cables are sewn on the {face or 'front'} alone")
 
 
 def test_marks_of_the_back_are_those_of_the_front_mirrored() -> None:
     """Oracle: a point of the robot on either panel; numbers go on from those of the front."""
-    robot = replace(crossed(), face="pairs")
+    robot = replace(crossed(), face=Face.PAIRS)
     pattern = plush_pattern(robot)
     for side in ("front", "back"):
         panel = pattern.panel(side)
@@ -159,7 +196,7 @@ def test_marks_of_the_back_are_those_of_the_front_mirrored() -> None:
 
 def test_a_hole_that_is_missing_on_the_back_is_told() -> None:
     """Oracle: a drawing of one panel does for a robot of pairs on that panel only."""
-    robot = replace(crossed(), face="pairs")
+    robot = replace(crossed(), face=Face.PAIRS)
     drawn = plush_pattern(crossed())  # the front alone
     files = pattern_svg(drawn), pattern_dxf(drawn)
     passed = {check.what: check.passed for check in pattern_checks(robot, drawn, *files, PatternOptions())}
@@ -172,26 +209,26 @@ def test_the_zipper_keeps_off_the_cables_of_the_back() -> None:
     route = [(-20.0, 0.0), (0.0, 0.0), (30.0, 0.0)]
     wide = "M0 0H200V120H0Z"
     found = {}
-    for face in ("front", "pairs"):
+    for face in (Face.FRONT, Face.PAIRS):
         pattern = plush_pattern(replace(plush_robot(drawn_body(wide), route), face=face))
         assert pattern.opening is not None
         found[face] = pattern.opening.slit.distance(LineString(route))
-    assert found["front"] == 0
-    assert found["pairs"] > 4 - 1e-6
+    assert found[Face.FRONT] == 0
+    assert found[Face.PAIRS] > 4 - 1e-6
 
 
 def test_the_middle_is_for_bodies_that_are_cast() -> None:
-    robot = replace(crossed(), face="middle")
+    robot = replace(crossed(), face=Face.MIDDLE)
     with pytest.raises(InputError, match="cables in the middle are held by nothing in loose filling"):
         plush_pattern(robot)
-    told: Mapping[str, tuple[str, ...]] = {
+    told: Mapping[Face, tuple[str, ...]] = {
         face: build_kit(_foam(replace(robot, face=face)), options=KitOptions(method=Method.FOAM, force=True)).warnings
-        for face in ("middle", "pairs")
+        for face in (Face.MIDDLE, Face.PAIRS)
     }
-    assert not any("cast body" in warning for warning in told["middle"])
-    assert sum("a cast body has them in the middle" in warning for warning in told["pairs"]) == 1
+    assert not any("cast body" in warning for warning in told[Face.MIDDLE])
+    assert sum("a cast body has them in the middle" in warning for warning in told[Face.PAIRS]) == 1
 
 
 def _foam(robot: Robot) -> Robot:
     assert SQUARE in robot.body.content.decode()
-    return replace(robot, body=replace(robot.body, material="flexfoam-it x"))
+    return replace(robot, body=replace(robot.body, material=find_material("flexfoam-it x")))

@@ -36,7 +36,7 @@ def test_what_is_no_face_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"face stands at the top|stands at the top of the file"):
         load(tmp_path, edit(GOOD, "[body]", '[body]\nface = "pairs"'))
     with pytest.raises(InputError, match="face is only for flat bodies"):
-        replace(load_robot(gallery_folder("trunk")), face="pairs")
+        replace(load_robot(gallery_folder("trunk")), face=Face.PAIRS)
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def starfish() -> Robot:
 
 def test_pairs_are_sewn_twice(starfish: Robot) -> None:
     """Oracle: twice the cables, twice the length on each winch, the same points; C1 and C6 are a pair of five."""
-    sewn = sewn_robot(replace(starfish, face="pairs"))
+    sewn = sewn_robot(replace(starfish, face=Face.PAIRS))
     assert len(sewn.cables) == 2 * len(starfish.cables)
     assert [cable.name for cable in sewn.cables[:1] + sewn.cables[5:6]] == ["right 1 front", "right 1 back"]
     assert all(one.points == other.points for one, other in zip(sewn.cables[:5], sewn.cables[5:], strict=True))
@@ -62,11 +62,11 @@ def test_pairs_are_sewn_twice(starfish: Robot) -> None:
 
 def test_a_long_name_gets_no_side(starfish: Robot) -> None:
     long = replace(starfish.cables[0], name="c" * LONGEST_NAME)
-    names = [cable.name for cable in sewn_robot(replace(starfish, cables=(long,), face="pairs")).cables]
+    names = [cable.name for cable in sewn_robot(replace(starfish, cables=(long,), face=Face.PAIRS)).cables]
     assert names == ["right 1", "right 2"]
 
 
 def test_it_is_told_in_words(starfish: Robot) -> None:
-    assert face_words(replace(starfish, face="pairs")) == "on both faces, in pairs"
+    assert face_words(replace(starfish, face=Face.PAIRS)) == "on both faces, in pairs"
     assert face_words(starfish).startswith("not said where: a plush kit sews them on the front alone")
     assert face_words(starfish.with_network((), ())) == face_words(load_robot(gallery_folder("trunk"))) == ""

@@ -123,7 +123,7 @@ def spool_checks(robot: Robot, units: Iterable[WinchUnit]) -> tuple[Check, ...]:
 def _gaps(robot: Robot, unit: WinchUnit) -> Iterable[float]:
     solid = next(part.solid for part in unit.printed if part.name.startswith("spool"))
     usual = robot.winch(unit.winch).spool_radius
-    for cable, middle in zip(unit.cables, unit.spool.middles, strict=True):
+    for (cable, *_), middle in zip(unit.wound, unit.spool.middles, strict=True):
         rings = solid.slice(middle).to_polygons()
         floor = max(float(np.linalg.norm(ring, axis=1).max()) for ring in rings)
         yield abs(floor + unit.spool.cable / 2 - 1e3 * (robot.cables[cable].spool_radius or usual))

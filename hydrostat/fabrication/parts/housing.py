@@ -67,7 +67,8 @@ class Housing:
 
     motor: Motor  # that it is screwed on
     spool: Spool  # that turns in it
-    azimuths: tuple[int, ...]  # of each cable: the way in which it leaves, counted from +x [degrees], multiples of 90
+    # of the cables of each groove: the way in which they leave, counted from +x [degrees], multiples of 90
+    azimuths: tuple[int, ...]
     outside: bool  # whether its motor stands on a base outside the body: its screws then go on through the base
     options: PartOptions  # sizes of the parts
 
@@ -162,9 +163,14 @@ class Housing:
         """How far the heads of these screws lie below the upper side of the roof [mm]."""
         return 0.0 if self.outside else max(0.0, self.top - 0.3 - self.screw.length)
 
-    def height(self, cable: int) -> float:
-        """Height of the channel of a cable of this winch, by its place on the spool [mm]."""
-        return self.drive.start + self.spool.middles[cable]
+    def height(self, groove: int) -> float:
+        """Height of the middle of a groove, by its place on the spool [mm]."""
+        return self.drive.start + self.spool.middles[groove]
+
+    def heights(self, groove: int) -> tuple[float, ...]:
+        """Height of the channel of each cable of a groove, the highest first: tubes of a pair lie side by side [mm]."""
+        lines, apart = self.spool.grooves[groove].lines, self.options.tube + self.options.fit
+        return tuple(self.height(groove) + apart * ((lines - 1) / 2 - line) for line in range(lines))
 
     @property
     def lead(self) -> float:
@@ -246,11 +252,16 @@ class Housing:
         return body
 
     def _channel(self, place: int) -> Construction:
-        """Channel of a cable that leaves along +x."""
+        """Channels of the cables of a groove that leave along +x."""
         seat = self.seat(place)
         bore = Cylinder(self.half + 1, self.options.bore / 2).turned(y=90)
         end = Cylinder(seat + 1, self._seat_radius).turned(y=90).moved(self.half - seat, 0, 0)
-        return (bore + end).moved(0, -self.spool.grooves[place].radius, self.height(place))
+        aside = -self.spool.grooves[place].radius
+        first, *others = self.heights(place)
+        channels = (bore + end).moved(0, aside, first)
+        for height in others:
+            channels = channels + (bore + end).moved(0, aside, height)
+        return channels
 
     def coupling(self) -> Construction | None:
         """The disc with a shaft that is screwed on a horn, as it stands on the bed."""

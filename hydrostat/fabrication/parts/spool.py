@@ -37,11 +37,16 @@ def capacity(width: float, radius: float, cable: float, layers: int) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Groove:
-    """Place where one cable is wound; lengths in millimetres."""
+    """Place where a cable is wound, or a pair of cables beside each other; lengths in millimetres."""
 
     radius: float  # of the middle of the cable in the first layer [mm]
     width: float  # of its floor [mm]
     layers: int = 1  # in which the cable lies
+    lines: int = 1  # cables that are wound on it
+
+    def eye(self, cable: float) -> float:
+        """Radius of the hole through which its cables, of a diameter [mm], go to their knot [mm]."""
+        return cable * math.sqrt(self.lines)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,9 +67,9 @@ class Spool:
         return self.shaft.diameter / 2 + self.play + self.wall
 
     @property
-    def knot(self) -> float:
-        """Radius of the hole that hides the knot [mm]."""
-        return 2 * self.cable
+    def knots(self) -> tuple[float, ...]:
+        """Radius of the hole that hides the knot of each groove [mm]."""
+        return tuple(2 * groove.eye(self.cable) for groove in self.grooves)
 
     @cached_property
     def drums(self) -> tuple[float, ...]:
@@ -76,14 +81,15 @@ class Spool:
         """How far the hole of each knot is from the axis [mm]: in the flange above its groove."""
         above = (*self.drums[1:], self.pin)
         return tuple(
-            max(mine + self.cable + 0.1, other + self.knot) for mine, other in zip(self.drums, above, strict=True)
+            max(mine + groove.eye(self.cable) + 0.1, other + knot)
+            for mine, groove, other, knot in zip(self.drums, self.grooves, above, self.knots, strict=True)
         )
 
     @cached_property
     def flanges(self) -> tuple[float, ...]:
         """Radius of each flange [mm]: below the first groove, then above each."""
         own = [drum + (groove.layers + 2) * self.cable for drum, groove in zip(self.drums, self.grooves, strict=True)]
-        holes = [tie + self.knot + _RIM for tie in self.ties]
+        holes = [tie + knot + _RIM for tie, knot in zip(self.ties, self.knots, strict=True)]
         above = [max(one, other, hole) for one, other, hole in zip(own, (*own[1:], 0.0), holes, strict=True)]
         return own[0], *above
 
@@ -133,11 +139,12 @@ class Spool:
                 cone + Cylinder(2, radius).moved(0, 0, -1.5)
             )
         body = body - bore
-        for tie, floor, flange, drum in zip(self.ties, self.floors[1:], self.flanges[1:], self.drums, strict=True):
+        holes = zip(self.ties, self.knots, self.floors[1:], self.flanges[1:], self.drums, strict=True)
+        for tie, knot, floor, flange, drum in holes:
             low = floor - (flange - drum) - self.wall / 2
-            sunk = min(3 * self.cable, flange - tie - self.knot + self.wall / 2 - _SKIN)
-            body = body - Cylinder(floor - low + 2, self.cable).moved(tie, 0, low)
-            body = body - Cylinder(sunk + 1, self.knot).moved(tie, 0, floor - sunk)
+            sunk = min(3 * self.cable, flange - tie - knot + self.wall / 2 - _SKIN)
+            body = body - Cylinder(floor - low + 2, knot / 2).moved(tie, 0, low)
+            body = body - Cylinder(sunk + 1, knot).moved(tie, 0, floor - sunk)
         return body
 
     def _profile(self) -> tuple[tuple[float, float], ...]:

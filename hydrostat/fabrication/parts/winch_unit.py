@@ -1,9 +1,9 @@
 """`WinchUnit`: motor, the spool that a winch needs on it, and housing: parts to print, assembly, what to mind."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import chain, combinations
 
 from manifold3d import Manifold
 
@@ -26,8 +26,24 @@ _MOST_LAYERS = 6
 _INSIDE = 1.2  # the least of a shaft in a spool over its diameter: less, and a flat of plastic wears round
 
 
+Wound = tuple[tuple[int, ...], ...]  # indices of the cables of each groove, the first next to the motor
+
+
+def wound_cables(robot: Robot, winch: Winch) -> Wound:
+    """Cables of a winch, groove by groove: the two of a pair, which run alike, share one.
+
+    Outside the body each has its own: there the tubes of all stand apart.
+    """
+    found: dict[object, list[int]] = {}
+    for index, cable in enumerate(robot.cables):
+        if cable.winch == winch.name:
+            alike = (cable.points, cable.slack, cable.spool_radius) if winch.mount is Mount.BODY else index
+            found.setdefault(alike, []).append(index)
+    return tuple(map(tuple, found.values()))
+
+
 def spool_for(
-    robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor
+    robot: Robot, winch: Winch, wound: Wound, options: PartOptions, motor: Motor
 ) -> tuple[Spool, tuple[str, ...], tuple[str, ...]]:
     """The spool of a winch, why it cannot be built well, and what to mind.
 
@@ -42,25 +58,30 @@ def spool_for(
             f'winch "{winch.name}": only {max(drive.inside, 0):.1f} mm of the shaft of {motor.title} would be in the '
             f"spool, {least_inside:.1f} mm are needed: take thinner walls or another motor"
         )
-    radii, small = _radii(robot, winch, cables, options, motor)
+    radii, small = _radii(robot, winch, wound, options, motor)
+    lines = [len(cables) for cables in wound]
     turns = wraps(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
-    sizes = [_wound(radii, turns, layers, drive.inside, options, motor) for layers in range(1, _MOST_LAYERS + 1)]
+    grooves = [
+        [_groove(radius, turns, layers, options.cable, count) for radius, count in zip(radii, lines, strict=True)]
+        for layers in range(1, _MOST_LAYERS + 1)
+    ]
+    sizes = [_spool(each, drive.inside, options, motor) for each in grooves]
     spool = next((each for each in sizes if each.body <= _LONGEST), sizes[-1])
     if spool.body > _LONGEST:
         problems.append(
             f'winch "{winch.name}": {turns:.1f} turns of cable do not fit on a spool of {_LONGEST:g} mm in '
             f"{_MOST_LAYERS} layers: take a larger spool radius or less travel"
         )
-    return spool, (*small, *problems), _layers(spool, winch, cables)
+    return spool, (*small, *problems), _layers(spool, winch, wound)
 
 
 def _radii(
-    robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor
+    robot: Robot, winch: Winch, wound: Wound, options: PartOptions, motor: Motor
 ) -> tuple[list[float], list[str]]:
-    """Radius at which each cable is wound [mm], and a sentence for each that is too small for the shaft."""
+    """Radius at which cables are wound on each groove [mm], and a sentence for each that is too small for the shaft."""
     least = motor.shaft.diameter / 2 + options.fit + options.wall + options.cable / 2
     radii, small = [], []
-    for index in cables:
+    for index, *_ in wound:
         radius = 1e3 * (robot.cables[index].spool_radius or winch.spool_radius)
         if radius < least - 1e-9:
             small.append(
@@ -71,12 +92,12 @@ def _radii(
     return radii, small
 
 
-def _layers(spool: Spool, winch: Winch, cables: tuple[int, ...]) -> tuple[str, ...]:
+def _layers(spool: Spool, winch: Winch, wound: Wound) -> tuple[str, ...]:
     """A sentence for each cable that lies in more than one layer, or for all of one winch that do so alike."""
     alike: dict[Groove, list[str]] = {}
-    for index, groove in zip(cables, spool.grooves, strict=True):
+    for cables, groove in zip(wound, spool.grooves, strict=True):
         if groove.layers > 1:
-            alike.setdefault(groove, []).append(f"C{index + 1}")
+            alike.setdefault(groove, []).extend(f"C{index + 1}" for index in cables)
     found = []
     for groove, names in alike.items():
         outer = groove.radius + (groove.layers - 1) * spool.cable
@@ -90,11 +111,9 @@ def _layers(spool: Spool, winch: Winch, cables: tuple[int, ...]) -> tuple[str, .
     return tuple(found)
 
 
-def _wound(
-    radii: Sequence[float], turns: float, layers: int, inside: float, options: PartOptions, motor: Motor
-) -> Spool:
+def _spool(grooves: Sequence[Groove], inside: float, options: PartOptions, motor: Motor) -> Spool:
     return Spool(
-        grooves=tuple(_groove(radius, turns, layers, options.cable) for radius in radii),
+        grooves=tuple(grooves),
         cable=options.cable,
         shaft=motor.shaft,
         inside=max(inside, 0.5),
@@ -104,11 +123,11 @@ def _wound(
     )
 
 
-def _groove(radius: float, turns: float, layers: int, cable: float) -> Groove:
-    """The narrowest that takes so many turns of the first layer's length in these layers."""
-    length = turns * 2 * math.pi * radius
+def _groove(radius: float, turns: float, layers: int, cable: float, lines: int) -> Groove:
+    """The narrowest that takes so many turns of the first layer's length of each line in these layers."""
+    length = lines * turns * 2 * math.pi * radius
     one_turn = capacity(cable * 2.25, radius, cable, layers)
-    return Groove(radius=radius, width=width_for(length / one_turn, cable), layers=layers)
+    return Groove(radius=radius, width=width_for(length / one_turn, cable), layers=layers, lines=lines)
 
 
 _SPOOL = "Stands on its wide face with the bore, no support; 0.12 mm layers, 4 walls or more."
@@ -190,6 +209,7 @@ class WinchUnit:
 
     winch: str  # its name
     cables: tuple[int, ...]  # index of each of its cables in the robot, in the order of the grooves
+    wound: Wound  # the same, groove by groove
     mount: Mount  # where it is
     motor: Motor  # that turns it
     housing: Housing  # its sizes, with those of its spool
@@ -231,9 +251,9 @@ def unit_problems(robot: Robot, options: PartOptions, motor: Motor) -> tuple[str
 def _drafts(robot: Robot, options: PartOptions, motor: Motor) -> list[tuple["_UnitDraft", LaidUnit | None]]:
     """Each winch that has cables as it is sized, and as it is laid in a flat body."""
     drafts = [
-        _UnitDraft.of(robot, winch, cables, options, motor)
+        _UnitDraft.of(robot, winch, wound, options, motor)
         for winch in robot.winches
-        if (cables := tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name))
+        if (wound := wound_cables(robot, winch))
     ]
     laid = _lay_units(robot, [draft for draft in drafts if draft.winch.mount is Mount.BODY])
     return [(draft, laid.get(draft.winch.name)) for draft in drafts]
@@ -241,8 +261,7 @@ def _drafts(robot: Robot, options: PartOptions, motor: Motor) -> list[tuple["_Un
 
 def unit_room(robot: Robot, winch: Winch, options: PartOptions, motor: Motor) -> Cuboid:
     """Box round the unit of a winch before it is laid, shaft along z, face of the motor at z = 0 [mm]."""
-    cables = tuple(index for index, cable in enumerate(robot.cables) if cable.winch == winch.name)
-    return _UnitDraft.of(robot, winch, cables, options, motor).housing.room
+    return _UnitDraft.of(robot, winch, wound_cables(robot, winch), options, motor).housing.room
 
 
 def crowded(robot: Robot, units: Iterable[WinchUnit]) -> tuple[str, ...]:
@@ -265,32 +284,33 @@ class _UnitDraft:
     """A unit whose sizes are known, but not yet on which sides its cables leave."""
 
     winch: Winch
-    cables: tuple[int, ...]
+    wound: Wound
     housing: Housing
     problems: tuple[str, ...]
     warnings: tuple[str, ...]
 
     @staticmethod
-    def of(robot: Robot, winch: Winch, cables: tuple[int, ...], options: PartOptions, motor: Motor) -> "_UnitDraft":
+    def of(robot: Robot, winch: Winch, wound: Wound, options: PartOptions, motor: Motor) -> "_UnitDraft":
         """Size the unit of a winch and its cables."""
-        spool, problems, warnings = spool_for(robot, winch, cables, options, motor)
+        spool, problems, warnings = spool_for(robot, winch, wound, options, motor)
         outside = winch.mount is Mount.WORLD
-        housing = Housing(motor=motor, spool=spool, azimuths=(90,) * len(cables), outside=outside, options=options)
-        return _UnitDraft(winch=winch, cables=cables, housing=housing, problems=problems, warnings=warnings)
+        housing = Housing(motor=motor, spool=spool, azimuths=(90,) * len(wound), outside=outside, options=options)
+        return _UnitDraft(winch=winch, wound=wound, housing=housing, problems=problems, warnings=warnings)
 
     def unit(self, robot: Robot, parts: WinchParts, laid: LaidUnit | None) -> WinchUnit:
         """Make the unit as it is laid in a flat body, or where there is no question of that."""
-        housing = replace(self.housing, azimuths=_azimuths(robot, self.cables, self.winch.mount, laid))
+        housing = replace(self.housing, azimuths=_azimuths(robot, self.wound, self.winch.mount, laid))
         printed, assembly = parts.of(housing, self.winch.name)
         return WinchUnit(
             winch=self.winch.name,
-            cables=self.cables,
+            cables=tuple(chain.from_iterable(self.wound)),
+            wound=self.wound,
             mount=self.winch.mount,
             motor=housing.motor,
             housing=housing,
             printed=printed,
             assembly=assembly,
-            exits=tuple(_exit(housing, place, cable) for place, cable in enumerate(self.cables)),
+            exits=tuple(way for place, cables in enumerate(self.wound) for way in _exits(housing, place, cables)),
             bought=_bought(housing),
             across=laid is None or laid.place.across,
             place=laid.place if laid else None,
@@ -309,7 +329,7 @@ def _lay_units(robot: Robot, drafts: Sequence[_UnitDraft]) -> dict[str, LaidUnit
             at=(1e3 * draft.winch.at[0], 1e3 * draft.winch.at[1]),
             low=draft.housing.room.low,
             high=draft.housing.room.high,
-            along=_heading(robot, draft.cables[0]),
+            along=_heading(robot, draft.wound[0][0]),
         )
         for draft in drafts
     ]
@@ -323,30 +343,31 @@ def _heading(robot: Robot, cable: int) -> float:
     return math.degrees(math.atan2(second[1] - first[1], second[0] - first[0]))
 
 
-def _azimuths(robot: Robot, cables: tuple[int, ...], mount: Mount, laid: LaidUnit | None) -> tuple[int, ...]:
-    """Ways in which cables leave [degrees]; the first along +y, unless a unit is turned out of another's way.
+def _azimuths(robot: Robot, wound: Wound, mount: Mount, laid: LaidUnit | None) -> tuple[int, ...]:
+    """Ways in which the cables of each groove leave [degrees]; the first along +y, or as a unit is turned.
 
     Outside all leave towards the tubes. In a flat body each leaves on the side that is nearest to the way in which it
     goes on; in a body of space they are spread.
     """
     if mount is Mount.WORLD:
-        return (90,) * len(cables)
+        return (90,) * len(wound)
     if laid is None:
-        return tuple((90 + 90 * round(4 * place / len(cables))) % 360 for place in range(len(cables)))
-    return tuple(laid.place.azimuth(_heading(robot, cable)) for cable in cables)
+        return tuple((90 + 90 * round(4 * place / len(wound))) % 360 for place in range(len(wound)))
+    return tuple(laid.place.azimuth(_heading(robot, cables[0])) for cables in wound)
 
 
-def _exit(housing: Housing, place: int, cable: int) -> Exit:
+def _exits(housing: Housing, place: int, cables: tuple[int, ...]) -> Iterator[Exit]:
     angle = math.radians(housing.azimuths[place])
     cos, sin = round(math.cos(angle)), round(math.sin(angle))
     radius, half = housing.spool.grooves[place].radius, housing.half
-    return Exit(
-        cable=cable,
-        point=(half * cos + radius * sin, half * sin - radius * cos, housing.height(place)),
-        direction=(float(cos), float(sin), 0.0),
-        lead=housing.lead,
-        seat=housing.seat(place),
-    )
+    for cable, height in zip(cables, housing.heights(place), strict=True):
+        yield Exit(
+            cable=cable,
+            point=(half * cos + radius * sin, half * sin - radius * cos, height),
+            direction=(float(cos), float(sin), 0.0),
+            lead=housing.lead,
+            seat=housing.seat(place),
+        )
 
 
 def _bought(housing: Housing) -> tuple[tuple[str, int], ...]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import DesignRequest, RouteOptions
+from hydrostat.design import DesignRequest, RouteOptions, faced
 from hydrostat.design.craft import sewing_minutes
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
@@ -161,7 +161,8 @@ class Designer(Stage):
         candidate = self.candidate
         if candidate is None:
             raise InputError("choose one of the networks first; those of another body cannot be accepted")
-        robot = self._document.robot.with_network(candidate.robot.winches, candidate.robot.cables)
+        drawn = self._document.robot.with_network(candidate.robot.winches, candidate.robot.cables)
+        robot = replace(drawn, face=candidate.robot.face)
         wishes = after_design(self._document.work, robot)
         self._document.change(f"accept design, {candidate.counts}", robot=robot, wishes=wishes)
 
@@ -266,7 +267,7 @@ class Designer(Stage):
         run = self.run
         if run is None:
             return
-        best = run.robot.with_network(glimpse.winches, glimpse.cables)
+        best = faced(run.robot).with_network(glimpse.winches, glimpse.cables)
         mark = Mark(
             seconds=time.monotonic() - run.began,
             error=glimpse.error,
@@ -289,7 +290,7 @@ class Designer(Stage):
                 Candidate(
                     number=self._numbered,
                     source=source,
-                    robot=source.with_network(solution.winches, solution.cables),
+                    robot=faced(source).with_network(solution.winches, solution.cables),
                     reaches=solution.reaches,
                     error=solution.error,
                     built=solution.built,

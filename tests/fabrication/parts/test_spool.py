@@ -121,12 +121,14 @@ def test_the_wall_round_the_bore_is_thick_enough(spool: Spool):
 def test_a_cable_goes_through_each_tie_hole_and_its_knot_is_hidden(spool: Spool):
     """Oracle: a straight cable from the groove to above its flange touches nothing; beside the hole it does."""
     solid = printed(spool).solid
-    for tie, floor, groove, end in zip(spool.ties, spool.floors, spool.grooves, spool.floors[1:], strict=False):
+    for tie, knot, floor, groove, end in zip(
+        spool.ties, spool.knots, spool.floors, spool.grooves, spool.floors[1:], strict=False
+    ):
         low = floor + groove.width
         cable = Manifold.cylinder(end - low + 0.2, spool.cable / 2, -1, 16).translate((tie, 0, low))
         assert (solid ^ cable).volume() < 1e-9
         assert (solid ^ cable.rotate((0, 0, 40))).volume() > 0.05
-        knot = Manifold.cylinder(0.9, spool.knot - 0.02, -1, 16).translate((tie, 0, end - 0.9))
+        knot = Manifold.cylinder(0.9, knot - 0.02, -1, 16).translate((tie, 0, end - 0.9))
         assert (solid ^ knot).volume() < 1e-9
 
 

@@ -1,0 +1,71 @@
+"""`FilledReach`: what a network of a flat robot reaches on the filled body, by commands that are found there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
+from hydrostat.robot import Face, Pose, Robot, inflated_robot
+from hydrostat.simulation import Simulation, SolvedPose
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilledReach:
+    """A network on the body in space that a flat one becomes once it is filled, cables on its skin."""
+
+    face: Face  # where the cables run
+    reached: tuple[ReachedPose, ...]  # each pose by contractions found there, its targets in the plane
+    played: float  # rms error over markers and poses with the commands of the flat model [m]
+    finalists: int  # networks that were compared so, this one among them
+
+    @property
+    def rms_error(self) -> float:
+        """Root of the mean squared marker error over all poses, by the contractions that were found there [m]."""
+        return float(np.sqrt(np.mean([pose.rms_error**2 for pose in self.reached])))
+
+    @property
+    def out(self) -> float:
+        """The farthest that a marker of any pose is out of the plane [m]."""
+        return max(out_of_plane(pose.pose) for pose in self.reached)
+
+
+def out_of_plane(pose: SolvedPose) -> float:
+    """How far the farthest marker of a filled body is out of the plane z = 0 [m]."""
+    return max((abs(float(place[2])) for place in pose.markers.values()), default=0.0)
+
+
+def filled_reach(robot: Robot, reached: Sequence[ReachedPose], *, tension: float, finalists: int = 1) -> FilledReach:
+    """Find the commands of poses on the filled body, from those of the flat model on.
+
+    Args:
+        robot: flat, with a drawing; its cables run where it says.
+        reached: its poses in the flat model.
+        tension: the most that each cable bears, of a pair each [N].
+        finalists: networks that are compared so.
+
+    Raises:
+        InputError: a robot in space, one without a drawing, or a body too thick for its outline.
+        NotConvergedError: a pose that has no equilibrium.
+    """
+    simulation = Simulation(inflated_robot(robot))
+    limits, once = Limits(tension=tension), InverseOptions(restarts=0)
+    found, squares = [], []
+    for flat in reached:
+        pose = raised(flat.wanted)
+        start = simulation.solve(flat.pose.contractions)
+        squares += [float(np.sum((start.markers[name] - place) ** 2)) for name, place in pose.targets.items()]
+        found.append(solve_ik(simulation, pose, limits=limits, options=once).without_factors())
+    played = float(np.sqrt(np.mean(squares)))
+    face = robot.face or Face.FRONT
+    return FilledReach(face=face, reached=tuple(found), played=played, finalists=finalists)
+
+
+def raised(pose: Pose) -> Pose:
+    """A pose of a flat robot as one in space, within the plane z = 0."""
+    return replace(pose, targets={name: (*place, 0.0) for name, place in pose.targets.items()})
+
+
+def check_filled(robot: Robot) -> None:
+    """Refuse a robot that cannot be filled (InputError: in space, without a drawing, or too thick for its outline)."""
+    inflated_robot(robot.with_network((), ()))

@@ -1,0 +1,108 @@
+"""Designs on the filled body. Oracles: the inflated body solved by hand, counting by hand, networks worse by a lot."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import gallery_robot
+
+from hydrostat.design import DesignRequest, Network, RouteTrace, craft_of, design_cables, faced, score_card
+from hydrostat.design.filled_judge import judged_filled
+from hydrostat.design.filled_reach import filled_reach
+from hydrostat.design.network import Alternative
+from hydrostat.design.progress import silent
+from hydrostat.errors import InputError
+from hydrostat.ik import ReachedPose, solve_ik
+from hydrostat.robot import Face, Robot, find_material, inflated_robot
+from hydrostat.simulation import Simulation
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    starfish = faced(gallery_robot("starfish"))
+    return replace(starfish, poses={"wave": starfish.pose("wave")})
+
+
+@pytest.fixture(scope="module")
+def reached(robot: Robot) -> tuple[ReachedPose, ...]:
+    return tuple(solve_ik(Simulation(robot), pose) for pose in robot.poses.values())
+
+
+def network(robot: Robot, reached: tuple[ReachedPose, ...], *others: Alternative) -> Network:
+    return Network(
+        robot=robot,
+        source=robot,
+        request=DesignRequest(poses=tuple(robot.poses.values()), winches=3, cables=5, filled=True),
+        reached=reached,
+        built=0.01,
+        alternatives=others,
+        trace=RouteTrace(stages=(), certificate=None),
+        tried=1,
+        seconds=0.0,
+    )
+
+
+def test_new_networks_run_where_a_builder_would_want_them() -> None:
+    starfish, trunk = gallery_robot("starfish"), gallery_robot("trunk")
+    assert faced(starfish).face is Face.PAIRS
+    assert faced(trunk) is trunk
+    front = replace(starfish, face=Face.FRONT)
+    assert faced(front) is front
+    foam = replace(starfish, body=replace(starfish.body, material=find_material("flexfoam-it x")))
+    assert faced(foam).face is Face.MIDDLE
+
+
+def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
+    """Oracle: the craft of the same network on one face, doubled but for its motors."""
+    starfish = gallery_robot("starfish")
+    one, both = craft_of(starfish, []), craft_of(faced(starfish), [])
+    assert (both.holes, both.motors, both.motor) == (2 * one.holes, one.motors, one.motor)
+    assert both.minutes == pytest.approx(2 * one.minutes)
+    assert both.length == pytest.approx(2 * one.length)
+    assert one.price < both.price < one.price + 1.0
+
+
+@pytest.mark.slow
+def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[ReachedPose, ...]) -> None:
+    """Oracle: statics of the inflated robot at both commands; its own are no worse than those of the flat model."""
+    filled = filled_reach(robot, reached, tension=20.0)
+    solid = Simulation(inflated_robot(robot, "pairs"))
+    assert filled.face is Face.PAIRS
+    squares = {"flat": [], "own": []}
+    for flat, own in zip(reached, filled.reached, strict=True):
+        for name, pose in (("flat", flat), ("own", own)):
+            markers = solid.solve(pose.pose.contractions).markers
+            squares[name] += [np.sum((markers[m] - [*at, 0]) ** 2) for m, at in flat.wanted.targets.items()]
+    assert filled.played == pytest.approx(np.sqrt(np.mean(squares["flat"])), rel=1e-6)
+    assert filled.rms_error == pytest.approx(np.sqrt(np.mean(squares["own"])), rel=1e-4)
+    assert filled.rms_error <= 1.01 * filled.played
+    assert filled.out < 1e-3
+    card = score_card(replace(network(robot, reached), filled=filled), version="x")["filled"]
+    assert card["face"] == "pairs"
+    assert card["poses"]["wave"]["rms_error"] == filled.reached[0].rms_error
+    assert set(card["poses"]["wave"]["contractions"]) == {winch.name for winch in robot.winches}
+
+
+@pytest.mark.slow
+def test_the_finalist_that_is_best_when_filled_is_chosen(robot: Robot, reached: tuple[ReachedPose, ...]) -> None:
+    """Oracle: cables that end half-way reach less; they give way to whole ones, and never the reverse."""
+    short = tuple(replace(cable, points=cable.points[: len(cable.points) // 2 + 1]) for cable in robot.cables)
+    stunted = robot.with_network(robot.winches, short)
+    solved = tuple(solve_ik(Simulation(stunted), pose) for pose in robot.poses.values())
+    whole, poor = (Alternative(robot=r, reached=p, built=0.01) for r, p in ((robot, reached), (stunted, solved)))
+    found = judged_filled(network(stunted, solved, whole), progress=silent)
+    assert found.robot is robot
+    assert found.filled is not None
+    assert found.filled.finalists == 2
+    assert [one.robot for one in found.alternatives] == [stunted]
+    kept = judged_filled(network(robot, reached, poor), progress=silent)
+    assert kept.robot is robot
+    assert kept.filled is not None
+    assert kept.filled.rms_error == pytest.approx(found.filled.rms_error)
+    assert [one.robot for one in kept.alternatives] == [stunted]
+
+
+def test_what_cannot_be_filled_is_told_before_the_search() -> None:
+    trunk = gallery_robot("trunk")
+    with pytest.raises(InputError, match="filled is for flat robots with a drawing"):
+        design_cables(trunk, trunk.poses.values(), filled=True)
