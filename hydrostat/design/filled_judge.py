@@ -16,8 +16,8 @@ GAIN = 0.95  # another network takes its place if its error on the filled body i
 def judged_filled(found: Network, *, progress: Progress) -> Network:
     """The network with what it reaches on the filled body; an alternative that does better there takes its place.
 
-    Compared are alternatives with no more winches and no more cables, of which a kit can be made. Stopped (KeyboardInterrupt), the best of those
-    that were looked at is returned.
+    Compared are alternatives with no more winches and no more cables, of which a kit can be made. Stopped
+    (KeyboardInterrupt), the best of those that were looked at is returned.
     """
     first = Alternative(robot=found.robot, reached=found.reached, built=found.built)
     winches, cables = size_of(found)
