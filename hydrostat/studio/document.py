@@ -9,6 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.judge import Judge
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work
 from hydrostat.studio.work_folder import folder_stamp
@@ -35,6 +36,7 @@ class Document:
 
     def __init__(self, bell: Bell) -> None:
         self.bell = bell  # rung after each change
+        self.judge = Judge(bell)  # says what is wrong with the robots that are shown
         self.folder: Path | None = None  # where the robot is saved; None: nowhere yet
         self.text = ""  # of the robot.toml that it was opened from; "": none
         self.stamp = ""  # of that folder when it was opened or saved last (`folder_stamp`)

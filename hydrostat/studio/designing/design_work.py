@@ -8,6 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design import Craft, DesignRequest, DesignStage, craft_of, find_network
 from hydrostat.design.network import Alternative, Network, rms_error
+from hydrostat.fabrication.demand import Demand, demand_of
 from hydrostat.ik import ReachedPose
 from hydrostat.robot import Cable, Pose, Robot, Winch
 from hydrostat.studio.jobs import Report
@@ -37,6 +38,7 @@ class Solution:
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
     craft: Craft  # what it takes to sew and to motorise it
+    demand: Demand  # what its poses ask of motors and cables
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,6 +95,7 @@ def solution(found: Network | Alternative) -> Solution:
         error=rms_error(found.reached),
         built=found.built,
         craft=craft_of(found.robot, found.reached),
+        demand=demand_of(found.robot, found.reached),
     )
 
 

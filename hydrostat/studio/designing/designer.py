@@ -31,6 +31,7 @@ from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.wishes import Paint, Wishes
 from hydrostat.studio.records.work import after_design
 from hydrostat.studio.stage import Hit, Stage
+from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things, target_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
@@ -186,25 +187,28 @@ class Designer(Stage):
         if ease is None or len(ease.nodes) != len(robot.body.mesh.nodes):
             return rest_shape(robot)
         reach = self._reach()
-        pulled = np.zeros(len(self._shown().winches)) if reach is None else reach.contractions
+        pulled = np.zeros(len(self.shown.winches)) if reach is None else reach.contractions
         errors = {} if reach is None else reach.errors
         return RobotShape(nodes=ease.nodes, tensions=ease.tensions, contractions=pulled, errors=errors)
 
     def things(self) -> Sequence[Thing]:
         """The network that is shown, targets, zones."""
-        shown, ease, reach = self._shown(), self._ease, self._reach()
+        shown, ease, reach = self.shown, self._ease, self._reach()
         fits = ease is not None and len(ease.tensions) == len(shown.cables)
         things = robot_things(shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.tension)
         there = reach is not None and ease is not None and not ease.moving
         for targets in self._targets():
             things += target_things(targets, reach.places if reach is not None and there else {})
-        return [*things, *self.painter.things()]
+        judge = self._document.judge
+        flags = finding_things(shown, judge.of(shown, self.wishes) or (), judge.chosen)
+        return [*things, *flags, *self.painter.things()]
 
     def step(self, now: float) -> bool:
-        """The body glides to the shape that is to be shown."""
+        """The body glides to the shape that is to be shown; a network that rests is judged."""
+        self._document.judge.look(self.shown, self.wishes, now, held=self.running)
         reach = self._reach()
         nodes = self._document.robot.body.mesh.nodes if reach is None else reach.nodes
-        tensions = np.zeros(len(self._shown().cables)) if reach is None else reach.tensions
+        tensions = np.zeros(len(self.shown.cables)) if reach is None else reach.tensions
         if self._ease is None or self._ease.nodes.shape != nodes.shape:
             self._ease = Ease(nodes, tensions)
         self._ease.go(nodes, tensions)
@@ -236,7 +240,8 @@ class Designer(Stage):
             return True
         return self.painter.key(name)
 
-    def _shown(self) -> Robot:
+    @property
+    def shown(self) -> Robot:
         """The robot with the network that is shown."""
         candidate, run, robot = self.candidate, self.run, self._document.robot
         if candidate is not None:
@@ -298,6 +303,7 @@ class Designer(Stage):
                     complete=found.complete,
                 )
             )
+            self._document.judge.learn(made[-1].robot, demand=solution.demand)
         self._all = (*made, *self._all)[:MOST]
         best = made[0]
         seconds = time.monotonic() - run.began

@@ -21,6 +21,7 @@ from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move,
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.work import followed
 from hydrostat.studio.stage import Hit, Stage
+from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 
@@ -36,7 +37,6 @@ class Tool(StrEnum):
 
 
 KEYS = {"v": Tool.MOVE, "p": Tool.PIN, "m": Tool.MARKER, "w": Tool.WINCH, "c": Tool.CABLE}  # the key of each tool
-QUIET = 0.2  # the robot is checked when nothing was changed for so long [s]
 SAME_CLICK = 0.005  # a click so near to the last one, as a share of the body, ends a cable: it was a double click
 DEPTH = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
 
@@ -54,8 +54,7 @@ class Editor(Stage):
         self._hold: Hold | None = None
         self._holds = 0
         self._refused = ""
-        self._checked: tuple[Robot, Findings] | None = None
-        self._seen: tuple[Robot, float] | None = None
+        self._counted: tuple[Robot, Findings] | None = None
 
     @property
     def chosen(self) -> str:
@@ -66,9 +65,9 @@ class Editor(Stage):
 
     @property
     def findings(self) -> Findings | None:
-        """What the check says of the robot as it is; None until it has been looked over."""
-        checked = self._checked
-        return checked[1] if checked is not None and checked[0] is self._document.robot else None
+        """Counts of the robot as it is; None until it has rested."""
+        counted = self._counted
+        return counted[1] if counted is not None and counted[0] is self._document.robot else None
 
     def shape(self) -> RobotShape:
         """The rest shape."""
@@ -79,7 +78,9 @@ class Editor(Stage):
         """All parts of the robot, the cable that is being laid, and the plane of the mirror."""
         robot = self._document.robot
         chosen = set(self._both(robot, self.chosen)) if self.chosen else set()
-        return [*robot_things(robot, vias=True, chosen=chosen), *overlay(robot, self.draft, self.mirror)]
+        judge = self._document.judge
+        flags = finding_things(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
+        return [*robot_things(robot, vias=True, chosen=chosen), *flags, *overlay(robot, self.draft, self.mirror)]
 
     def leave(self) -> None:
         """Drop what was begun: another stage is shown."""
@@ -245,13 +246,10 @@ class Editor(Stage):
 
     def step(self, now: float) -> bool:
         """Look the robot over once it has rested."""
-        robot = self._document.robot
-        if self._checked is not None and self._checked[0] is robot:
-            return False
-        if self._seen is None or self._seen[0] is not robot:
-            self._seen = (robot, now)
-        elif now - self._seen[1] >= QUIET and self._hold is None:
-            self._checked = (robot, look_over(robot))
+        work, judge = self._document.work, self._document.judge
+        judge.look(work.robot, work.wishes, now, held=self._hold is not None)
+        if self.findings is None and judge.of(work.robot, work.wishes) is not None:
+            self._counted = (work.robot, look_over(work.robot))
             self._document.bell.ring(Topic.JOB)
         return False
 

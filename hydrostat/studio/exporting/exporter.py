@@ -19,6 +19,7 @@ from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.records.wished_constraints import wished_constraints
 from hydrostat.studio.stage import Stage
+from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.studio.work_folder import save_work
@@ -83,8 +84,8 @@ class Exporter(Stage):
     def choose(self, options: KitOptions) -> None:
         """Have the next kit made so."""
         if options != self.options:
-            self.options = options
-            self._document.bell.ring(Topic.JOB)
+            self.options = self._document.judge.options = options
+            self._document.bell.ring(Topic.JOB, Topic.THINGS)
 
     def show(self, pose: str) -> None:
         """Show a pose as the winches reach it, by its name; "": the robot at rest."""
@@ -145,11 +146,14 @@ class Exporter(Stage):
         """All parts of the robot."""
         tensions = self.shape().tensions
         most = float(tensions.max(initial=0.0))
-        return robot_things(self._document.robot, tensions=tensions, scale=most or 1.0)
+        robot, judge = self._document.robot, self._document.judge
+        flags = finding_things(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
+        return [*robot_things(robot, tensions=tensions, scale=most or 1.0), *flags]
 
     def step(self, now: float) -> bool:
-        """Solve the pose that is shown, if it is not yet."""
+        """Solve the pose that is shown, if it is not yet; judge the robot once it has rested."""
         robot = self._document.robot
+        self._document.judge.look(robot, self._document.work.wishes, now)
         pose = robot.poses.get(self.pose) if robot.cables else None
         if pose is None or (self._posed is not None and self._is_wanted(self._posed)):
             return False
@@ -172,6 +176,8 @@ class Exporter(Stage):
 
         def keep(value: Any) -> None:
             self._made[export] = _Made(robot, value)
+            if isinstance(value, KitMade) and value.refused:
+                self._document.judge.learn(robot, refused=value.refused)
             self.errors.pop(export, None)
 
         def end(error: str) -> None:

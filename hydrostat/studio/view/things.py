@@ -38,6 +38,7 @@ class Look(StrEnum):
     VIA = "via"
     STOPPER = "stopper"
     HANDLE = "handle"
+    FLAG = "flag"
 
 
 class Stroke(StrEnum):
@@ -59,6 +60,7 @@ class Dot:
     look: Look  # how it is drawn
     colour: str  # such as "#0b5fa5"
     label: str = ""  # written beside it; "" for nothing
+    about: str = ""  # of a flag: key of the part whose words it shows while the pointer is there
     stuck: bool = True  # whether it moves with the body
     chosen: bool = False  # whether it is selected
     radius: float = 0.0  # in metres, for pins that reach so far; 0: just the sign

@@ -9,15 +9,15 @@ from builders import gallery_robot
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Mount, Robot, find_risks
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_gravity, sheathed_segments, sheaths
-from hydrostat.studio.editing.findings import in_words, look_over
 from hydrostat.studio.editing.hold import below_skin, inside
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, place_of
 from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
 from hydrostat.studio.records.wishes import Wishes
 from hydrostat.studio.records.work import Work, after_design, followed
+from hydrostat.studio.view.finding_things import in_words
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -333,7 +333,7 @@ def test_a_design_keeps_what_it_has_kept(starfish: Robot) -> None:
 
 def test_risks_are_told_in_the_words_of_the_screen(starfish: Robot) -> None:
     alone = remove(starfish, ["cable:0"])
-    assert [in_words(risk) for risk in look_over(alone).risks] == ["winch right: pulls no cable"]
+    assert [in_words(risk) for risk in find_risks(alone)] == ["winch right: pulls no cable"]
     assert in_words("cable[0], cable[1] and cable[4]: too long (cable[4] is the worst)") == (
         "cable 1, cable 2 and cable 5: too long (cable 5 is the worst)"
     )

@@ -12,6 +12,7 @@ from hydrostat.studio.designing.run import wished_poses
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
 from hydrostat.studio.face.panels.design_method import design_method
+from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
 
@@ -26,6 +27,8 @@ def design_panel(page: WindowPage) -> None:
     _progress(page)
     design_paint(page)
     design_limits(page)
+    ui.label("Before it is built").classes("studio-section")
+    finding_list(page, lambda: page.session.designer.shown)
     with page.bottom:
         design_compare(page)
 

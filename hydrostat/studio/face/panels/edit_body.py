@@ -4,13 +4,13 @@ from functools import partial
 
 from nicegui import ui
 
-from hydrostat.drawing.palette import SEAM
 from hydrostat.robot import MATERIALS, Source
 from hydrostat.robot.gravity import DIRECTIONS, direction_of
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.editing.findings import Findings, in_words
+from hydrostat.studio.editing.findings import Findings
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.edit_part import EditNumber
+from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
 
@@ -114,48 +114,25 @@ def _outline(page: WindowPage) -> None:
     page.on(Topic.ROBOT, lambda: button.set_visibility(document.robot.body.outline is not None))
 
 
-GOOD = "#00795f"
-
-
 def check_card(page: WindowPage) -> None:
     """Build the card."""
-    editor = page.session.editor
+    editor, document = page.session.editor, page.session.document
     ui.label("Check").classes("studio-section")
-    box = ui.column().classes("studio-card").style("gap: 6px; flex-shrink: 0").mark("edit-check")
-    shown: list[Findings | None] = []
+    with ui.column().classes("studio-card").style("gap: 6px; flex-shrink: 0").mark("edit-check"):
+        counts = ui.column().classes("w-full").style("gap: 6px")
+        finding_list(page, lambda: document.robot)
 
-    def show() -> None:
-        findings = editor.findings
-        if shown == [findings]:
-            return
-        if findings is None and shown:  # the last words stay, faintly, until there are new ones
-            box.style("opacity: 0.55")
-            shown[:] = [None]
-            return
-        shown[:] = [findings]
-        box.clear()
-        box.style("opacity: 1")
-        with box:
-            if findings is None:
-                ui.label("Looking it over").classes("studio-hint")
-            else:
-                _tell_findings(findings, [in_words(risk) for risk in findings.risks])
+    def build() -> None:
+        if editor.findings is not None:
+            _tell_counts(editor.findings)
 
-    page.on((Topic.JOB, Topic.ROBOT), show)
+    page.on_new((Topic.JOB, Topic.ROBOT), lambda: editor.findings, counts, build)
 
 
-def _tell_findings(findings: Findings, risks: list[str]) -> None:
+def _tell_counts(findings: Findings) -> None:
     length = f"{counted(findings.cables, 'cable')}, {1e3 * findings.cable_length:.0f} mm in all"
     for line in (
         f"{findings.nodes} nodes, {findings.elements} {findings.kind}, {1e3 * findings.mass:.3g} g",
         length if findings.cables else "no cables yet",
     ):
         ui.label(line).classes("studio-hint studio-figure")
-    if not risks:
-        with ui.element("div").classes("studio-row"):
-            ui.icon("check_circle", size="18px").style(f"color: {GOOD}")
-            ui.label("Nothing is wrong.").style("font-size: 13px")
-    for risk in risks:
-        with ui.element("div").classes("studio-row").style("align-items: flex-start"):
-            ui.icon("error_outline", size="18px").style(f"color: {SEAM}; margin-top: 1px")
-            ui.label(risk).style("font-size: 13px; line-height: 1.4; overflow-wrap: anywhere")

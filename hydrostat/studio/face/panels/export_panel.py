@@ -13,6 +13,7 @@ from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.exporting.exporter import Export
 from hydrostat.studio.exporting.kit_work import KitMade
 from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
 
@@ -39,6 +40,7 @@ def _kit_card(page: WindowPage) -> None:
             design.props("outline no-caps").classes("w-full").props('data-testid="export-design"')
         with ui.column().classes("w-full gap-2") as work:
             kit_choices(page)
+            finding_list(page, lambda: page.session.document.robot)
             _maker(page, Export.KIT, "Make the kit", "inventory_2", exporter.make_kit, lambda: exporter.kit)
             _result(page, Export.KIT, lambda: exporter.kit, lambda: kit_result(page))
 
@@ -242,7 +244,7 @@ def kit_result(page: WindowPage) -> None:
     if kit is None:
         return
     if kit.zip is None:
-        _refused(page, kit)
+        _refused(page)
         return
     download_button(kit.zip)
     if replace(kit.options, force=False, tension=None) != replace(exporter.options, force=False, tension=None):
@@ -258,10 +260,9 @@ def kit_result(page: WindowPage) -> None:
     _checks(kit)
 
 
-def _refused(page: WindowPage, kit: KitMade) -> None:
+def _refused(page: WindowPage) -> None:
+    """Its reasons are among the findings above."""
     refused = ui.label("It cannot be built well as it is").classes("studio-section").props('data-testid="kit-refused"')
-    for reason in kit.refused:
-        _line(reason, "error_outline", "export-bad")
     button = ui.button("Make it all the same", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
     button.props("outline no-caps").classes("w-full").props('data-testid="make-forced"')
     ui.run_javascript(  # once it is drawn

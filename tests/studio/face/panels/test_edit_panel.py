@@ -4,9 +4,11 @@ import pytest
 from desk import Desk, at_desk
 
 from hydrostat.robot import Point, Robot
-from hydrostat.studio.editing.editor import QUIET, Tool
+from hydrostat.studio.editing.editor import Tool
 from hydrostat.studio.editing.part import keys_of
+from hydrostat.studio.judge import QUIET
 from hydrostat.studio.stage import StageName
+from hydrostat.studio.view.finding_things import in_words
 
 
 def place(robot: Robot, name: str) -> Point:
@@ -74,7 +76,10 @@ def test_tools_mirror_and_check(starfish: Robot) -> None:
         mesh, findings = starfish.body.mesh, editor.findings
         assert findings is not None
         assert any(f"{len(mesh.nodes)} nodes, {len(mesh.elements)} triangles" in words for words in desk.words)
-        assert ("Nothing is wrong." in desk.words) is (not findings.risks)
+        said = desk.session.document.judge.of(desk.robot, desk.session.document.work.wishes)
+        assert said is not None
+        assert {in_words(finding.text) for finding in said} <= set(desk.words)
+        assert ("Nothing is wrong." in desk.words) is (not said)
 
     at_desk(starfish, act)
 

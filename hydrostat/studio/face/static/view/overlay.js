@@ -149,6 +149,10 @@ export class Overlay {
       pen.lineWidth = 3;
       pen.stroke();
       pen.fill();
+    } else if (look === "flag") {
+      const radius = dot.chosen || told(view, dot) ? 19 : 16;
+      this.ring(x, y, radius, view.theme.paper, 5);
+      this.ring(x, y, radius, dot.colour, dot.chosen ? 3 : 2);
     } else {
       this.halo(view, dot, 13);
       this.disc(x, y, lively ? 8 : 7, "#ffffff", dot.colour, 2.5);
@@ -170,6 +174,15 @@ export class Overlay {
     pen.fill();
     if (!stroke) return;
     pen.strokeStyle = stroke;
+    pen.lineWidth = width;
+    pen.stroke();
+  }
+
+  ring(x, y, radius, colour, width) {
+    const { pen } = this;
+    pen.beginPath();
+    pen.arc(x, y, radius, 0, 2 * Math.PI);
+    pen.strokeStyle = colour;
     pen.lineWidth = width;
     pen.stroke();
   }
@@ -199,11 +212,12 @@ export class Overlay {
   /** Labels beside their dots, where there is room; those of what is chosen or under the pointer always. */
   labels(view) {
     const { pen } = this;
-    const taken = view.dots.filter((dot) => dot.look !== "via").map((dot) => box(dot.x - 9, dot.y - 9, 18, 18, dot));
+    const signs = view.dots.filter((dot) => dot.look !== "via" && dot.look !== "flag");
+    const taken = signs.map((dot) => box(dot.x - 9, dot.y - 9, 18, 18, dot));
     pen.textBaseline = "middle";
     pen.textAlign = "left";
-    const must = (dot) => dot.chosen || (dot.key && dot.key === view.hover);
-    const wanted = view.dots.filter((dot) => dot.label).sort((a, b) => Number(must(b)) - Number(must(a)));
+    const must = (dot) => dot.chosen || (dot.key && dot.key === view.hover) || told(view, dot);
+    const wanted = once(view.dots.filter((dot) => dot.label && (dot.look !== "flag" || must(dot)))).sort((a, b) => Number(must(b)) - Number(must(a)));
     for (const dot of wanted) {
       const pill = dot.look === "winch";
       pen.font = pill ? `600 13px ${view.font}` : `500 13px ${view.font}`;
@@ -315,4 +329,15 @@ function box(x, y, w, h, dot) {
 
 function meets(a, b) {
   return a.x < b.x + b.w && b.x < a.x + a.w && a.y < b.y + b.h && b.y < a.y + a.h;
+}
+
+/** Whether a flag is about the part under the pointer. */
+function told(view, dot) {
+  return Boolean(dot.about) && dot.about === view.hover;
+}
+
+/** Dots without flags that say what an earlier one says. */
+function once(dots) {
+  const said = new Set();
+  return dots.filter((dot) => dot.look !== "flag" || !(said.has(dot.label) || !said.add(dot.label)));
 }

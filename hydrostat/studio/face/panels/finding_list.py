@@ -1,0 +1,57 @@
+"""`finding_list`: what is said of a robot that is to be built, a line each; pressed, it is marked on the body."""
+
+from collections.abc import Callable
+
+from nicegui import ui
+
+from hydrostat.design.finding import Finding, Weight
+from hydrostat.robot import Robot
+from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.page import WindowPage, pressable
+from hydrostat.studio.view.finding_things import TONES, in_words
+
+GOOD = "#00795f"
+ICONS = {Weight.REFUSED: "block", Weight.LIMIT: "straighten", Weight.MIND: "error_outline"}
+HEADS = {
+    Weight.REFUSED: "It cannot be built so",
+    Weight.LIMIT: "Not as a design would have it",
+    Weight.MIND: "To mind",
+}
+
+
+def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
+    """Build the list of the robot that is shown; the same robot has the same lines wherever it is."""
+    document = page.session.document
+    judge = document.judge
+    room = ui.column().classes("w-full").style("gap: 6px").mark("finding-list")
+
+    def said() -> tuple[Finding, ...] | None:
+        robot = shown() if document.is_open else None
+        return None if robot is None else judge.of(robot, document.work.wishes)
+
+    def build() -> None:
+        found = said()
+        if found is None:
+            ui.label("Looking it over").classes("studio-hint")
+            return
+        if not found:
+            with ui.element("div").classes("studio-row"):
+                ui.icon("check_circle", size="18px").style(f"color: {GOOD}")
+                ui.label("Nothing is wrong.").style("font-size: 13px")
+        for weight in Weight:
+            alike = [finding for finding in found if finding.weight is weight]
+            if alike:
+                ui.label(HEADS[weight]).classes("studio-hint")
+            for finding in alike:
+                _line(page, finding, chosen=finding == judge.chosen)
+
+    page.on_new((Topic.JOB, Topic.ROBOT, Topic.THINGS), lambda: (said(), judge.chosen), room, build)
+
+
+def _line(page: WindowPage, finding: Finding, *, chosen: bool) -> None:
+    judge = page.session.document.judge
+    kind = "finding" + (" finding-on" if chosen else "")
+    line = pressable(kind, page.doing(judge.choose, finding)) if finding.places else ui.element("div").classes(kind)
+    with line.props(f'data-testid="finding-{finding.weight}"'):
+        ui.icon(ICONS[finding.weight], size="18px").style(f"color: {TONES[finding.weight]}; margin-top: 1px")
+        ui.label(in_words(finding.text)).style("font-size: 13px; line-height: 1.4; overflow-wrap: anywhere")

@@ -1,0 +1,123 @@
+"""`Judge`: what is said of the robots that are shown, alike in Edit, Design and Export."""
+
+from dataclasses import dataclass, replace
+
+from hydrostat.design.finding import Finding, Weight, places_in
+from hydrostat.design.judgement import judgement_of
+from hydrostat.errors import HydrostatError
+from hydrostat.fabrication import KitOptions
+from hydrostat.fabrication.demand import Demand
+from hydrostat.robot import Robot
+from hydrostat.studio.bell import Bell, Topic
+from hydrostat.studio.records.wished_constraints import wished_constraints
+from hydrostat.studio.records.wishes import Wishes
+
+QUIET = 0.2  # a robot is judged when it is shown unchanged for so long [s]
+KEPT = 80  # so many robots are remembered, the candidates of some designs among them
+
+
+@dataclass(frozen=True, eq=False)
+class _Known:
+    """What has come to be known of a robot."""
+
+    robot: Robot
+    demand: Demand | None = None  # loads of its poses, as a design has found them
+    refused: tuple[str, ...] = ()  # sentences with which a kit of it was refused
+
+
+@dataclass(frozen=True, eq=False)
+class _Case:
+    """A robot that was judged, with all that it was judged by."""
+
+    robot: Robot
+    wishes: Wishes
+    options: KitOptions
+    known: _Known | None
+    said: tuple[Finding, ...]
+
+
+class Judge:
+    """Judges robots as they rest, and remembers what was said; a finding can be chosen, to be marked and read.
+
+    Where a design has solved the poses of a robot their loads count; else only what holds whatever they ask. A kit that
+    was refused adds its reasons.
+    """
+
+    def __init__(self, bell: Bell) -> None:
+        self.options = KitOptions()  # of the kit that the next judgement is for
+        self.chosen: Finding | None = None  # that is shown with its words
+        self._bell = bell
+        self._known: tuple[_Known, ...] = ()
+        self._cases: tuple[_Case, ...] = ()
+        self._seen: tuple[Robot, Wishes, KitOptions, float] | None = None
+
+    def of(self, robot: Robot, wishes: Wishes) -> tuple[Finding, ...] | None:
+        """What is said of a robot; None until it has been judged."""
+        case = self._case(robot, wishes)
+        return None if case is None else case.said
+
+    def look(self, robot: Robot, wishes: Wishes, now: float, *, held: bool = False) -> None:
+        """Judge a robot that is shown once it has rested, unless it is held or was judged [s]."""
+        if self._case(robot, wishes) is not None:
+            return
+        seen = self._seen
+        if seen is None or seen[0] is not robot or seen[1] != wishes or seen[2] != self.options:
+            self._seen = (robot, wishes, self.options, now)
+        elif now - seen[3] >= QUIET and not held:
+            options, known = self.options, self._of(robot)
+            case = _Case(robot, wishes, options, known, _said(robot, wishes, options, known))
+            self._cases = (case, *self._cases)[:KEPT]
+            self._bell.ring(Topic.JOB, Topic.THINGS)
+
+    def learn(self, robot: Robot, *, demand: Demand | None = None, refused: tuple[str, ...] = ()) -> None:
+        """Remember the loads of a robot's poses, or why a kit of it was refused."""
+        before = self._of(robot) or _Known(robot)
+        known = replace(before, robot=robot, demand=demand or before.demand, refused=refused or before.refused)
+        self._known = (known, *(other for other in self._known if other is not before))[:KEPT]
+        self._seen = None
+        self._bell.ring(Topic.JOB, Topic.THINGS)
+
+    def choose(self, finding: Finding | None) -> None:
+        """Show a finding with its words; chosen again or None: none."""
+        self.chosen = None if finding == self.chosen else finding
+        self._bell.ring(Topic.JOB, Topic.THINGS)
+
+    def _case(self, robot: Robot, wishes: Wishes) -> _Case | None:
+        known = self._of(robot)
+        return next(
+            (
+                case
+                for case in self._cases
+                if case.robot is robot
+                and case.wishes == wishes
+                and case.options == self.options
+                and case.known is known
+            ),
+            None,
+        )
+
+    def _of(self, robot: Robot) -> _Known | None:
+        return next((known for known in self._known if _alike(known.robot, robot)), None)
+
+
+def _alike(one: Robot, other: Robot) -> bool:
+    """Whether two robots have the same body, network and poses, so that what is known of one is known of the other."""
+    return one is other or (
+        one.body is other.body
+        and one.winches == other.winches
+        and one.cables == other.cables
+        and one.poses == other.poses
+    )
+
+
+def _said(robot: Robot, wishes: Wishes, options: KitOptions, known: _Known | None) -> tuple[Finding, ...]:
+    """All findings, the reasons of a refused kit among them; what cannot be judged is not said."""
+    try:
+        constraints = wished_constraints(robot, wishes)
+        demand = None if known is None else known.demand
+        found = judgement_of(robot, demand=demand, constraints=constraints, options=options)
+    except HydrostatError:
+        return ()
+    told = {finding.text for finding in found}
+    more = (text for text in (known.refused if known else ()) if text not in told)
+    return (*(Finding(text=text, weight=Weight.REFUSED, places=places_in(text, robot)) for text in more), *found)

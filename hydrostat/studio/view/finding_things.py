@@ -1,0 +1,43 @@
+"""`finding_things`, `in_words`: what is said of a robot, as rings where it is and in the words of the screen."""
+
+import re
+from collections.abc import Iterable
+
+from hydrostat.design.finding import Finding, Weight
+from hydrostat.drawing.palette import SEAM
+from hydrostat.robot import Mount, Robot
+from hydrostat.studio.view.things import Dot, Look, Thing
+
+TONES = {Weight.REFUSED: "#c8243f", Weight.LIMIT: "#6d6875", Weight.MIND: SEAM}  # colour of each weight
+MOST = 24  # rings of one finding: more say no more
+BRIEF = 64  # letters that are written beside a ring
+
+_NAMED = re.compile(r"\b(winch|marker)\[\d+\](?= )")
+_PART = re.compile(r"\b(pin|winch|cable|marker|pose)\[(\d+)\]")
+
+
+def in_words(text: str) -> str:
+    """A sentence with parts called as on the screen: "cable 1" for "cable[0]", "winch left" for "winch[0] left"."""
+    return _PART.sub(lambda match: f"{match[1]} {int(match[2]) + 1}", _NAMED.sub(r"\1", text))
+
+
+def finding_things(robot: Robot, said: Iterable[Finding], chosen: Finding | None = None) -> list[Thing]:
+    """A ring at each place of each finding; its words are seen where it is chosen, or its part under the pointer."""
+    loose = {f"winch:{winch.name}" for winch in robot.winches if winch.mount is Mount.WORLD}
+    things: list[Thing] = []
+    for finding in said:
+        words = in_words(finding.text)
+        label = words if len(words) <= BRIEF else words[: BRIEF - 1].rsplit(" ", 1)[0].rstrip(",;:") + " …"
+        things += [
+            Dot(
+                at=place.at,
+                look=Look.FLAG,
+                colour=TONES[finding.weight],
+                label=label,
+                about=place.part,
+                stuck=place.part not in loose,
+                chosen=finding == chosen,
+            )
+            for place in finding.places[:MOST]
+        ]
+    return things
