@@ -46,6 +46,12 @@ CablesPerWinch = Annotated[int | None, typer.Option(metavar="N", help="Most of o
 Clearance = Annotated[
     str | None, typer.Option(metavar="LENGTH", help="Least distance of a cable from the edge; 5 mm if left out.")
 ]
+Depth = Annotated[
+    str | None,
+    typer.Option(
+        metavar="LENGTH", help="In space: cables on the skin, 0 mm, or at this depth under it, winches outside."
+    ),
+]
 Tension = Annotated[str | None, typer.Option(metavar="FORCE", help="The most that a cable bears; 20 N if left out.")]
 Slack = Annotated[
     str | None, typer.Option(metavar="LENGTH", help="The most that a stopper may leave loose; 0 if left out.")
@@ -111,6 +117,7 @@ def design(
     constraints: ConstraintsFile = None,
     cables_per_winch: CablesPerWinch = None,
     clearance: Clearance = None,
+    depth: Depth = None,
     tension: Tension = None,
     slack: Slack = None,
     stepped_spools: SteppedSpools = False,
@@ -151,6 +158,7 @@ def design(
         file=constraints,
         cables_per_winch=cables_per_winch,
         clearance=clearance,
+        depth=depth,
         tension=tension,
         slack=slack,
         stepped=stepped_spools,

@@ -32,6 +32,7 @@ class TypedRequest:
     file: Path | None = None  # of constraints; what follows comes before it
     cables_per_winch: int | None = None
     clearance: str | None = None
+    depth: str | None = None
     tension: str | None = None
     slack: str | None = None
     stepped: bool = False
@@ -90,6 +91,7 @@ def _constraints(robot: "Robot", typed: TypedRequest) -> "Constraints":
     given = {
         "cables_per_winch": typed.cables_per_winch,
         "clearance": asked("--clearance", typed.clearance, LENGTH),
+        "depth": asked("--depth", typed.depth, LENGTH, zero=True),
         "tension": asked("--tension", typed.tension, FORCE),
         "slack": asked("--slack", typed.slack, LENGTH, zero=True),
         "spool_ratio": 2.0 if typed.stepped else None,

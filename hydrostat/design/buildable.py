@@ -22,11 +22,13 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
     """What about a network cannot be built: a sentence with part, value and limit for each broken constraint.
 
     Lengths may miss a limit by 0.02 mm and angles by 0.1 degrees, for coordinates are rounded to 0.01 mm. What is
-    locked is not looked at, but what is new must keep its distances from it. The region is `body_region(robot.body,
-    constraints.clearance)`.
+    locked is not looked at, but what is new must keep its distances from it. The region is `cable_region(robot.body,
+    constraints)`.
 
     - Points of cables keep the clearance from the edge or surface, straight segments half of it. Where a cable enters
       from the world, or begins at a winch that is locked, neither that point nor a clearance's way on from it counts.
+    - Where cables run at a depth under the skin, points lie there to half a millimetre, and straight segments neither
+      leave the body nor dive 3 mm deeper.
     - Segments keep out of `keep_out` along their whole length, bare ones out of `still`; without `leads`, sheaths are
       for `still` alone.
     - Holes are all points of cables but the first. Two that coincide are one. In the body, winches keep two spool

@@ -65,6 +65,8 @@ class Constraints:
             anywhere; those of a network to be improved stay about where they are.
         cables_per_winch: most cables of one winch (R44).
         clearance: least distance of a cable from the edge of the body.
+        depth: in space, how far under the surface cables run, sewn to the skin; 0: on it (R53). It takes the place of
+            the clearance, and winches stand in the world. None: anywhere.
         winch_clearance: least distance of a winch in the body from its edge.
         winch_gap: least distance between two winches, unless both stand in the world.
         hole_gap: least distance between two holes through which cables pass the cloth.
@@ -98,6 +100,7 @@ class Constraints:
     built_in: bool = True
     cables_per_winch: int = 6
     clearance: float = 0.005
+    depth: float | None = None
     winch_clearance: float = 0.012
     winch_gap: float = 0.025
     hole_gap: float = 0.004
@@ -187,6 +190,19 @@ class Constraints:
                 "it has none; add a [[winch]] at each place where one may stand"
             )
         self._check_mirror(robot)
+        self._check_depth(robot)
+
+    def _check_depth(self, robot: Robot) -> None:
+        if self.depth is None:
+            return
+        if robot.body.mesh.dim == 2:
+            raise InputError("constraints: depth: a flat body has no skin for cables; leave it out")
+        winches = all(winch.mount is Mount.WORLD for winch in robot.winches) if self.mount is None else None
+        if not robot.winches or not (self.mount is Mount.WORLD if winches is None else winches):
+            raise InputError(
+                "constraints: depth: cables on the skin come from winches outside the body; give the robot [[winch]] "
+                'tables with mount = "world" where these stand'
+            )
 
     def _check_mirror(self, robot: Robot) -> None:
         if self.mirror is None:
@@ -223,6 +239,7 @@ _GAP = Range(unit="m")
 RANGES = {
     "cables_per_winch": Range(whole=True, least=1, most=60),
     "clearance": Range(above=True, most=1.0, unit="m"),
+    "depth": Range(most=0.1, unit="m", optional=True),
     "winch_clearance": _GAP,
     "winch_gap": _GAP,
     "hole_gap": _GAP,

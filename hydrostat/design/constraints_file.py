@@ -71,6 +71,7 @@ class ConstraintsTable(TomlTable):
     built_in: Choice | None = None
     cables_per_winch: Count | None = None
     clearance: Length | None = None
+    depth: Length | None = None
     winch_clearance: Length | None = None
     winch_gap: Length | None = None
     hole_gap: Length | None = None

@@ -19,6 +19,10 @@ from hydrostat.robot import Body
 MARGIN = 1.02  # points are pushed so many clearances deep, so that rounding takes none out again
 
 
+Band = tuple[float, float]
+"""The least and the largest depth [m]."""
+
+
 class Region(ABC):
     """A body at rest and the part of it that keeps a clearance from its edge, or from its surface in space.
 
@@ -32,6 +36,22 @@ class Region(ABC):
 
     shell: Shell
     clearance: float
+
+    @property
+    def hole_band(self) -> Band:
+        """Least and largest depth of a point of a cable [m]."""
+        return self.clearance, np.inf
+
+    @property
+    def run_band(self) -> Band:
+        """Least and largest depth along a straight run [m]."""
+        return 0.5 * self.clearance, np.inf
+
+    def fits(self, places: Points) -> Bool[np.ndarray, " points"]:
+        """Whether a cable may have a point at each place."""
+        least, most = self.hole_band
+        depths = self.depths(places)
+        return (depths >= least) & (depths <= most)
 
     def depths(self, places: Points) -> Float[np.ndarray, " points"]:
         """Distance of points from the edge or surface [m]; negative outside."""
@@ -50,8 +70,8 @@ class Region(ABC):
         self, start: Float[np.ndarray, "segments dim"], end: Float[np.ndarray, "segments dim"]
     ) -> Bool[np.ndarray, " segments"]:
         """Whether each straight segment keeps at least half the clearance all along."""
-        half = 0.5 * self.clearance
-        return least_along(self.depths, start, end, half) >= half
+        least, _ = self.run_band
+        return least_along(self.depths, start, end, least) >= least
 
     def holds(self, route: Route) -> bool:
         """Whether a whole route keeps at least half the clearance."""
@@ -165,13 +185,16 @@ class SpaceRegion(Region):
 def space_region(body: Body, clearance: float) -> SpaceRegion | None:
     """The region of a body in space, by its healed surface if it has one; None if it is too thin everywhere."""
     mesh = body.mesh
-    if body.healing is not None:
-        shell = Shell(body.healing.surface.vertices, body.healing.surface.triangles)
-    else:
-        shell = Shell(mesh.nodes, mesh.boundary)
-    region = SpaceRegion(shell, clearance)
+    region = SpaceRegion(body_shell(body), clearance)
     deep = region.push_inside(mesh.nodes[mesh.elements].mean(axis=1))
     return region if region.depths(deep).max() >= MARGIN * clearance else None
+
+
+def body_shell(body: Body) -> Shell:
+    """The surface of a body in space: as it was healed, or of its mesh."""
+    if body.healing is not None:
+        return Shell(body.healing.surface.vertices, body.healing.surface.triangles)
+    return Shell(body.mesh.nodes, body.mesh.boundary)
 
 
 def body_region(body: Body, clearance: float) -> Region:

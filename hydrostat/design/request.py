@@ -274,8 +274,8 @@ _OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {
 }
 
 _ROUTES_ONLY = (
-    "winch_zones", "keep_out", "still", "mount", "built_in", "cable_gap", "turn", "bend_radius", "longest", "torque",
-    "slack", "spool_ratio", "mirror", "locked_winches", "locked_cables",
+    "winch_zones", "keep_out", "still", "mount", "built_in", "depth", "cable_gap", "turn", "bend_radius", "longest",
+    "torque", "slack", "spool_ratio", "mirror", "locked_winches", "locked_cables",
 )  # fmt: skip
 """Constraints that winch trees are not grown within."""
 

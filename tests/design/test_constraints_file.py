@@ -98,9 +98,21 @@ def test_every_field_can_stand_in_the_file(file: Path) -> None:
     keys = set(ConstraintsTable.model_fields) - {"built"}
     assert {ZONES.get(key, key) for key in keys} == {field.name for field in fields(MADE)}
     for field in fields(MADE):
+        if field.name == "depth":  # for bodies in space
+            continue
         assert getattr(MADE, field.name) != getattr(Constraints(), field.name), field.name
     file.write_text(ALL)
     assert read_constraints(file, strip_robot()) == MADE
+
+
+def test_a_depth_is_for_bodies_in_space(file: Path) -> None:
+    box = box_robot()
+    robot = replace(box, winches=tuple(replace(winch, mount=Mount.WORLD) for winch in box.winches))
+    for text, depth in (("0 mm", 0.0), ("3 mm", 0.003)):
+        file.write_text(f'depth = "{text}"')
+        assert read_constraints(file, robot) == Constraints(depth=depth)
+        with pytest.raises(InputError, match="depth: a flat body"):
+            read_constraints(file, strip_robot())
 
 
 def test_what_is_left_out_is_as_ever(file: Path) -> None:

@@ -66,7 +66,7 @@ def _given_points(parts: Parts, index: int) -> int:
 
 
 def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
-    least = parts.constraints.clearance
+    least, most = parts.region.hole_band
     lengths = {index: len(parts.points[index]) for index in parts.new_cables}
     asked = [(index, at) for index, count in lengths.items() for at in range(_given_points(parts, index), count)]
     if not asked:
@@ -76,8 +76,19 @@ def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
         if depth < least - LENGTH:
             yield (
                 f"cable[{index}].points[{at}] at {place(parts.points[index][at])} lies {mm(depth)} inside the "
-                f"{parts.edge}, less than the clearance of {mm(least)}"
+                f"{parts.edge}, less than the {_limit(parts, least)}"
             )
+        elif depth > most + LENGTH:
+            yield (
+                f"cable[{index}].points[{at}] at {place(parts.points[index][at])} lies {mm(depth)} under the "
+                f"{parts.edge}, more than the {_limit(parts, most)}"
+            )
+
+
+def _limit(parts: Parts, depth: float) -> str:
+    """What a point keeps, as sentences say it."""
+    wanted = parts.constraints.depth
+    return f"clearance of {mm(depth)}" if wanted is None else f"{mm(depth)} that a depth of {mm(wanted)} allows"
 
 
 def _near_the_edge(parts: Parts, segments: _Segments) -> Iterator[str]:
@@ -89,14 +100,23 @@ def _near_the_edge(parts: Parts, segments: _Segments) -> Iterator[str]:
     late = segments.firsts == given - 1
     starts[late] += (clearance / lengths[late])[:, None] * spans[late]
     asked = np.flatnonzero((segments.firsts >= given) | (late & (lengths > clearance)))
-    limit = 0.5 * clearance - LENGTH
-    found = least_along(parts.region.depths, starts[asked], segments.ends[asked], limit, resolution=1e-4)
+    least, most = parts.region.run_band
+    skin = parts.constraints.depth is not None
+    found = least_along(parts.region.depths, starts[asked], segments.ends[asked], least - LENGTH, resolution=1e-4)
     for index, depth in zip(asked, found, strict=True):
-        if depth < limit:
-            yield (
-                f"{segments.name(index)} comes to {mm(depth)} inside the {parts.edge}, "
-                f"less than half the clearance of {mm(clearance)}"
-            )
+        if depth < least - LENGTH:
+            allowed = _limit(parts, least) if skin else f"half the clearance of {mm(clearance)}"
+            yield f"{segments.name(index)} comes to {mm(depth)} inside the {parts.edge}, less than {allowed}"
+    if not skin:
+        return
+    found = least_along(
+        lambda places: -parts.region.depths(places), starts[asked], segments.ends[asked], -most - LENGTH,
+        resolution=1e-4,
+    )  # fmt: skip
+    for index, depth in zip(asked, -found, strict=True):
+        if depth > most + LENGTH:
+            allowed = _limit(parts, most)
+            yield f"{segments.name(index)} dives to {mm(depth)} under the {parts.edge}, more than the {allowed}"
 
 
 def _through(segments: _Segments, zone: Zone, what: str, asked: Bool[np.ndarray, " segments"]) -> Iterator[str]:

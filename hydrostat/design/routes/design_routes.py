@@ -14,7 +14,7 @@ from hydrostat.design.built_error import expected_error
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
 from hydrostat.design.progress import Progress, Watch, unseen
-from hydrostat.design.region import Region, body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial, reached_from_rest
@@ -24,6 +24,7 @@ from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import linear_model, pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.sketch import sketches
+from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
@@ -248,7 +249,7 @@ class RouteSearch:
     @cached_property
     def region(self) -> Region:
         """Where cables may be."""
-        return body_region(self.robot.body, self.constraints.clearance)
+        return cable_region(self.robot.body, self.constraints)
 
     @property
     def _total(self) -> int:

@@ -84,20 +84,27 @@ class _MarginRows:
 
     def _edges(self) -> None:
         """Points a clearance from the edge, segments half of it; both outside forbidden zones."""
-        clearance, spots = self.constraints.clearance, _spots(self.layout, 0.5 * self.constraints.clearance)
+        spots = _spots(self.layout, 0.5 * self.constraints.clearance)
         if not len(spots.shares):
             return
         places = spots.places(self.layout.numbers, self.layout.dim)
-        needs = np.where(spots.shares == 0.0, clearance + _HAIR, 0.6 * clearance)
+        hole, (least, most), (lowest, deepest) = spots.shares == 0.0, self.region.hole_band, self.region.run_band
         depths, ways = self.region.depths_and_ways(places)
-        lefts = np.where(spots.entry, np.inf, depths - needs)
-        near = np.flatnonzero(lefts <= self.reach)
-        if len(near):
-            self._add_spots(spots.chosen(near), lefts[near], ways[near])
+        needs = np.where(hole, least + _HAIR, lowest + _SHY * abs(lowest))
+        self._within(spots, depths - needs, ways)
+        if np.isfinite(deepest):  # a layer under the skin
+            limits = np.where(hole, most - _HAIR, deepest - _SHY * abs(deepest))
+            self._within(spots, limits - depths, -ways)
         for zone in self.constraints.keep_out:
             self._outside(zone, spots)
         for zone in self.constraints.still:
             self._outside(zone, spots.chosen(np.flatnonzero(spots.bare)))
+
+    def _within(self, spots: "_Spots", lefts: Vector, ways: Float[np.ndarray, "spots dim"]) -> None:
+        """Rows for places that are near a limit, but for those where a cable may be as near the edge as it likes."""
+        near = np.flatnonzero(~spots.entry & (lefts <= self.reach))
+        if len(near):
+            self._add_spots(spots.chosen(near), lefts[near], ways[near])
 
     def _outside(self, zone: Zone, spots: "_Spots") -> None:
         """Those places, and between them the ones nearest to the zone: a small zone would pass between two."""
@@ -307,6 +314,7 @@ def _nearest(zone: Zone, spots: _Spots, numbers: Vector, dim: int) -> _Spots:
 
 
 _HAIR = 5e-5  # kept back from every limit on a length [m]: more than what rounding coordinates changes
+_SHY = 0.2  # share of the limit along a straight run that is kept back from it: it is watched at some places only
 _DEGREE = 0.5  # kept back from the largest turn
 
 _STEP = 1e-7

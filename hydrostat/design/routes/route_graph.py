@@ -150,7 +150,7 @@ def _via_points(
     """
     moved = region.push_inside(nodes)
     shifts = np.linalg.norm(moved - nodes, axis=1)
-    good = (region.depths(moved) >= region.clearance) & (shifts <= 2 * region.clearance + spacing)
+    good = region.fits(moved) & (shifts <= 2 * region.clearance + spacing)
     good &= _outside(moved, constraints.keep_out)
     order = np.flatnonzero(good)
     order = order[np.argsort(shifts[order] > 1e-12, kind="stable")]

@@ -34,6 +34,7 @@ from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.finding_things import finding_things
 from hydrostat.studio.view.robot_things import robot_things, target_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.units import counted
 
 TITLE = "Designing cables"
 
@@ -310,7 +311,7 @@ class Designer(Stage):
         early = "" if found.complete else "stopped early, the best so far: "
         self.outcome = (
             f"{early}{network_words(best.robot)}, {told_error(best.built)} off once built, in {seconds:.0f} s "
-            f"({found.tried} networks tried)"
+            f"({counted(found.tried, 'network')} tried)"
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
 
