@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing.palette import DARK, FELT, LIGHT, mix, winch_colours
+from hydrostat.drawing.palette import DARK, FELT, LIGHT, MUTED, mix, winch_colours
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETRES, PictureSheet, Place, Places
-from hydrostat.robot import Mount, Robot, Winch
+from hydrostat.robot import Mount, Robot, Winch, obstacle_lines
 
 SHARES = np.linspace(0.3, 0.9, 13)  # shares of a cable's length where its number may stand
 
@@ -57,6 +57,8 @@ def draw_hardware(
     """
     cables, winches = [body.cable(points) for points in carried.cables(nodes)], carried.winches(nodes)
     drawn = DrawnRobot(pane, body, cables, pane.places(winches))
+    for line in obstacle_lines(carried.robot):
+        sheet.curve(pane.places(line), color=MUTED, linewidth=1.2, clip_on=True)
     _draw_cables(sheet, carried.robot, cables, colours=colours, width=width)
     _draw_winches(sheet, carried.robot, drawn.winches, body.fades(winches), contractions=contractions)
     return drawn

@@ -46,6 +46,7 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         },
         gravity=None if flat is None else (*flat, 0.0),
         face=None,
+        obstacles=(),
     )
 
 

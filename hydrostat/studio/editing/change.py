@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.robot import Cable, Mount, Robot, Source, find_material, outline_body
+from hydrostat.robot import Cable, Contact, Mount, Robot, Source, find_material, outline_body
 from hydrostat.robot.body import Body, surface_body
 from hydrostat.robot.checks import check_name
 from hydrostat.robot.gravity import gravity_along
@@ -81,6 +81,11 @@ def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
 def set_gravity(robot: Robot, direction: str) -> Robot:
     """The same robot with gravity in a direction such as "-y", "" for none (InputError: no direction of this body)."""
     return replace(robot, gravity=gravity_along(direction, robot.body.mesh.dim) if direction else None)
+
+
+def set_contact(robot: Robot, on: bool) -> Robot:
+    """The same robot whose parts pass through one another, or do not."""
+    return replace(robot, contact=Contact() if on else None)
 
 
 def check_range(name: str, value: float, least: float, most: float) -> None:

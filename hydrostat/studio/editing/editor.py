@@ -13,7 +13,7 @@ from hydrostat.robot import Point, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_cable, overlay
-from hydrostat.studio.editing.change import change, remesh, rename, set_gravity
+from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity
 from hydrostat.studio.editing.findings import Findings, look_over
 from hydrostat.studio.editing.hold import Hold, below_skin, inside, take_hold
 from hydrostat.studio.editing.part import Mirror, find_part, name_of, title_of
@@ -144,6 +144,10 @@ class Editor(Stage):
     def set_gravity(self, direction: str) -> None:
         """Let weight pull in a direction such as "-y"; "": none (InputError: no direction of this body)."""
         self._change(f"gravity {direction or 'off'}", set_gravity(self._document.robot, direction))
+
+    def set_contact(self, on: bool) -> None:
+        """Let parts of the body push one another off, at the usual distance, or pass through."""
+        self._change(f"contact {'on' if on else 'off'}", set_contact(self._document.robot, on))
 
     def set_body(self, **values: Any) -> None:
         """Change material, thickness or element size as `remesh` does; takes a while, so call it in a thread.
