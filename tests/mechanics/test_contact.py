@@ -5,11 +5,21 @@ from functools import cache
 
 import numpy as np
 import pytest
+from builders import box_mesh, strip_mesh
 from touching import DISTANCE, fork_robot
 
 from hydrostat.geometry.boundary_tree import Pairs
-from hydrostat.geometry.distance_field import sphere_field
-from hydrostat.mechanics import ContactEnergy, ObstacleEnergy
+from hydrostat.geometry.distance_field import plane_field, sphere_field
+from hydrostat.mechanics import (
+    Assembly,
+    ContactEnergy,
+    NeoHookean,
+    NewtonOptions,
+    ObstacleEnergy,
+    PinEnergy,
+    RoundOff,
+    minimise,
+)
 from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.testing import check_energy
 
@@ -125,3 +135,31 @@ def test_samples_stand_for_the_whole_boundary(dim: int) -> None:
     outer = (corners**2).sum(axis=(1, 2)) + (corners.sum(axis=1) ** 2).sum(axis=1)
     wanted = (areas * outer).sum() / (dim * (dim + 1))
     assert energy.weights @ squares == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_block_pressed_against_a_plane(dim: int) -> None:
+    """Without lateral contraction a Neo-Hookean block is strained evenly: its pressure is mu (1/l - l) everywhere."""
+    mesh = box_mesh((3, 2, 2), size=(0.03, 0.02, 0.02)) if dim == 3 else strip_mesh(3, 2, size=(0.03, 0.02))
+    rest, length, mu, depth = mesh.nodes, 0.03, 1e4, 0.01 if dim == 2 else 1.0
+    held = np.flatnonzero(rest[:, 0] < 1e-9)
+    pin = PinEnergy(
+        stencils=held[:, None], weights=np.ones((len(held), 1)), targets=rest[held], stiffness=np.full(len(held), 1e7)
+    )
+    far, back = np.eye(dim)[0] * (length + 1e-4), -np.eye(dim)[0]
+    wall = ObstacleEnergy(mesh, plane_field(far, back), distance=1e-4, young=3e4, thickness=depth if dim == 2 else None)
+    body = NeoHookean(rest, mesh.elements, mu=mu, lame=0.0, thickness=depth)
+    pushed = pin.with_supports_moved(np.tile(0.004 * np.eye(dim)[0], (len(held), 1)))
+    whole = Assembly([body, pushed, wall], rest=rest, control_count=0)
+    found = minimise(whole, rest, np.zeros(0), round_off=RoundOff(force=1e-9, energy=1e-15), options=NewtonOptions())
+    assert found.converged
+    forces = np.zeros_like(rest)
+    wall.add_gradient(found.nodes, np.zeros(0), forces)
+    ends = [found.nodes[rest[:, 0] == end, 0] for end in (rest[:, 0].min(), rest[:, 0].max())]
+    assert np.ptp(ends[1]) < 1e-5  # nodes of the rim stand for some of the sides too
+    stretch = (ends[1].mean() - ends[0].mean()) / length
+    assert stretch < 0.88
+    assert forces[:, 0].sum() == pytest.approx(
+        0.02 * (0.02 if dim == 3 else depth) * mu * (1 / stretch - stretch), rel=1e-6
+    )
+    assert 0.5e-4 < wall.gap(found.nodes) < 1e-4
