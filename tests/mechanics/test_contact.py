@@ -160,6 +160,6 @@ def test_a_block_pressed_against_a_plane(dim: int) -> None:
     stretch = (ends[1].mean() - ends[0].mean()) / length
     assert stretch < 0.88
     assert forces[:, 0].sum() == pytest.approx(
-        0.02 * (0.02 if dim == 3 else depth) * mu * (1 / stretch - stretch), rel=1e-6
+        0.02 * (0.02 if dim == 3 else depth) * mu * (1 / stretch - stretch), rel=1e-3
     )
     assert 0.5e-4 < wall.gap(found.nodes) < 1e-4
