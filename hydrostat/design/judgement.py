@@ -7,7 +7,7 @@ from hydrostat.design.checks.parts import Parts
 from hydrostat.design.checks.winches import standing_violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.finding import Finding, Weight, places_in
-from hydrostat.design.region import body_region
+from hydrostat.design.skin_region import cable_region
 from hydrostat.fabrication import KitOptions
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.refusals import find_refusals
@@ -41,7 +41,7 @@ def judgement_of(
 
 def _limits(robot: Robot, constraints: Constraints) -> Iterator[Finding]:
     """A finding for each kind of limit: its first sentence, and the places of all."""
-    parts = Parts(robot, constraints, body_region(robot.body, constraints.clearance))
+    parts = Parts(robot, constraints, cable_region(robot.body, constraints))
     for check in (standing_violations, clearance_violations, hole_violations, gap_violations, turn_violations):
         told = list(check(parts))
         if not told:

@@ -16,6 +16,7 @@ def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
         mirror=wishes.mirror,
         tension=wishes.tension,
         clearance=wishes.clearance,
+        depth=wishes.depth if robot.body.mesh.dim == 3 else None,
         cables_per_winch=wishes.cables_per_winch,
         slack=wishes.slack,
         spool_ratio=2.0 if wishes.stepped else 1.0,

@@ -36,6 +36,7 @@ class Wishes:
     mirror: str | None = None  # axis of symmetry, "x", "y" or "z"; None: no symmetry
     tension: float = Constraints.tension  # the most that a cable bears [N]
     clearance: float = Constraints.clearance  # least distance of a cable from the edge [m]
+    depth: float | None = None  # in space, of cables under the skin, 0 on it [m]; None: anywhere (R53)
     tolerance: float | None = None  # error good enough where winches are counted [m]; None: a hundredth of the body
     simplicity: float = RouteOptions.simplicity  # how much a simple network is worth; 0: whatever helps at all is kept
     cables_per_winch: int = Constraints.cables_per_winch  # most cables of one winch
@@ -93,6 +94,7 @@ _COUNTED = {
 _AMOUNTS = {  # what each amount may be, and the unit in which it is told
     "tension": (RANGES["tension"], 1.0, "N"),
     "clearance": (RANGES["clearance"], 1e3, "mm"),
+    "depth": (RANGES["depth"], 1e3, "mm"),
     "tolerance": (ROUTE_RANGES["tolerance"], 1e3, "mm"),
     "slack": (RANGES["slack"], 1e3, "mm"),
     "torque": (RANGES["torque"], 1.0, "N m"),

@@ -42,6 +42,16 @@ def test_every_wish_is_a_constraint(starfish: Robot) -> None:
     )  # fmt: skip
 
 
+def test_a_depth_is_for_bodies_in_space(starfish: Robot) -> None:
+    wishes = Wishes(depth=0.0)
+    assert wished_constraints(starfish, wishes) == Constraints()
+    trunk = gallery_robot("trunk")
+    assert wished_constraints(trunk, wishes) == Constraints(depth=0.0)
+    assert wished_request(trunk, wishes).constraints.depth == 0.0
+    with pytest.raises(InputError, match="does not keep depth"):
+        wished_request(trunk, Wishes(depth=0.0, method=DesignMethod.TREES))
+
+
 def test_no_wish_is_no_constraint(starfish: Robot) -> None:
     assert wished_constraints(starfish, Wishes()) == Constraints()
 
@@ -97,6 +107,7 @@ def test_what_does_not_fit_the_body_is_told_at_once(starfish: Robot) -> None:
         ({"winches": -1}, "winches must be a whole number from 1 to 20, or 0 for as few as will do, not -1"),
         ({"cables": 61}, "cables must be a whole number from 1 to 60, not 61"),
         ({"cables_per_winch": 0}, "cables per winch must be a whole number from 1 to 60, not 0"),
+        ({"depth": -0.001}, "depth must be at least 0 and at most 100 mm, not -1 mm"),
         ({"phi": 1.5}, "phi must be at least 0 and at most 1, not 1.5"),
         ({"threshold": 0}, "threshold must be a whole number, at least 1, not 0"),
         ({"simplicity": -1.0}, "simplicity must be at least 0 and at most 20, not -1.0"),

@@ -67,6 +67,9 @@ def _zone(page: WindowPage, index: int, paint: Paint, size: str, *, chosen: bool
         remove.on("click.stop", page.doing(designer.painter.remove, index))
 
 
+OPEN = {"depth": "anywhere"}
+"""What is said where a wish is left open, if it is not found by the search."""
+
 Show = Callable[[Wishes], Any]
 
 
@@ -80,6 +83,8 @@ def design_limits(page: WindowPage) -> None:
                 number_box(page, "Tension, at most", "N", "tension"),
                 number_box(page, "From the edge", "mm", "clearance"),
             ]
+        if page.session.document.robot.body.mesh.dim == 3:
+            shows.append(number_box(page, "Cables on the skin, under it by", "mm", "depth"))
         shows.append(_mirror(page))
         with ui.element("div").classes("studio-row"):
             shows += [
@@ -110,11 +115,11 @@ def number_box(page: WindowPage, words: str, unit: str, name: str) -> Show:
     designer = page.session.designer
     scale = 1e3 if unit == "mm" else 1.0
     whole = isinstance(getattr(Wishes, name), int)
-    optional = name in ("tolerance", "torque")
+    optional = getattr(Wishes, name) is None
     box = ui.number(words, suffix=unit or None, format="%.6g").props("dense outlined hide-bottom-space stack-label")
     box.classes("flex-1 studio-figure").style("min-width: 0").props(f'data-testid="wish-{name}"')
     if optional:
-        box.props('placeholder="auto" clearable')
+        box.props(f'placeholder="{OPEN.get(name, "auto")}" clearable')
 
     def send() -> None:
         value = sent_number(box.value)

@@ -1,6 +1,7 @@
 """The panel of the stage "design". The oracle is what is wished."""
 
 import pytest
+from builders import gallery_robot
 from desk import Desk, at_desk, is_shown
 
 from hydrostat.design import DesignMethod
@@ -91,3 +92,20 @@ def test_without_a_pose_one_is_sent_to_pose(starfish: Robot) -> None:
         assert desk.session.stage is StageName.POSE
 
     at_desk(starfish, act)
+
+
+def test_cables_on_the_skin_are_for_bodies_in_space(starfish: Robot) -> None:
+    async def flat(desk: Desk) -> None:
+        desk.go(StageName.DESIGN)
+        assert desk.all("wish-depth") == []
+
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.DESIGN)
+        designer = desk.session.designer
+        await desk.type("wish-depth", 2.5)
+        assert designer.wishes.depth == pytest.approx(0.0025)
+        await desk.type("wish-depth", None)
+        assert designer.wishes.depth is None
+
+    at_desk(starfish, flat)
+    at_desk(gallery_robot("trunk"), act)
