@@ -70,12 +70,13 @@ def cylinder_field(at: Vector, to: Vector, radius: float) -> DistanceField:
         beside, beyond = far - radius, np.abs(along) - 0.5 * length
         round_, rim = beside > beyond, (beside > 0) & (beyond > 0)
         values = np.where(rim, np.hypot(beside, beyond), np.maximum(beside, beyond))
-        side, flat = (np.where(rim, one / values, kept) for one, kept in ((beside, round_), (beyond, ~round_)))
+        away = np.where(rim, values, 1.0)
+        side, flat = (np.where(rim, one / away, kept) for one, kept in ((beside, round_), (beyond, ~round_)))
         normals = side[:, None] * outward + flat[:, None] * end
         turning = np.cross(axis, outward)
         curvatures = (side / far)[:, None, None] * _square(turning)
         sharp = flat[:, None] * outward - side[:, None] * end
-        curvatures += np.where(rim, 1.0 / np.maximum(values, _TINY), 0.0)[:, None, None] * _square(sharp)
+        curvatures += np.where(rim, 1.0 / away, 0.0)[:, None, None] * _square(sharp)
         return Distances(values, normals, curvatures)
 
     return field

@@ -83,7 +83,7 @@ def set_gravity(robot: Robot, direction: str) -> Robot:
     return replace(robot, gravity=gravity_along(direction, robot.body.mesh.dim) if direction else None)
 
 
-def set_contact(robot: Robot, on: bool) -> Robot:
+def set_contact(robot: Robot, *, on: bool) -> Robot:
     """The same robot whose parts pass through one another, or do not."""
     return replace(robot, contact=Contact() if on else None)
 

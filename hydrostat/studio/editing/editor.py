@@ -147,7 +147,7 @@ class Editor(Stage):
 
     def set_contact(self, on: bool) -> None:
         """Let parts of the body push one another off, at the usual distance, or pass through."""
-        self._change(f"contact {'on' if on else 'off'}", set_contact(self._document.robot, on))
+        self._change(f"contact {'on' if on else 'off'}", set_contact(self._document.robot, on=on))
 
     def set_body(self, **values: Any) -> None:
         """Change material, thickness or element size as `remesh` does; takes a while, so call it in a thread.

@@ -9,9 +9,9 @@ from builders import gallery_robot
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
-from hydrostat.robot import Mount, Robot, find_risks
+from hydrostat.robot import Contact, Mount, Robot, find_risks
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
-from hydrostat.studio.editing.change import change, remesh, rename, set_gravity, sheathed_segments, sheaths
+from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.hold import below_skin, inside
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, place_of
 from hydrostat.studio.editing.place import add_cable, add_marker, add_pin, add_winch, insert_via, move, remove
@@ -211,6 +211,11 @@ def test_gravity_has_a_direction_of_the_body(starfish: Robot) -> None:
     assert set_gravity(set_gravity(starfish, "-y"), "").gravity is None
     with pytest.raises(InputError, match="-z"):
         set_gravity(starfish, "-z")
+
+
+def test_contact_is_switched_on_and_off(starfish: Robot) -> None:
+    assert set_contact(starfish, on=True).contact == Contact()
+    assert set_contact(set_contact(starfish, on=True), on=False) == starfish
 
 
 def test_twins_are_found_by_place(starfish: Robot) -> None:

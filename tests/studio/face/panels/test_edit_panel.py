@@ -84,7 +84,7 @@ def test_tools_mirror_and_check(starfish: Robot) -> None:
     at_desk(starfish, act)
 
 
-def test_material_and_gravity(starfish: Robot) -> None:
+def test_material_gravity_and_contact(starfish: Robot) -> None:
     async def act(desk: Desk) -> None:
         desk.go(StageName.EDIT)
         assert desk.one("edit-material").value == starfish.body.material.name
@@ -96,5 +96,8 @@ def test_material_and_gravity(starfish: Robot) -> None:
         assert desk.robot.gravity[1] < 0
         await desk.choose("edit-gravity", "")
         assert desk.robot.gravity is None
+        for on in (True, False):
+            desk.one("edit-contact").set_value(on)
+            await desk.until(lambda on=on: (desk.robot.contact is not None) == on)
 
     at_desk(starfish, act)
