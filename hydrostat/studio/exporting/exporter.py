@@ -10,7 +10,7 @@ from typing import Any
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import KitOptions
 from hydrostat.ik import InverseOptions, ReachedPose, solve_ik
-from hydrostat.robot import Robot
+from hydrostat.robot import Face, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.exporting.download import Download, archive, file_name
@@ -86,6 +86,12 @@ class Exporter(Stage):
         if options != self.options:
             self.options = self._document.judge.options = options
             self._document.bell.ring(Topic.JOB, Topic.THINGS)
+
+    def lay_cables(self, face: Face) -> None:
+        """Have the cables of a flat robot run there, one step to undo (InputError: a robot in space)."""
+        robot = self._document.robot
+        if face is not robot.face:
+            self._document.change(f"cables {face.words}", robot=replace(robot, face=face))
 
     def show(self, pose: str) -> None:
         """Show a pose as the winches reach it, by its name; "": the robot at rest."""

@@ -13,6 +13,7 @@ from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.exporting.exporter import Export
 from hydrostat.studio.exporting.kit_work import KitMade
 from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.panels.cable_faces import face_choice
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
 from hydrostat.units import counted
@@ -39,6 +40,7 @@ def _kit_card(page: WindowPage) -> None:
             design = ui.button("Go to Design", icon="auto_awesome", on_click=lambda: page.go(StageName.DESIGN))
             design.props("outline no-caps").classes("w-full").props('data-testid="export-design"')
         with ui.column().classes("w-full gap-2") as work:
+            face_choice(page)
             kit_choices(page)
             finding_list(page, lambda: page.session.document.robot)
             _maker(page, Export.KIT, "Make the kit", "inventory_2", exporter.make_kit, lambda: exporter.kit)

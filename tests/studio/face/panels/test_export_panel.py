@@ -4,7 +4,7 @@ import pytest
 from desk import Desk, at_desk
 
 from hydrostat.fabrication import Method, MouldKind, Paper
-from hydrostat.robot import Robot
+from hydrostat.robot import Face, Robot
 from hydrostat.studio.exporting.exporter import Export
 from hydrostat.studio.stage import StageName
 
@@ -24,6 +24,24 @@ def test_choices_become_the_options_of_the_kit(starfish: Robot) -> None:
         assert desk.told
         assert exporter.options.paper is Paper.A4
         assert exporter.options.mould.kind is MouldKind.PRINTED
+
+    at_desk(starfish, act)
+
+
+def test_where_cables_run_is_said_and_chosen(starfish: Robot) -> None:
+    """Oracle: the robot of the document, and its state before."""
+
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.EXPORT)
+        document = desk.session.document
+        assert desk.one("cable-face").value == ""
+        await desk.choose("cable-face", Face.PAIRS.value)
+        assert document.robot.face is Face.PAIRS
+        assert desk.one("cable-face").value == "pairs"
+        document.undo()
+        desk.beat()
+        assert document.robot.face is None
+        assert desk.one("cable-face").value == ""
 
     at_desk(starfish, act)
 
