@@ -94,12 +94,13 @@ def _radii(
 
 def _layers(spool: Spool, winch: Winch, wound: Wound) -> tuple[str, ...]:
     """A sentence for each cable that lies in more than one layer, or for all of one winch that do so alike."""
-    alike: dict[Groove, list[str]] = {}
+    alike: dict[Groove, list[int]] = {}
     for cables, groove in zip(wound, spool.grooves, strict=True):
         if groove.layers > 1:
-            alike.setdefault(groove, []).extend(f"C{index + 1}" for index in cables)
+            alike.setdefault(groove, []).extend(cables)
     found = []
-    for groove, names in alike.items():
+    for groove, indices in alike.items():
+        names = [f"C{index + 1}" for index in sorted(indices)]
         outer = groove.radius + (groove.layers - 1) * spool.cable
         who = f"cable {names[0]}" if len(names) == 1 else f"cables {', '.join(names)}"
         lies, radius = ("lies", "its radius") if len(names) == 1 else ("lie", "their radius")

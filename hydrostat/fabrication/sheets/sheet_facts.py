@@ -1,6 +1,7 @@
 """`sheet_facts`: the words and numbers of a sheet, as plain data for its template."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import groupby
 
 from hydrostat.fabrication.kit_options import Method, MouldKind
 from hydrostat.fabrication.lists.table import Align, Table
@@ -117,13 +118,23 @@ def _winches(given: SheetInput) -> list[Facts]:
             "files": ", ".join(winch_files(given, winch.name)),
             "name": shortened(winch.name, _SHORT),
             "cables": ", ".join(
-                f"C{number}" for number, cable in enumerate(robot.cables, start=1) if cable.winch == winch.name
+                _runs([i for i, cable in enumerate(robot.cables, start=1) if cable.winch == winch.name])
             ),
             "spool": f"{2e3 * robot.largest_spool(winch):.3g}",
             "travel": f"{1e3 * winch.travel:.0f}",
         }
         for index, winch in enumerate(robot.winches)
     ]
+
+
+def _runs(numbers: Iterable[int]) -> Iterator[str]:
+    """Names of cables in their order, more than three in a row as one: C2 to C5."""
+    for _, group in groupby(enumerate(numbers), key=lambda pair: pair[1] - pair[0]):
+        row = [number for _, number in group]
+        if len(row) > 3:
+            yield f"C{row[0]} to C{row[-1]}"
+        else:
+            yield from (f"C{number}" for number in row)
 
 
 def _step(step: AssemblyStep) -> Facts:
