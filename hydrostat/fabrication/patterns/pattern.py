@@ -172,7 +172,7 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
         (panel,) = sewn_sides(draft.robot)
         warnings.append(
             f"the cables are sewn on the {panel} alone, so they also curl the body towards it (`hydrostat check` tells "
-            'how far): with face = "pairs" before [body] in robot.toml each is drawn and sewn on both panels'
+            'how far): with face = "pairs" before [body] in its file each is drawn and sewn on both panels'
         )
     warnings += _over_zipper(draft)
     warnings += [
