@@ -47,8 +47,6 @@ class SparsityPattern:
     def settle(self) -> None:
         """Find what factorisations need of a pattern of terms that come and go; then it keeps no other pattern."""
         if self._base is not None and self._passing:
-            if len(self.entries) == len(self._base.entries):
-                self.__dict__["analysis"] = self._base.analysis
             _ = self.analysis, self._places
             self._base = None
 
@@ -66,6 +64,8 @@ class SparsityPattern:
     def analysis(self) -> Analysis:
         """What the factorisations of all matrices of this pattern have in common."""
         like = None if self._base is None else self._base.analysis
+        if like is not None and self._base is not None and len(self.entries) == len(self._base.entries):
+            return like
         uses = _USES if self._passing else FACTORISATIONS
         return Analysis(self.indptr, self.indices, dim=self.shape[1], points=self.rest, like=like, uses=uses)
 
