@@ -7,6 +7,8 @@ A network is found for each body by each method, and its commands by inverse kin
 robots are drawn (`hydrostat.design.Uncertainty`: holes, friction, stiffness, knots, spools), with draws that no design
 saw, and solved from rest along the straight loading path with the friction of each. `exact` are routes for a robot
 that is built just as its model, as designs were before: cables may cross, lie side by side and turn by 75 degrees.
+Further methods, not among those that are usually printed: `reach` are routes with `RouteOptions.reach` of 1, `family`
+routes that are designed for the half-way poses too.
 
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
 `mu 0.3`, 90 % with friction 0.3 in all cables; `held out`, poses that hidden networks reach, solved anew in the model.
@@ -22,7 +24,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design import DesignMethod, DesignRequest, Uncertainty, built_errors, find_network
+from hydrostat.design import DesignMethod, DesignRequest, RouteOptions, Uncertainty, built_errors, find_network
 from hydrostat.design.polyline import nearest_shares, turns
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import Limits, solve_ik
@@ -54,15 +56,25 @@ def network(method: str, robot: Robot, body: Body, poses: Sequence[Pose]) -> Rob
     if method == "exact":
         constraints = replace(constraints, cable_gap=0.0, turn=75.0, built_in=False)
         uncertainty = Uncertainty.none()
+    if method == "family":
+        poses = [*poses, *(half_way(robot, pose) for pose in poses)]
     request = DesignRequest(
         poses=tuple(poses), winches=body.winches, cables=body.cables, constraints=constraints, uncertainty=uncertainty,
         method=DesignMethod.TREES if method == "trees" else DesignMethod.ROUTES,
+        options=RouteOptions(reach=1.0) if method == "reach" else None,
     )  # fmt: skip
     try:
         return find_network(robot, request).robot
     except HydrostatError as error:
         print(f"  {method}: {error}")
         return None
+
+
+def half_way(robot: Robot, pose: Pose) -> Pose:
+    """The pose with each target half as far from where its marker rests."""
+    rest = {marker.name: np.array(marker.at) for marker in robot.markers}
+    targets = {name: tuple((0.5 * (rest[name] + np.array(to))).tolist()) for name, to in pose.targets.items()}
+    return Pose(name=f"{pose.name}, half way", targets=targets)
 
 
 def row(name: str, method: str, draws: int, held_out: Sequence[Pose]) -> str:

@@ -41,10 +41,33 @@ def check(
         _print_filled(found)
     elif words:
         _print_out_of_plane(found)
+    if found.markers and found.cables:
+        _print_reach(found)
     risks = find_risks(found)
     for risk in risks:
         print(f"risky: {risk}")
     print("Nothing is wrong." if not risks else f"Nothing is wrong, {len(risks)} risky.")
+
+
+def _print_reach(robot: "Robot") -> None:
+    """What each marker can be brought to; poses are few for large bodies, so that it is soon told."""
+    from hydrostat.design import Constraints
+    from hydrostat.errors import NotConvergedError
+    from hydrostat.ik import find_reach
+    from hydrostat.simulation import Simulation
+
+    tension, count = Constraints().tension_limit, int(min(max(_SOLVED / len(robot.body.mesh.nodes), _LEAST), _MOST))
+    try:
+        reaches = find_reach(Simulation(robot), tension=tension, count=count)
+    except (InputError, NotConvergedError) as error:
+        print(f"reach: not found, {error}")
+        return
+    print(f"reach of markers with at most {tension:g} N in a cable, by {count} poses:")
+    for reach in reaches:
+        print(f"  {reach.marker}: {reach}")
+
+
+_SOLVED, _LEAST, _MOST = 30_000, 9, 64  # nodes of all poses that are tried for the reach; fewest and most poses
 
 
 def _print_out_of_plane(robot: "Robot") -> None:

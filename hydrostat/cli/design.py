@@ -77,6 +77,13 @@ Simplicity = Annotated[
         "that is quickly sewn."
     ),
 ]
+Reach = Annotated[
+    float | None,
+    typer.Option(
+        help="What reach beyond the poses is worth: 0 if left out; at 1 a network whose markers reach twice as far may "
+        "miss twice as much."
+    ),
+]
 AsModelled = Annotated[
     bool,
     typer.Option(
@@ -127,6 +134,7 @@ def design(
     improve: Improve = False,
     tolerance: Tolerance = None,
     simplicity: Simplicity = None,
+    reach: Reach = None,
     as_modelled: AsModelled = False,
     filled: Filled = False,
     fibres: Fibres = None,
@@ -151,6 +159,7 @@ def design(
         improve=improve,
         tolerance=tolerance,
         simplicity=simplicity,
+        reach=reach,
         as_modelled=as_modelled,
         filled=filled,
         fibres=fibres,

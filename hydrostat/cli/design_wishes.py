@@ -25,6 +25,7 @@ class TypedRequest:
     improve: bool = False
     tolerance: str | None = None
     simplicity: float | None = None
+    reach: float | None = None
     as_modelled: bool = False
     filled: bool = False
     fibres: str | None = None
@@ -113,14 +114,16 @@ def _options(typed: TypedRequest, *, trees: bool, open_winches: bool) -> "RouteO
     for name, given in (("fibres", typed.fibres), ("knob", typed.knobs)):
         if given and not trees:
             raise InputError(f"--{name} is for --method trees; routes are priced by the pose error")
-    if typed.simplicity is not None and trees:
-        raise InputError("--simplicity is for routes; method trees leaves out cables by a rule of its own")
+    for name, given in (("simplicity", typed.simplicity), ("reach", typed.reach)):
+        if given is not None and trees:
+            raise InputError(f"--{name} is for routes; method trees chooses networks by a rule of its own")
     if trees:
         options = TreeOptions.single(**dict(map(_knob, typed.knobs))) if typed.knobs else TreeOptions()
         return replace(options, fibres=fibres or options.fibres)
     tolerance = None if typed.tolerance is None else positive("--tolerance", typed.tolerance, LENGTH)
     simplicity = RouteOptions.simplicity if typed.simplicity is None else typed.simplicity
-    return RouteOptions(tolerance=tolerance, simplicity=simplicity)
+    reach = RouteOptions.reach if typed.reach is None else typed.reach
+    return RouteOptions(tolerance=tolerance, simplicity=simplicity, reach=reach)
 
 
 def _knob(text: str) -> tuple[str, Any]:

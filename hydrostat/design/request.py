@@ -45,6 +45,8 @@ class RouteOptions:
         polish: steps of refinement of a whole network.
         simplicity: how much a simple network is worth: at 1 a cable must lower the error as built by 2 %, a winch by
             4 %, a hole by 0.3 %; 0 keeps all that help at all.
+        reach: how much it is worth that markers can be brought elsewhere too (F1, E28), in every direction within
+            travel and tension: a network that reaches twice as far may miss the poses by 2^reach times as much.
     """
 
     enough: float = 1e-4
@@ -58,6 +60,7 @@ class RouteOptions:
     steps: int = 5
     polish: int = 60
     simplicity: float = 1.0
+    reach: float = 0.0
 
     def __post_init__(self) -> None:
         for name, allowed in ROUTE_RANGES.items():
@@ -77,6 +80,7 @@ ROUTE_RANGES = {
     "steps": Range(whole=True),
     "polish": Range(whole=True),
     "simplicity": Range(most=20.0),
+    "reach": Range(most=5.0),
 }
 """What each number of `RouteOptions` may be."""
 

@@ -8,6 +8,7 @@ from hydrostat.ik.objectives.marker_goal import MarkerGoal
 from hydrostat.ik.objectives.objective import Moves, Objective, Posture, Term, moves_at, posture_at
 from hydrostat.ik.objectives.point_goal import PointGoal
 from hydrostat.ik.objectives.shape_goal import ShapeGoal, drawn_pose
+from hydrostat.ik.reach import FoundReach, find_reach
 from hydrostat.ik.reached_pose import InverseReason, ReachedPose
 from hydrostat.ik.search.problem import InverseOptions
 from hydrostat.ik.solve_ik import Targets, solve_ik
@@ -23,6 +24,7 @@ __all__ = [
     "ClosenessKind",
     "Effort",
     "EffortKind",
+    "FoundReach",
     "InverseOptions",
     "InverseReason",
     "Key",
@@ -44,6 +46,7 @@ __all__ = [
     "Trajectory",
     "TrajectoryOptions",
     "drawn_pose",
+    "find_reach",
     "moves_at",
     "posture_at",
     "solve_ik",

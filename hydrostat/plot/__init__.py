@@ -10,6 +10,7 @@ from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
 from hydrostat.plot.picture_file import inline_svg, save_png
+from hydrostat.plot.reach_figure import draw_reach
 from hydrostat.plot.report import report_text, write_report
 from hydrostat.plot.robot_figures import draw_network, draw_portrait, draw_pose, draw_reached, draw_rest, draw_target
 from hydrostat.plot.scene import save_glb
@@ -28,6 +29,7 @@ __all__ = [
     "draw_network",
     "draw_portrait",
     "draw_pose",
+    "draw_reach",
     "draw_reached",
     "draw_rest",
     "draw_target",

@@ -8,9 +8,10 @@ from hydrostat.design.craft import craft_of, sewing_minutes
 from hydrostat.design.network import Alternative, Certificate, Network, RouteTrace, TreeTrace
 from hydrostat.design.score_card import rest_error
 from hydrostat.drawing.svg import Html, tag
-from hydrostat.ik import ReachedPose
+from hydrostat.ik import ReachedPose, find_reach
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
+from hydrostat.plot.reach_figure import draw_reach
 from hydrostat.plot.report_filled import filled_chapters
 from hydrostat.plot.report_tables import (
     NARROW,
@@ -30,6 +31,7 @@ from hydrostat.plot.report_tables import (
 from hydrostat.plot.robot_figures import draw_network, draw_reached, draw_rest, draw_stage, draw_target, stage_frame
 from hydrostat.plot.sheet import MILLIMETRES
 from hydrostat.robot import Pose, Robot, Source
+from hydrostat.simulation import Simulation
 from hydrostat.units import counted
 
 _HEADS = {
@@ -47,7 +49,7 @@ def chapters(network: Network) -> list[Html]:
     poses = [reached_part(network.robot, reached, index) for index, reached in enumerate(network.reached)]
     told = [_body(network.robot), targets, *way, _network(network), Chapter(*REACHED, poses)]
     told += filled_chapters(network)
-    told += alternative_chapters(network)
+    told += [*reach_chapters(network), *alternative_chapters(network)]
     return [section(number, chapter) for number, chapter in enumerate(told, start=1)]
 
 
@@ -118,6 +120,23 @@ def reached_part(robot: Robot, reached: ReachedPose, index: int, *notes: Html) -
     return tag("div", shown, tag("div", *numbers, *notes), class_="pose")
 
 
+def reach_chapters(network: Network) -> list[Chapter]:
+    """What each marker can be brought to beside the poses that were asked for; nothing where no pose is found."""
+    robot = network.robot
+    limit = network.constraints.tension_limit
+    reaches = find_reach(Simulation(robot), tension=limit, count=MOST_TRIED)
+    if not any(len(reach.places) for reach in reaches):
+        return []
+    words = (
+        "Poses that nobody asked for count too. These are all places that the winches can bring each marker to, within "
+        f"their travel and {limit:g} N in a cable: poses solved at contractions all over their range, and what exact "
+        "slopes tell about their surroundings."
+    )
+    shown = picture(draw_reach(robot, reaches, title="", width=NARROW), "reach", "Reach", " of each marker")
+    told = tag("ul", *(tag("li", tag("b", reach.marker), f": {reach}") for reach in reaches))
+    return [Chapter("What else it reaches", words, [tag("div", shown, tag("div", told), class_="pose")])]
+
+
 def muscle_chapters(network: Network, trace: TreeTrace) -> list[Chapter]:
     """What muscles would do, and the routes that grew from them; nothing where there were no muscles."""
     return [_activations(network, trace), _routes(network, trace)] if trace.activations else []
@@ -150,6 +169,7 @@ def _routes(network: Network, trace: TreeTrace) -> Chapter:
     return Chapter("From muscles to routes", words, [grid(*pictures, kind="small")])
 
 
+MOST_TRIED = 36  # poses that are tried for the reach of markers
 MOST_STAGES = 8  # so many stages have a picture
 MOST_ALTERNATIVES = 12  # so many alternatives have a picture
 CHART = 7.2  # width of a chart [inch]

@@ -14,6 +14,7 @@ from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import Uncertainty
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import InverseOptions, Limits, ReachedPose, solve_ik
+from hydrostat.ik.image_length import image_length, usable_spans
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import BodyPhysics, RigSlopes, Simulation, SolvedPose, rig_slopes
 
@@ -31,6 +32,7 @@ class Trial:
     spread: float  # root of the mean variance of the markers as built, over all poses [m]
     pull: float  # the largest tension, as a share of what a cable bears
     from_rest: bool = False  # whether its poses were found from rest, to the end
+    near: float = 1.0  # factor of the cost, at least 1: the less its markers reach elsewhere, the more
 
     @property
     def built(self) -> float:
@@ -39,8 +41,8 @@ class Trial:
 
     @property
     def cost(self) -> float:
-        """The error as built, more where cables bear too much [m]."""
-        return self.built * max(self.pull, 1.0)
+        """The error as built, more where cables bear too much, and where little else is in reach [m]."""
+        return self.built * max(self.pull, 1.0) * self.near
 
 
 @dataclass(eq=False)
@@ -52,6 +54,7 @@ class Bench:
     constraints: Constraints  # limits on tensions and contractions
     uncertainty: Uncertainty = field(default_factory=Uncertainty.none)  # what differs in a robot as it is built
     body: BodyPhysics | None = None  # physics of the body, which all layouts share; each has its own if left out
+    reach: float = 0.0  # what reach beyond the poses is worth: see `RouteOptions`
     solves: int = field(default=0)  # layouts tried
 
     @cached_property
@@ -194,7 +197,21 @@ class Bench:
         variances = [((w[:, None] * one) ** 2).sum() for w, one in zip(self.weights, columns, strict=True)]
         spread = np.sqrt(sum(variances, 0.0))
         error = self._error(simulation, poses)
-        return Trial(layout, simulation, tuple(poses), slopes, columns, error, float(spread), pull)
+        near = self.nearness(simulation.robot, slopes)
+        return Trial(layout, simulation, tuple(poses), slopes, columns, error, float(spread), pull, near=near)
+
+    def nearness(self, robot: Robot, slopes: Sequence[RigSlopes]) -> float:
+        """Factor of the cost of a network by its reach at some poses: (size / reach)^weight, at least 1."""
+        if not self.reach:
+            return 1.0
+        mesh, limit = robot.body.mesh, self.constraints.tension_limit
+        ranges = np.array([winch.travel + winch.release for winch in robot.winches])
+        lengths = []
+        for one in slopes:
+            moves, pulls = np.split(one.contractions, [len(one.contractions) - len(robot.cables)])
+            spans = usable_spans(pulls, ranges, limit)
+            lengths.append(image_length(moves, spans, dim=mesh.dim, floor=_NO_REACH * mesh.size))
+        return max(mesh.size / float(np.exp(np.mean(np.log(lengths)))), 1.0) ** self.reach
 
     def _error(self, simulation: Simulation, poses: Sequence[SolvedPose]) -> float:
         """Root of the mean squared marker error [m], of the first poses as if the others were reached."""
@@ -231,4 +248,5 @@ _REPLAYS = 2  # so often is a pose sought that is also what its contractions lea
 _SAME = 1e-3  # markers nearer than this share of the body's size are at the same place
 _STAYS = 0.1  # what a metre of a marker that a pose does not name counts beside one of a marker that it names
 _RESTARTS = 1  # from where the first search ended, as rest leads to it at once
+_NO_REACH = 0.01  # a marker that moves less than this share of the body's size is not brought anywhere
 _SHORT = 0.05  # a pose that misses more than hoped by this share of the whole error is sought again

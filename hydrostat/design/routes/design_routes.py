@@ -32,7 +32,7 @@ from hydrostat.fabrication.demand import demand_of
 from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.ik import InverseOptions, Limits
 from hydrostat.robot import Mount, Robot
-from hydrostat.simulation import BodyPhysics, Simulation
+from hydrostat.simulation import BodyPhysics, Simulation, rig_slopes
 
 Hints = Callable[[BodyPhysics], Iterable[Robot]]
 """Finds networks to begin with, when it is their turn, by the physics of the body."""
@@ -120,7 +120,9 @@ class RouteSearch:
         self.constraints, self.options = request.constraints, request.route_options
         if self.constraints.built_in and not request.improve and self.constraints.mount is not Mount.WORLD:
             self.constraints = built_in(robot, self.constraints, winches=self.winches, cables=self.cables)
-        self.bench = Bench(robot, request.poses, self.constraints, request.uncertainty or Uncertainty.none(), body)
+        self.bench = Bench(
+            robot, request.poses, self.constraints, request.uncertainty or Uncertainty.none(), body, self.options.reach
+        )
         self.stages: list[DesignStage] = []
         self.found: list[Trial] = []
         self.best: Trial | None = None
@@ -310,7 +312,7 @@ class RouteSearch:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
             )
-        judged.sort(key=lambda network: network.built)
+        judged.sort(key=self._cost)
         first = next((place for place, network in enumerate(judged) if _fits(network)), 0)
         return judged[first], [*judged[:first], *judged[first + 1 :]]
 
@@ -345,6 +347,16 @@ class RouteSearch:
             return None
         built = expected_error(simulation, reached, self.bench.uncertainty)
         return Alternative(robot=robot, reached=tuple(reached), built=built)
+
+    def _cost(self, network: Alternative) -> float:
+        """The error as built, more where little else is in reach [m]."""
+        if not self.options.reach:
+            return network.built
+        simulation = Simulation(network.robot, body=self.bench.body)
+        slopes = [
+            rig_slopes(simulation, one.pose, own) for one, own in zip(network.reached, self.bench.markers, strict=True)
+        ]
+        return network.built * self.bench.nearness(network.robot, slopes)
 
     def _numbered(self, layout: Layout) -> Layout:
         """The layout with its new winches numbered in their order; those of the robot keep their names."""

@@ -1,0 +1,169 @@
+"""`find_reach`: all that each marker of a robot can be brought to by its winches, as a figure and as a cloud."""
+
+from dataclasses import dataclass
+from itertools import product
+from math import ceil, log2
+
+import numpy as np
+import shapely
+from jaxtyping import Float
+from scipy.spatial import ConvexHull, QhullError
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FoundReach:
+    """What one marker can be brought to.
+
+    Attributes:
+        marker: its name.
+        places: where it is in the poses that were solved [m].
+        cells: corners of a convex part of what it reaches, around each of these [m], (poses, corners, dim).
+        directions: its own directions, the widest first, a unit vector each.
+        extents: how far it gets along each [m].
+        size: area [m^2] of a flat body, volume [m^3] in space, of all parts together; 0 where it only goes to and fro
+            along a line.
+    """
+
+    marker: str
+    places: Points
+    cells: Float[np.ndarray, "poses corners dim"]
+    directions: Float[np.ndarray, "dim dim"]
+    extents: Vector
+    size: float
+
+    def __str__(self) -> str:
+        """Area or volume, and the extents with the direction of the widest."""
+        dim, way = len(self.extents), self.directions[0]
+        unit = "cm^2" if dim == 2 else "cm^3"
+        along = ", ".join(f"{part:+.2f}" for part in way)
+        others = " and ".join(f"{1e3 * extent:.0f}" for extent in self.extents[1:])
+        size = f"{100.0**dim * self.size:.3g} {unit}"
+        return f"{size}, {1e3 * self.extents[0]:.0f} mm along ({along}) and {others} mm across"
+
+
+def find_reach(
+    simulation: Simulation, *, tension: float | None = None, count: int = 64, threads: int = 2
+) -> tuple[FoundReach, ...]:
+    """What each marker can be brought to within travel and release of the winches.
+
+    Poses are solved at contractions spread evenly over what all winches can do, each from rest, so straight along the
+    loading path where cables rub. Each stands for a share of the contractions; exact slopes tell, to first order, what
+    part that is of the places that a marker reaches, and the union of these parts is measured. With more than three
+    winches the shares do not cover all contractions, and what is told is rather too little. Poses that are not stable
+    or ask a cable for more than it may bear are left out.
+
+    Args:
+        simulation: the robot's physics.
+        tension: the most that a cable may bear [N]; no limit if left out.
+        count: poses that are solved, about.
+        threads: that solve at the same time.
+
+    Raises:
+        InputError: a robot without markers or winches, no number of poses, or other physics that remember the way.
+    """
+    robot = simulation.robot
+    if not robot.winches or not robot.markers:
+        raise InputError("reach is that of markers by winches; the robot needs at least one of each")
+    if count < 1:
+        raise InputError(f"count must be at least 1, not {count}")
+    low, high = _limits(robot)
+    shares, half = _tiles(len(low), count)
+    found = simulation.solve_many(low + shares * (high - low), threads=threads)
+    slopes = np.zeros((0, 0, 0, 0)) if found.jacobians is None else found.jacobians
+    held = found.converged & found.stable & np.isfinite(slopes).all(axis=(1, 2, 3))
+    if tension is not None:
+        held[held] &= found.tensions[held].max(axis=1, initial=0.0) <= tension
+    taken, slopes = found.contractions[held], slopes[held]
+    below = np.maximum(taken - half * (high - low), low) - taken
+    above = np.minimum(taken + half * (high - low), high) - taken
+    return tuple(
+        _reach(marker.name, found.markers[held, own], slopes[:, own], below, above)
+        for own, marker in enumerate(robot.markers)
+    )
+
+
+def _limits(robot: Robot) -> tuple[Vector, Vector]:
+    """The least and the most that each winch takes in [m]."""
+    return np.array([-winch.release for winch in robot.winches]), np.array([winch.travel for winch in robot.winches])
+
+
+def _tiles(winches: int, count: int) -> tuple[Float[np.ndarray, "poses winches"], float]:
+    """Places of poses in the ranges of all winches, and half the width of what each stands for, as shares of these."""
+    if winches > _TILED:
+        from scipy.stats import qmc
+
+        drawn = qmc.Sobol(winches, rng=SEED).random_base2(max(ceil(log2(count)), 1))[:count]
+        return drawn, _NEAR
+    steps = max(round(count ** (1.0 / winches)), 1)
+    middles = (np.arange(steps) + 0.5) / steps
+    return np.array(list(product(middles, repeat=winches))), 0.5 / steps
+
+
+def _reach(
+    name: str,
+    places: Points,
+    slopes: Float[np.ndarray, "poses dim winches"],
+    below: Float[np.ndarray, "poses winches"],
+    above: Float[np.ndarray, "poses winches"],
+) -> FoundReach:
+    dim = places.shape[1]
+    by = np.einsum("kd,pdw->pkw", _ways(dim), slopes)
+    changes = np.where(by > 0, above[:, None], below[:, None])  # what brings it farthest in each direction
+    cells = places[:, None] + np.einsum("pdw,pkw->pkd", slopes, changes)
+    corners = cells.reshape(-1, dim)
+    if not len(corners):
+        return FoundReach(
+            marker=name, places=places, cells=cells, directions=np.eye(dim), extents=np.zeros(dim), size=0.0
+        )
+    _, _, directions = np.linalg.svd(corners - corners.mean(axis=0), full_matrices=False)
+    extents = np.ptp(corners @ directions.T, axis=0)
+    order = np.argsort(-extents)
+    size = _covered_area(cells) if dim == 2 else _covered_volume(cells)
+    return FoundReach(
+        marker=name, places=places, cells=cells, directions=directions[order], extents=extents[order], size=size
+    )
+
+
+def _ways(dim: int) -> Float[np.ndarray, "ways dim"]:
+    """Directions all around."""
+    if dim == 2:
+        angles = 2 * np.pi * np.arange(_AROUND) / _AROUND
+        return np.column_stack([np.cos(angles), np.sin(angles)])
+    heights = (np.arange(2 * _AROUND) + 0.5) / _AROUND - 1.0
+    angles, radii = np.pi * (1 + 5**0.5) * np.arange(2 * _AROUND), np.sqrt(1 - heights**2)
+    return np.column_stack([radii * np.cos(angles), radii * np.sin(angles), heights])
+
+
+def _covered_area(cells: Float[np.ndarray, "poses corners dim"]) -> float:
+    return float(shapely.union_all([shapely.convex_hull(shapely.MultiPoint(cell)) for cell in cells]).area)
+
+
+def _covered_volume(cells: Float[np.ndarray, "poses corners dim"]) -> float:
+    """Volume of the union of the hulls [m^3]: the share of random points that are in one of them."""
+    corners = cells.reshape(-1, 3)
+    low, span = corners.min(axis=0), np.ptp(corners, axis=0)
+    points = low + np.random.default_rng(SEED).uniform(size=(_POINTS, 3)) * span
+    inside = np.zeros(len(points), dtype=bool)
+    for cell in cells:
+        try:
+            hull = ConvexHull(cell)
+        except QhullError:  # flat: it has no volume
+            continue
+        left = np.flatnonzero(
+            ~inside & (points >= cell.min(axis=0)).all(axis=1) & (points <= cell.max(axis=0)).all(axis=1)
+        )
+        sides = points[left] @ hull.equations[:, :3].T + hull.equations[:, 3]
+        inside[left[(sides <= 0.0).all(axis=1)]] = True
+    return float(inside.mean() * span.prod())
+
+
+SEED = 8
+_TILED = 3  # the ranges of so many winches are tiled evenly; of more, places in them are drawn
+_NEAR = 0.1  # then each stands for what is so near on either side, as a share of the range: rather too little
+_AROUND = 32  # directions in the plane, and half as many as in space
+_POINTS = 20_000  # by which a volume is measured: to some per cent
