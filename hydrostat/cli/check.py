@@ -7,6 +7,7 @@ import typer
 from hydrostat.cli.folders import RobotFolder
 from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
+from hydrostat.units import counted
 
 if TYPE_CHECKING:
     from hydrostat.robot import Body, Robot
@@ -23,8 +24,7 @@ def check(
 
     Example: hydrostat check examples/starfish --filled
     """
-    from hydrostat.robot import face_words, find_risks
-    from hydrostat.units import counted
+    from hydrostat.robot import face_words
 
     found = read_robot(robot)
     mesh = found.body.mesh
@@ -43,10 +43,23 @@ def check(
         _print_out_of_plane(found)
     if found.markers and found.cables:
         _print_reach(found)
-    risks = find_risks(found)
-    for risk in risks:
-        print(f"risky: {risk}")
-    print("Nothing is wrong." if not risks else f"Nothing is wrong, {len(risks)} risky.")
+    _print_judgement(found)
+
+
+def _print_judgement(robot: "Robot") -> None:
+    """What is to be said before a robot is built, as the studio says it: whatever its poses ask of motors."""
+    from hydrostat.design import Constraints, Weight, judgement_of
+
+    found = judgement_of(robot, constraints=Constraints())
+    for finding in found:
+        print(f"{FINDINGS[finding.weight]}: {finding.text}")
+    refused, risky = (sum(one.weight is weight for one in found) for weight in (Weight.REFUSED, Weight.MIND))
+    wrong = f"{counted(refused, 'thing')} cannot be built" if refused else "Nothing is wrong"
+    print(f"{wrong}, {risky} risky." if risky else f"{wrong}.")
+
+
+FINDINGS = {"refused": "cannot be built", "limit": "not as a design would", "mind": "risky"}
+"""Beginning of the line of a finding, by its weight."""
 
 
 def _print_reach(robot: "Robot") -> None:

@@ -83,6 +83,17 @@ def print_poses(network: "Network", seconds: float) -> None:
     if words := face_words(robot):
         print(f"cables: {words}")
     _print_filled(network)
+    _print_findings(network)
+
+
+def _print_findings(network: "Network") -> None:
+    """What a kit would be refused for, and what is risky, by the loads that the design found."""
+    from hydrostat.cli.check import FINDINGS
+    from hydrostat.design import judgement_of
+    from hydrostat.fabrication.demand import demand_of
+
+    for finding in judgement_of(network.robot, demand=demand_of(network.robot, network.reached)):
+        print(f"{FINDINGS[finding.weight]}: {finding.text}")
 
 
 def _print_filled(network: "Network") -> None:

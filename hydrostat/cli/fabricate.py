@@ -21,6 +21,18 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
 
 
+Tension = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FORCE",
+        help="The most that its poses pull a cable with; if left out that of its design, else no limit.",
+    ),
+]
+Force = Annotated[
+    bool, typer.Option("--force", help="Write the kit even if it cannot be built well; the sheet says why.")
+]
+
+
 def fabricate(
     robot: RobotFolder,
     out: OutFolder,
@@ -37,13 +49,7 @@ def fabricate(
     bed: Annotated[
         str, typer.Option(metavar="LENGTHS", help="The most that your 3D printer takes, along x, y and z.")
     ] = "220 x 220 x 250 mm",
-    tension: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FORCE",
-            help="The most that its poses pull a cable with; if left out that of its design, else no limit.",
-        ),
-    ] = None,
+    tension: Tension = None,
     paper: Annotated[str, typer.Option(metavar="a4|letter", help="What the pages are printed on.")] = "a4",
     seam: Annotated[str, typer.Option(metavar="LENGTH", help="Of plush: cloth between seam and cut.")] = "8 mm",
     line: Annotated[str, typer.Option(metavar="LENGTH", help="Diameter of the cables, a braided line.")] = "0.4 mm",
@@ -53,9 +59,7 @@ def fabricate(
     step: Annotated[
         bool, typer.Option("--step", help='Also write printed parts as STEP; needs pip install "hydrostat[cad]".')
     ] = False,
-    force: Annotated[
-        bool, typer.Option("--force", help="Write the kit even if it cannot be built well; the sheet says why.")
-    ] = False,
+    force: Force = False,
 ) -> None:
     """Write all that is needed to build a robot.
 

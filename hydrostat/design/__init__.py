@@ -6,6 +6,8 @@ from hydrostat.design.craft import Craft, SewingTimes, craft_of
 from hydrostat.design.design_cables import design_cables, find_network
 from hydrostat.design.faced import faced
 from hydrostat.design.filled_reach import FilledReach
+from hydrostat.design.finding import Finding, Weight
+from hydrostat.design.judgement import judgement_of
 from hydrostat.design.muscles.activation import Activation, FibreKind, Fibres, activate, edge_fibres, element_fibres
 from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace, TreeTrace
 from hydrostat.design.request import AUTO, DesignMethod, DesignRequest, RouteOptions, TreeOptions
@@ -27,6 +29,7 @@ __all__ = [
     "FibreKind",
     "Fibres",
     "FilledReach",
+    "Finding",
     "Network",
     "RouteOptions",
     "RouteTrace",
@@ -34,6 +37,7 @@ __all__ = [
     "TreeOptions",
     "TreeTrace",
     "Uncertainty",
+    "Weight",
     "Zone",
     "activate",
     "built_errors",
@@ -44,6 +48,7 @@ __all__ = [
     "expected_error",
     "faced",
     "find_network",
+    "judgement_of",
     "rest_error",
     "score_card",
 ]

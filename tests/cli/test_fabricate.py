@@ -1,13 +1,16 @@
 """`hydrostat fabricate` as a user meets it."""
 
+import csv
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from plush import near_the_edge
 
-from hydrostat.robot import save_robot
+from hydrostat.cli.design_results import designed_tension
+from hydrostat.robot import robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -33,6 +36,7 @@ BAD = {
     ("--bed", "0x220x250mm"): "--bed 0 mm: must be above 0, such as 12 mm",
     ("--seam", "0 mm"): "--seam 0 mm: must be above 0, such as 12 mm",
     ("--clearance", "0.3"): '--clearance 0.3: "0.3" has no unit; write for example "12 mm"',
+    ("--tension", "-1 N"): "--tension -1 N: must be above 0, such as 20 N",
     ("--line", "3 mm"): "cable 3 mm, bore 1 mm and tube 2 mm must rise: the cable runs in the bore of the tube",
 }
 
@@ -76,6 +80,49 @@ def test_what_cannot_be_built_is_refused_with_every_reason(run: Run, tmp_path: P
     assert "2 reasons" in err.splitlines()[-1]
     assert "--force" in err.splitlines()[-1]
     assert not (tmp_path / "kit").exists()
+
+
+def test_check_refuses_with_the_same_sentences(run: Run, tmp_path: Path) -> None:
+    """Oracle: the two holes that `fabricate` refuses above."""
+    save_robot(near_the_edge(), tmp_path / "robot")
+    code, out, _ = run("check", tmp_path / "robot")
+    assert code == 0
+    reasons = [line for line in out.splitlines() if line.startswith("cannot be built: ")]
+    assert len(reasons) == 2
+    assert out.splitlines()[-1].startswith("2 things cannot be built")
+
+
+def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
+    """Oracles: the score.json of a design and of another robot, for the network and for an alternative."""
+    robot = near_the_edge()
+    card = {"robot": robot_hash(robot), "alternatives": [{"robot": "other"}], "tension_limit": 12.5}
+    out = tmp_path / "out"
+    (out / "alternatives").mkdir(parents=True)
+    (out / "score.json").write_text(json.dumps(card))
+    assert designed_tension(robot, out / "robot") == 12.5
+    assert designed_tension(robot.with_network(robot.winches, robot.cables[:1]), out / "robot") is None
+    assert designed_tension(robot, tmp_path / "alone" / "robot" / "deep") is None
+    card |= {"robot": "other", "alternatives": [{"robot": robot_hash(robot)}]}
+    (out / "score.json").write_text(json.dumps(card))
+    assert designed_tension(robot, out / "alternatives" / "01") == 12.5
+    (out / "score.json").write_text("{")
+    assert designed_tension(robot, out / "robot") is None
+
+
+@pytest.mark.slow
+def test_a_kit_keeps_to_a_tension(run: Run, tmp_path: Path, starfish: Path) -> None:
+    """Oracle: the largest tension of its list, which is more than 3 N without a limit."""
+    largest = {}
+    for limit in ("3 N", "200 N"):
+        code, _, _ = run("fabricate", starfish, "--tension", limit, "--force", "--out", tmp_path / limit[0])
+        assert code == 0
+        text = (tmp_path / limit[0] / "lists" / "line_strength.csv").read_text()
+        rows = [row for row in csv.reader(text.splitlines()) if row and re.fullmatch(r"C\d+", row[0])]
+        largest[limit] = max(float(row[2]) for row in rows)
+        assert json.loads((tmp_path / limit[0] / "manifest.json").read_text())["options"]["tension"] == float(
+            limit[:-2]
+        )
+    assert largest["3 N"] <= 3.01 < largest["200 N"]
 
 
 @pytest.mark.slow
