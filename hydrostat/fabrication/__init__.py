@@ -19,6 +19,7 @@ from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
 from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart, Shape
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
+from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.solids.printed import Printed
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "build_kit",
     "export_kit",
     "find_demand",
+    "find_refusals",
     "make_mould",
     "pattern_dxf",
     "pattern_svg",
