@@ -10,6 +10,8 @@ from test_design_routes import DOWN, SMALL, UP, Stopped, bare, broken
 from hydrostat.design import Constraints, Network, design_cables
 from hydrostat.design.request import RouteOptions
 from hydrostat.errors import HydrostatError
+from hydrostat.fabrication import find_refusals
+from hydrostat.fabrication.demand import demand_of
 
 TOLERANCE = 8e-3
 
@@ -54,7 +56,8 @@ def test_the_front_holds_every_size_once(unchecked: None) -> None:
 def test_a_tolerance_out_of_reach_gives_the_best(unchecked: None) -> None:
     network = design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=options(1e-9))
     assert network.complete
-    assert network.rms_error == pytest.approx(min(one.rms_error for one in network.alternatives))
+    fitting = [one for one in network.alternatives if not find_refusals(one.robot, demand_of(one.robot, one.reached))]
+    assert network.rms_error == pytest.approx(min(one.rms_error for one in fitting))
 
 
 def test_locked_winches_count(unchecked: None) -> None:

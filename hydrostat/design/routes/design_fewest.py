@@ -6,7 +6,7 @@ from dataclasses import replace
 from hydrostat.design.network import Alternative, Network, Size, size_of
 from hydrostat.design.progress import Better, Progress, Watch, unseen
 from hydrostat.design.request import COUNTS, DesignRequest
-from hydrostat.design.routes.design_routes import Hints, RouteSearch
+from hydrostat.design.routes.design_routes import Hints, RouteSearch, kit_fits
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics
@@ -23,8 +23,8 @@ def design_fewest(
     """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
 
     Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
-    that miss the tolerance the best one is returned. Locked winches count; `watch` is told each better network on the
-    way, whatever its number of winches.
+    that miss the tolerance the best one is returned, those whose kit would be refused last. Locked winches count;
+    `watch` is told each better network on the way, whatever its number of winches.
     """
     size = robot.body.mesh.size
     constraints, options, cables = request.constraints, request.route_options, request.cables
@@ -59,7 +59,7 @@ def design_fewest(
             break
     best = found[-1]
     if any(reached.rms_error > tolerance for reached in best.reached):
-        best = min(found, key=lambda network: network.built)
+        best = min(found, key=lambda network: (not kit_fits(network), network.built))
     return replace(
         best,
         alternatives=tuple(front[counts] for counts in sorted(front)),

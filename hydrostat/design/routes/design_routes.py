@@ -313,7 +313,7 @@ class RouteSearch:
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
             )
         judged.sort(key=self._cost)
-        first = next((place for place, network in enumerate(judged) if _fits(network)), 0)
+        first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
         return judged[first], [*judged[:first], *judged[first + 1 :]]
 
     @property
@@ -374,7 +374,7 @@ class RouteSearch:
         return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot, body=self.bench.body), poses))
 
 
-def _fits(network: Alternative) -> bool:
+def kit_fits(network: Alternative | Network) -> bool:
     """Whether the kit of a network would not be refused."""
     return not find_refusals(network.robot, demand_of(network.robot, network.reached))
 
