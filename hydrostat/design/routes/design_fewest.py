@@ -59,7 +59,7 @@ def design_fewest(
             break
     best = found[-1]
     if any(reached.rms_error > tolerance for reached in best.reached):
-        best = min(found, key=lambda network: (not kit_fits(network), network.built))
+        best = min(found, key=_worth)
     return replace(
         best,
         alternatives=tuple(front[counts] for counts in sorted(front)),
@@ -87,8 +87,13 @@ def _keep_best(front: dict[Size, Alternative], networks: Iterable[Alternative]) 
     """Put networks in place of those of their size that have a larger error."""
     for network in networks:
         size = size_of(network)
-        if size not in front or network.built < front[size].built:
+        if size not in front or _worth(network) < _worth(front[size]):
             front[size] = network
+
+
+def _worth(network: Alternative | Network) -> tuple[bool, float]:
+    """By which the best is the least: those whose kit would be refused come last, then the error once built."""
+    return not kit_fits(network), network.built
 
 
 def _all(network: Network) -> tuple[Alternative, ...]:
