@@ -195,20 +195,21 @@ void demand_nodes(const Int* numbers, Int count, Int nodes, const char* what) {
 
 // A tree of boxes of facets, with the features that belong to each.
 struct Tree {
-    Int boxes, width;
+    Int boxes, count, width;
     int dim;
     const Int *children, *facets, *points, *edges;
 
     Tree(const Counts<2>& children, const Counts<2>& facets, const Counts<2>& points, const Counts<2>& edges, Int nodes)
-        : boxes((Int)children.shape(0)), width((Int)edges.shape(1)), dim((int)facets.shape(1)),
+        : boxes((Int)children.shape(0)), count((Int)facets.shape(0)), width((Int)edges.shape(1)), dim((int)facets.shape(1)),
           children(children.data()), facets(facets.data()), points(points.data()), edges(edges.data()) {
-        Int count = (Int)facets.shape(0);
         demand((dim == 2 || dim == 3) && children.shape(1) == 2 && (Int)points.shape(0) == count &&
                    (int)points.shape(1) == dim && (Int)edges.shape(0) == count && width == (dim == 3 ? 6 : 0),
                "features of each facet");
         demand_nodes(this->points, count * dim, nodes, "a point is no node");
         demand_nodes(this->edges, count * width, nodes, "an edge has no nodes");
         for (Int i = 0; i < count * dim; i++) demand(this->facets[i] >= 0 && this->facets[i] < nodes, "no such node");
+        for (Int i = 0; i < count * width; i += 2)
+            demand((this->edges[i] < 0) == (this->edges[i + 1] < 0), "an edge with one end");
         for (Int box = 0; box < boxes; box++) {
             Int one = this->children[2 * box], other = this->children[2 * box + 1];
             demand(one < 0 ? other >= 0 && other < count : one > box && other > box && one < boxes && other < boxes,
@@ -225,7 +226,7 @@ struct Boxes {
     std::vector<Box> tree, nodes, edges;  // of an edge: at the place that it has in the list of its facet
 
     Boxes(const Tree& all, const double* low, const double* high, Int count, double wider)
-        : tree(all.boxes), nodes(count), edges((all.boxes + 1) / 2 * (all.width / 2)) {
+        : tree(all.boxes), nodes(count), edges(all.count * (all.width / 2)) {
         double widest = 0.0;
         for (Int i = 0; i < count * all.dim; i++)
             widest = std::max(widest, std::max(std::abs(low[i]), std::abs(high[i])));

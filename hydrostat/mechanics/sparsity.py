@@ -39,8 +39,9 @@ class SparsityPattern:
         return SparsityPattern([*self.stencils, *stencils], self.rest, base=self)
 
     def changed(self, stencils: Sequence[AnyStencils]) -> "SparsityPattern":
-        """Pattern of other stencils that keeps all pairs of this one; its analysis too, if no new pair comes."""
-        other = SparsityPattern(stencils, self.rest, base=self)
+        """Pattern of other stencils and all pairs of the last settled one; its analysis too, if no pair comes."""
+        base = self._base if self._passing and self._base is not None else self
+        other = SparsityPattern(stencils, self.rest, base=base)
         other._passing = True
         return other
 

@@ -14,6 +14,7 @@ from hydrostat.mechanics import (
     WeightEnergy,
     nearest_semidefinite,
 )
+from hydrostat.mechanics.sparsity import SparsityPattern
 
 
 def energies(dim: int, seed: int) -> tuple[Assembly, np.ndarray, np.ndarray]:
@@ -156,3 +157,15 @@ def test_nearest_semidefinite_only_lifts_negative_eigenvalues() -> None:
     assert found == pytest.approx(expected, abs=1e-13)
     definite = blocks[1:2] + np.eye(4)
     assert (nearest_semidefinite(definite) == definite).all()
+
+
+def test_patterns_of_terms_that_come_and_go_keep_one_other() -> None:
+    """However many are made before one is factorised: no chain of them."""
+    rest = np.random.default_rng(0).normal(size=(40, 2))
+    pattern = begun = SparsityPattern([np.array([[0, 1]])], rest)
+    for number in range(2000):
+        pattern = pattern.changed([np.array([[number % 40, (number + 1) % 40]])])
+    pattern.settle()
+    wanted = {0 * 40 + 1, 1 * 40 + 0, 39 * 40 + 0, 0 * 40 + 39, *range(0, 1600, 41)}
+    assert set(pattern.entries.tolist()) == wanted
+    assert pattern.changed([np.array([[3, 4]])]).analysis is not begun.analysis

@@ -269,3 +269,27 @@ def test_what_is_no_node_is_refused(wrong: int) -> None:
     core.add_blocks(whole, np.full((1, 2, 2), 34), strides, blocks, data)  # the last block: 34, 35, 38 and 39
     with pytest.raises(ValueError, match="a block lies outside the matrix"):
         core.add_blocks(whole, far, strides, blocks, data)
+
+
+def test_a_tree_that_does_not_fit_its_facets_is_refused() -> None:
+    """Two triangles, each a leaf; then two leaves of one, an edge with one end, children before parents."""
+    nodes = np.random.default_rng(0).normal(size=(6, 3))
+    children, facets = np.array([[1, 2], [-1, 0], [-1, 1]]), np.arange(6).reshape(2, 3)
+    edges = np.full((2, 6), -1)
+    pairs = np.empty((9, 4), int), np.empty(9, np.bool_)
+
+    def call(children: np.ndarray, facets: np.ndarray, edges: np.ndarray) -> None:
+        kernel.native.pairs_within(children, facets, facets, edges, nodes - 9, nodes + 9, *pairs)
+
+    call(children, facets, edges)
+    call(np.array([[1, 2], [-1, 0], [-1, 0]]), facets, edges)  # it finds nothing wrong, and nothing outside
+    broken = [
+        (children, facets, np.where(np.arange(6) == 1, 2, edges), "an edge with one end"),
+        (children, facets, np.full((2, 6), 6), "an edge has no nodes"),
+        (children, facets + 1, edges, "no such node|no node"),
+        (np.array([[1, 2], [-1, 0], [-1, 2]]), facets, edges, "children come after their parents"),
+        (np.array([[1, 0], [-1, 0], [-1, 1]]), facets, edges, "children come after their parents"),
+    ]
+    for *given, told in broken:
+        with pytest.raises(ValueError, match=told):
+            call(*given)
