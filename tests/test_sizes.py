@@ -195,3 +195,9 @@ def test_the_checks_can_fail() -> None:
     asking = "isinstance(a, Other)\nisinstance(a, Stiff | Other)\n"
     places = asks_for_energies({"hydrostat/a/b.py": asking, "hydrostat/mechanics/c.py": asking}, energies({"p": made}))
     assert places == ["hydrostat/a/b.py:2"]
+
+
+def test_files_of_tests_have_names_of_their_own() -> None:
+    """Two of one name cannot be collected together."""
+    names = Counter(file.name for file in (ROOT / "tests").rglob("test_*.py"))
+    assert [name for name, count in names.items() if count > 1] == []
