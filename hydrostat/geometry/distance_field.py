@@ -1,6 +1,7 @@
 """`DistanceField`: distance of points from a rigid shape, with its first two derivatives."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -24,82 +25,82 @@ class Distances(NamedTuple):
 
 
 DistanceField = Callable[[Points], Distances]
-"""Distances of points [m], (points, dim), from one shape."""
+"""Distances of points [m], (points, dim), from one shape; it can be sent to other processes."""
 
 
 def plane_field(at: Vector, normal: Vector) -> DistanceField:
     """Distance from all that lies behind a plane through a point [m]."""
-    unit = normal / np.linalg.norm(normal)
-
-    def field(points: Points) -> Distances:
-        curvatures = np.zeros((*points.shape, points.shape[1]))
-        return Distances((points - at) @ unit, np.broadcast_to(unit, points.shape).copy(), curvatures)
-
-    return field
+    return partial(_from_plane, at, normal / np.linalg.norm(normal))
 
 
 def sphere_field(at: Vector, radius: float) -> DistanceField:
     """Distance from a ball; a disc in the plane [m]."""
-    return lambda points: _around(points - at, np.zeros_like(points), radius)
+    return partial(_from_sphere, at, radius)
 
 
 def capsule_field(at: Vector, to: Vector, radius: float) -> DistanceField:
     """Distance from all within a radius of a straight way [m]."""
     length = float(np.linalg.norm(to - at))
-    axis = (to - at) / length
-
-    def field(points: Points) -> Distances:
-        along = (points - at) @ axis
-        nearest = np.clip(along, 0.0, length)
-        free = np.where((along > 0) & (along < length), 1.0, 0.0)[:, None] * axis
-        return _around(points - at - nearest[:, None] * axis, free, radius)
-
-    return field
+    return partial(_from_capsule, at, (to - at) / length, length, radius)
 
 
 def cylinder_field(at: Vector, to: Vector, radius: float) -> DistanceField:
     """Distance from a cylinder with flat ends, in space [m]."""
     length = float(np.linalg.norm(to - at))
-    axis, middle = (to - at) / length, 0.5 * (at + to)
-
-    def field(points: Points) -> Distances:
-        along = (points - middle) @ axis
-        outward = points - middle - along[:, None] * axis
-        far = np.maximum(np.linalg.norm(outward, axis=1), _TINY)
-        outward, end = outward / far[:, None], np.where(along < 0, -1.0, 1.0)[:, None] * axis
-        beside, beyond = far - radius, np.abs(along) - 0.5 * length
-        round_, rim = beside > beyond, (beside > 0) & (beyond > 0)
-        values = np.where(rim, np.hypot(beside, beyond), np.maximum(beside, beyond))
-        away = np.where(rim, values, 1.0)
-        side, flat = (np.where(rim, one / away, kept) for one, kept in ((beside, round_), (beyond, ~round_)))
-        normals = side[:, None] * outward + flat[:, None] * end
-        turning = np.cross(axis, outward)
-        curvatures = (side / far)[:, None, None] * _square(turning)
-        sharp = flat[:, None] * outward - side[:, None] * end
-        curvatures += np.where(rim, 1.0 / away, 0.0)[:, None, None] * _square(sharp)
-        return Distances(values, normals, curvatures)
-
-    return field
+    return partial(_from_cylinder, 0.5 * (at + to), (to - at) / length, length, radius)
 
 
 def box_field(at: Vector, to: Vector) -> DistanceField:
     """Distance from a box with two opposite corners [m]; a rectangle in the plane."""
-    middle, half = 0.5 * (at + to), 0.5 * np.abs(to - at)
+    return partial(_from_box, 0.5 * (at + to), 0.5 * np.abs(to - at))
 
-    def field(points: Points) -> Distances:
-        beyond = np.abs(points - middle) - half
-        signs = np.where(points < middle, -1.0, 1.0)
-        out = np.maximum(beyond, 0.0)
-        far = np.linalg.norm(out, axis=1)
-        inside = far == 0.0
-        values = np.where(inside, beyond.max(axis=1), far)
-        sides = np.eye(points.shape[1])[beyond.argmax(axis=1)]
-        normals = signs * np.where(inside[:, None], sides, out / np.maximum(far, _TINY)[:, None])
-        across = np.eye(points.shape[1]) * (out > 0)[:, None, :] - _square(normals)
-        curvatures = np.where(inside, 0.0, 1.0 / np.maximum(far, _TINY))[:, None, None] * across
-        return Distances(values, normals, curvatures)
 
-    return field
+def _from_plane(at: Vector, unit: Vector, points: Points) -> Distances:
+    curvatures = np.zeros((*points.shape, points.shape[1]))
+    return Distances((points - at) @ unit, np.broadcast_to(unit, points.shape).copy(), curvatures)
+
+
+def _from_sphere(at: Vector, radius: float, points: Points) -> Distances:
+    return _around(points - at, np.zeros_like(points), radius)
+
+
+def _from_capsule(at: Vector, axis: Vector, length: float, radius: float, points: Points) -> Distances:
+    along = (points - at) @ axis
+    nearest = np.clip(along, 0.0, length)
+    free = np.where((along > 0) & (along < length), 1.0, 0.0)[:, None] * axis
+    return _around(points - at - nearest[:, None] * axis, free, radius)
+
+
+def _from_cylinder(middle: Vector, axis: Vector, length: float, radius: float, points: Points) -> Distances:
+    along = (points - middle) @ axis
+    outward = points - middle - along[:, None] * axis
+    far = np.maximum(np.linalg.norm(outward, axis=1), _TINY)
+    outward, end = outward / far[:, None], np.where(along < 0, -1.0, 1.0)[:, None] * axis
+    beside, beyond = far - radius, np.abs(along) - 0.5 * length
+    round_, rim = beside > beyond, (beside > 0) & (beyond > 0)
+    values = np.where(rim, np.hypot(beside, beyond), np.maximum(beside, beyond))
+    away = np.where(rim, values, 1.0)
+    side, flat = (np.where(rim, one / away, kept) for one, kept in ((beside, round_), (beyond, ~round_)))
+    normals = side[:, None] * outward + flat[:, None] * end
+    turning = np.cross(axis, outward)
+    curvatures = (side / far)[:, None, None] * _square(turning)
+    sharp = flat[:, None] * outward - side[:, None] * end
+    curvatures += np.where(rim, 1.0 / away, 0.0)[:, None, None] * _square(sharp)
+    return Distances(values, normals, curvatures)
+
+
+def _from_box(middle: Vector, half: Vector, points: Points) -> Distances:
+    beyond = np.abs(points - middle) - half
+    signs = np.where(points < middle, -1.0, 1.0)
+    out = np.maximum(beyond, 0.0)
+    far = np.linalg.norm(out, axis=1)
+    inside = far == 0.0
+    values = np.where(inside, beyond.max(axis=1), far)
+    sides = np.eye(points.shape[1])[beyond.argmax(axis=1)]
+    normals = signs * np.where(inside[:, None], sides, out / np.maximum(far, _TINY)[:, None])
+    across = np.eye(points.shape[1]) * (out > 0)[:, None, :] - _square(normals)
+    curvatures = np.where(inside, 0.0, 1.0 / np.maximum(far, _TINY))[:, None, None] * across
+    return Distances(values, normals, curvatures)
 
 
 def _around(spans: Points, free: Points, radius: float) -> Distances:
