@@ -21,6 +21,7 @@ LARGE_FUNCTIONS = {
 MANY_PARAMETERS = {
     "hydrostat/cli/design.py:design": "a parameter is an option of the command line",
     "hydrostat/cli/fabricate.py:fabricate": "a parameter is an option of the command line",
+    "hydrostat/cli/sample.py:sample": "a parameter is an option of the command line",
     "hydrostat/cli/simulate.py:simulate": "a parameter is an option of the command line",
     "hydrostat/cli/trajectory.py:trajectory": "a parameter is an option of the command line",
     "hydrostat/ik/trajectory/solve_ik_trajectory.py:solve_ik_trajectory": "what `solve_ik` takes, and what is of time",

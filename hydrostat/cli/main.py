@@ -18,6 +18,7 @@ from hydrostat.cli.materials import materials
 from hydrostat.cli.new import new
 from hydrostat.cli.play import play
 from hydrostat.cli.pose import pose
+from hydrostat.cli.sample import sample
 from hydrostat.cli.simulate import simulate
 from hydrostat.cli.studio import studio
 from hydrostat.cli.trajectory import trajectory
@@ -53,7 +54,21 @@ def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
-for command in (new, check, simulate, branches, pose, trajectory, play, animate, design, fabricate, studio, materials):
+for command in (
+    new,
+    check,
+    simulate,
+    branches,
+    pose,
+    trajectory,
+    play,
+    animate,
+    design,
+    fabricate,
+    sample,
+    studio,
+    materials,
+):
     app.command()(_interruptible(command))
 
 

@@ -1,0 +1,81 @@
+"""`Draw`: the ways in which contractions are drawn, each by scrambled Sobol points."""
+
+from collections.abc import Sequence
+from enum import StrEnum
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.arrays import Vector
+
+Rows = Float[np.ndarray, "samples winches"]
+Winches = Sequence[Sequence[int]]
+
+
+class Draw(StrEnum):
+    """How contractions are drawn."""
+
+    BOX = "box"  # each winch between its release and its travel
+    ANTAGONIST = "antagonist"  # of two winches that work against one another only one takes in (thesis 5.3.2)
+    FACES = "faces"  # as box, but each winch is left at 0 in half of the samples
+    TENSION = "tension"  # as box, let out until no cable pulls harder than allowed
+
+
+def dimensions(draw: Draw, pairs: Winches, winches: int) -> int:
+    """How many numbers a sample is drawn by."""
+    return {Draw.ANTAGONIST: len(pairs), Draw.FACES: 2 * winches}.get(draw, winches)
+
+
+def contractions(draw: Draw, points: Rows, low: Vector, high: Vector, pairs: Winches) -> Rows:
+    """Contractions [m] of points in the unit cube.
+
+    Args:
+        draw: how.
+        points: (samples, dimensions).
+        low: least contraction of each winch [m].
+        high: largest [m].
+        pairs: winches that work against one another, two by two; those that have no partner alone.
+    """
+    if draw is Draw.ANTAGONIST:
+        return _against(points, high, pairs)
+    box = low + points[:, : len(low)] * (high - low)
+    return np.where(points[:, len(low) :] < 0.5, box, 0.0) if draw is Draw.FACES else box
+
+
+def antagonists(moves: Float[np.ndarray, "winches coordinates"]) -> tuple[tuple[int, ...], ...]:
+    """Winches two by two whose markers go opposite ways, and the others alone: each is the best partner of its partner.
+
+    Args:
+        moves: how the markers go when each winch takes in cable [m].
+    """
+    lengths = np.linalg.norm(moves, axis=1, keepdims=True)
+    ways = moves / np.where(lengths > 0, lengths, 1.0)
+    cosines = ways @ ways.T
+    np.fill_diagonal(cosines, 1.0)
+    partner: Int[np.ndarray, " winches"] = np.argmin(cosines, axis=1)
+    groups: list[tuple[int, ...]] = []
+    for winch, other in enumerate(partner):
+        paired = partner[other] == winch and cosines[winch, other] < _OPPOSITE
+        if not paired:
+            groups.append((winch,))
+        elif winch < other:
+            groups.append((winch, int(other)))
+    return tuple(groups)
+
+
+def _against(points: Rows, high: Vector, pairs: Winches) -> Rows:
+    """Contractions of which only one of each pair is above 0: the first above the middle, the second below it."""
+    rows = np.zeros((len(points), len(high)))
+    for column, winches in enumerate(pairs):
+        value = points[:, column]
+        if len(winches) == 1:
+            rows[:, winches[0]] = value * high[winches[0]]
+            continue
+        one, other = winches
+        rows[:, one] = np.maximum(2 * value - 1, 0) * high[one]
+        rows[:, other] = np.maximum(1 - 2 * value, 0) * high[other]
+    return rows
+
+
+_OPPOSITE = -0.3
+"""Cosine of the ways of markers below which two winches work against one another."""

@@ -1,0 +1,76 @@
+"""`export_samples`: samples for the tools of others."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.learning.sample_shard import REASONS
+from hydrostat.learning.samples import read_rows
+
+
+def export_samples(folder: Path, out: Path) -> Path:
+    """Write all samples of a folder, those without an equilibrium too, as one file for others.
+
+    Args:
+        folder: of samples.
+        out: ends in one of `EXPORTS`: .parquet (a column for each number), or .zarr (an array for each quantity).
+
+    Raises:
+        InputError: an unknown ending, a missing library, a file that is there, or no samples.
+    """
+    write = EXPORTS.get(out.suffix)
+    if write is None:
+        raise InputError(f"{out}: must end in {' or '.join(EXPORTS)}")
+    if out.exists():
+        raise InputError(f"{out}: is there already; name another")
+    facts, rows = read_rows(folder)
+    part = out.with_name(f".{out.name}.part")
+    try:
+        write(part, facts, rows)
+        part.rename(out)
+    except ImportError as error:
+        raise InputError(f"{out}: needs {error.name}; install hydrostat[cluster]") from None
+    except OSError as error:
+        raise InputError(f"{out}: cannot be written ({error.strerror})") from None
+    return out
+
+
+def _parquet(path: Path, facts: Mapping[str, Any], rows: np.ndarray) -> None:
+    """One column for each number, such as contraction_index_mm's SI value `contractions.index`."""
+    import json
+
+    import pyarrow as pa  # pyright: ignore[reportMissingImports]
+    import pyarrow.parquet as pq  # pyright: ignore[reportMissingImports]
+
+    columns: dict[str, Any] = {"reason": [str(REASONS[reason]) for reason in rows["reason"]]}
+    axes = "xyz"[: facts["dim"]]
+    names = {
+        "contractions": facts["winches"],
+        "tensions": facts["cables"],
+        "markers": [f"{marker}.{axis}" for marker in facts["markers"] for axis in axes],
+        "jacobian": [f"{m}.{axis}.{w}" for m in facts["markers"] for axis in axes for w in facts["winches"]],
+    }
+    for name in rows.dtype.names or ():
+        flat = rows[name].reshape(len(rows), -1)
+        if name == "reason":
+            continue
+        for column, label in enumerate(names.get(name, range(flat.shape[1]))):
+            columns[name if flat.shape[1] == 1 and name not in names else f"{name}.{label}"] = flat[:, column]
+    table = pa.table(columns).replace_schema_metadata({"hydrostat": json.dumps(facts)})
+    pq.write_table(table, path)
+
+
+def _zarr(path: Path, facts: Mapping[str, Any], rows: np.ndarray) -> None:
+    import zarr  # pyright: ignore[reportMissingImports]
+
+    group = zarr.open_group(path, mode="w")
+    group.attrs.update({**facts, "reasons": [str(reason) for reason in REASONS]})
+    for name in rows.dtype.names or ():
+        group.create_array(name, data=np.ascontiguousarray(rows[name]))
+
+
+EXPORTS: Mapping[str, Callable[[Path, Mapping[str, Any], np.ndarray], None]] = {".parquet": _parquet, ".zarr": _zarr}
+"""How samples are written, by the ending of the file."""

@@ -1,0 +1,165 @@
+"""`SamplePlan`: which poses of a robot are sampled; the contractions of a sample follow from its number alone."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import ceil, isfinite
+
+import numpy as np
+from jaxtyping import Float
+from scipy.stats.qmc import Sobol
+
+from hydrostat.errors import InputError
+from hydrostat.learning.draw import Draw, Rows, antagonists, contractions, dimensions
+from hydrostat.robot import Contact, Robot, robot_hash
+from hydrostat.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SamplePlan:
+    """What is sampled of a robot. Equal plans give equal bytes, whoever works on them.
+
+    Attributes:
+        robot: with contact if the samples shall know it.
+        count: how many samples.
+        seed: of the draws.
+        draws: ways in which contractions are drawn, one sample each in turn.
+        shard: samples in one file.
+        nodes: whether the positions of all nodes are kept.
+        tension: the most that a cable shall pull [N]; for `Draw.TENSION`.
+        pairs: winches that work against one another, two by two; those without a partner alone; for `Draw.ANTAGONIST`.
+
+    Raises:
+        InputError: counts below 1, no draw, or a draw that lacks its limit.
+    """
+
+    robot: Robot
+    count: int
+    seed: int = 0
+    draws: Sequence[Draw] = (Draw.BOX,)
+    shard: int = 64
+    nodes: bool = False
+    tension: float | None = None
+    pairs: tuple[tuple[int, ...], ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        for name in ("count", "shard"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
+        if self.seed < 0:
+            raise InputError(f"seed must be 0 or more, not {self.seed}")
+        if not self.draws:
+            raise InputError(f"there must be a way to draw contractions; there are: {', '.join(Draw)}")
+        if not self.robot.winches or not self.robot.markers:
+            raise InputError(f"robot {self.robot.name!r} needs a winch to be moved by and a marker to be looked at")
+        limited = self.tension is not None and isfinite(self.tension) and self.tension > 0
+        if Draw.TENSION in self.draws and not limited:
+            raise InputError("drawing by tension needs the most that a cable shall pull, such as 10 N")
+
+    @property
+    def shards(self) -> int:
+        """How many files there are."""
+        return ceil(self.count / self.shard)
+
+    def numbers(self, shard: int) -> range:
+        """Numbers of the samples in a file."""
+        return range(shard * self.shard, min((shard + 1) * self.shard, self.count))
+
+    def draw_of(self, number: int) -> Draw:
+        """How the contractions of a sample are drawn."""
+        return self.draws[number % len(self.draws)]
+
+    def contractions(self, numbers: range) -> Rows:
+        """Contractions of samples in winch order [m], before any is let out for its tension."""
+        rows = np.zeros((len(numbers), len(self.robot.winches)))
+        low = np.array([-winch.release for winch in self.robot.winches])
+        high = np.array([winch.travel for winch in self.robot.winches])
+        for place, draw in enumerate(self.draws):
+            mine = [number for number in numbers if number % len(self.draws) == place]
+            if mine:
+                points = self._points(place, mine[0] // len(self.draws), len(mine))
+                rows[np.array(mine) - numbers.start] = contractions(draw, points, low, high, self.pairs)
+        return rows
+
+    def _points(self, place: int, first: int, count: int) -> Float[np.ndarray, "samples dims"]:
+        """Some scrambled Sobol points of one of the draws."""
+        size = dimensions(self.draws[place], self.pairs, len(self.robot.winches))
+        random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([self.seed, place])))
+        points = Sobol(size, scramble=True, rng=random)
+        if first:
+            points.fast_forward(first)
+        return points.random(1 << (count - 1).bit_length())[:count]  # powers of 2, as Sobol points are balanced then
+
+    def facts(self) -> dict[str, object]:
+        """What decides about every byte, for the manifest."""
+        robot = self.robot
+        return {
+            "robot": robot.name,
+            "physics": physics_hash(robot),
+            "contact": robot.contact is not None,
+            "count": self.count,
+            "seed": self.seed,
+            "draws": [str(draw) for draw in self.draws],
+            "shard": self.shard,
+            "nodes": self.nodes,
+            "tension": self.tension,
+            "pairs": [[robot.winches[winch].name for winch in pair] for pair in self.pairs],
+            "winches": [winch.name for winch in robot.winches],
+            "release": [winch.release for winch in robot.winches],
+            "travel": [winch.travel for winch in robot.winches],
+            "markers": [marker.name for marker in robot.markers],
+            "cables": [cable.name for cable in robot.cables],
+            "dim": robot.body.mesh.dim,
+            "node_count": len(robot.body.mesh.nodes),
+            "size": robot.body.mesh.size,
+        }
+
+
+def plan_samples(
+    robot: Robot,
+    count: int,
+    *,
+    contact: bool = False,
+    seed: int = 0,
+    draws: Sequence[Draw] = (Draw.BOX,),
+    shard: int = 64,
+    nodes: bool = False,
+    tension: float | None = None,
+) -> SamplePlan:
+    """Plan samples of a robot; winches that work against one another are found by one pose of each.
+
+    Args:
+        robot: which.
+        count: how many samples.
+        contact: whether its body feels itself even if the robot does not say so.
+        seed: of the draws.
+        draws: ways in which contractions are drawn, one sample each in turn.
+        shard: samples in one file.
+        nodes: whether all nodes are kept.
+        tension: the most that a cable shall pull [N]; for `Draw.TENSION`.
+
+    Raises:
+        InputError: as for `SamplePlan`.
+    """
+    if contact and robot.contact is None:
+        robot = replace(robot, contact=Contact())
+    plan = SamplePlan(
+        robot=robot, count=count, seed=seed, draws=tuple(draws), shard=shard, nodes=nodes, tension=tension
+    )
+    if Draw.ANTAGONIST not in plan.draws:
+        return plan
+    simulation, winches = Simulation(robot), len(robot.winches)
+    travel = np.array([winch.travel for winch in robot.winches])
+    rows = np.vstack([np.zeros(winches), _LITTLE * np.diag(travel)])
+    markers = simulation.solve_many(rows, jacobians=False, threads=1).markers.reshape(winches + 1, -1)
+    return replace(plan, pairs=antagonists(np.nan_to_num(markers[1:] - markers[0])))
+
+
+def physics_hash(robot: Robot) -> str:
+    """SHA-256 of all that the poses of a robot depend on, but contact: not of its name, nor of poses it shall take."""
+    bare = replace(robot, name="robot", poses={}, contact=None)
+    return hashlib.sha256(robot_hash(bare).encode()).hexdigest()
+
+
+_LITTLE = 0.2
+"""Share of its travel by which each winch shows where it moves the markers."""

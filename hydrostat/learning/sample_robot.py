@@ -1,0 +1,135 @@
+"""`sample_robot`: poses of a robot for learning, by one process, many, or many machines."""
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.learning.sample_folder import SampleFolder
+from hydrostat.learning.sample_plan import SamplePlan
+from hydrostat.learning.sample_shard import sample_shard
+
+Sampled = tuple[int, np.ndarray]
+Tell = Callable[[str, int, int], None]
+
+
+def sample_robot(
+    plan: SamplePlan,
+    folder: Path,
+    *,
+    part: tuple[int, int] = (0, 1),
+    jobs: int = 1,
+    backend: str = "loky",
+    tell: Tell | None = None,
+) -> SampleFolder:
+    """Sample a robot into a folder, or go on where an earlier run ended.
+
+    The bytes depend on the plan alone: not on how many work, on which machine of one kind, nor in which order. A worker
+    that dies is made good for as long as others get something done.
+
+    Args:
+        plan: what to sample.
+        folder: where the samples shall lie.
+        part: work on part i of n, counted from 0, of the files.
+        jobs: processes; -1 for one on each core.
+        backend: one of `BACKENDS`.
+        tell: is told "samples", how many there are, and how many there shall be.
+
+    Raises:
+        InputError: a folder of another plan, or one that cannot be written; a wrong part or backend.
+        HydrostatError: the workers died, and nothing was done since.
+    """
+    index, parts = part
+    if not 0 <= index < parts:
+        raise InputError(f"part must be i of n, with i from 0 to n - 1, not {index} of {parts}")
+    if jobs == 0:
+        raise InputError("jobs must be 1 or more, or -1 for one on each core")
+    if backend not in _BY:
+        raise InputError(f'there is no way to work called "{backend}"; there are: {", ".join(_BY)}')
+    samples = SampleFolder.begin(folder, plan)
+    mine = sum(len(plan.numbers(shard)) for shard in range(index, plan.shards, parts))
+    run = _in_turn if jobs == 1 and backend == "loky" else _BY[backend]
+    missing = samples.missing(part)
+    while missing:
+        trouble: Exception | None = None
+        done = mine - sum(len(plan.numbers(shard)) for shard in missing)
+        try:
+            for shard, rows in run(plan, missing, jobs):
+                samples.write(shard, rows)
+                done += len(rows)
+                if tell is not None:
+                    tell("samples", done, mine)
+        except HydrostatError:
+            raise
+        except Exception as error:
+            if run is _in_turn:
+                raise
+            trouble = error  # a worker that was killed; each back end has errors of its own
+        left = samples.missing(part)
+        if trouble is not None and len(left) == len(missing):
+            raise HydrostatError(f"the workers died: {type(trouble).__name__}: {trouble}") from trouble
+        missing = left
+    return samples
+
+
+def _in_turn(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]:
+    """Shards one after another, in this process."""
+    del jobs
+    for shard in shards:
+        yield shard, sample_shard(plan, shard)
+
+
+def _by_joblib(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]:
+    """Shards as they are finished by processes of this machine."""
+    from joblib import Parallel, delayed, parallel_config
+
+    with parallel_config(backend="loky", n_jobs=jobs, inner_max_num_threads=1):
+        work = Parallel(return_as="generator_unordered", batch_size=1)  # pyright: ignore[reportArgumentType]
+        yield from cast(Iterator[Sampled], work(delayed(_numbered)(plan, shard) for shard in shards))
+
+
+def _by_ray(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[Sampled]:
+    """Shards as they are finished by a Ray cluster: the one that RAY_ADDRESS names, else one of this machine.
+
+    Ray's back end for joblib gives nothing before all is done; so these are tasks of Ray itself, which it gives to
+    another worker where one dies.
+    """
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    try:
+        import ray  # pyright: ignore[reportMissingImports]
+    except ImportError:
+        raise InputError("ray is not installed; install hydrostat[cluster]") from None
+    if not ray.is_initialized():
+        here = "RAY_ADDRESS" not in os.environ
+        ray.init(num_cpus=(os.cpu_count() if jobs < 0 else jobs) if here else None, log_to_driver=False)
+    work = ray.remote(num_cpus=1, max_retries=_RETRIES)(_numbered)
+    shared, waiting, running = ray.put(plan), list(reversed(shards)), []
+    most = _AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+    try:
+        while waiting or running:
+            while waiting and len(running) < most:
+                running.append(work.remote(shared, waiting.pop()))
+            done, running = ray.wait(running, num_returns=1)
+            yield from ray.get(done)
+    finally:
+        for task in running:
+            ray.cancel(task, force=True)
+
+
+def _numbered(plan: SamplePlan, shard: int) -> Sampled:
+    return shard, sample_shard(plan, shard)
+
+
+_BY = {"loky": _by_joblib, "ray": _by_ray}
+
+BACKENDS = tuple(_BY)
+"""Ways to work in many processes: of this machine, or of a Ray cluster."""
+
+_RETRIES = 5
+"""So often Ray gives a file to another worker."""
+
+_AHEAD = 2
+"""Files for each worker that Ray knows of at a time."""

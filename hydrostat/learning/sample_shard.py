@@ -1,0 +1,118 @@
+"""`sample_shard`: the samples of one file, each found from rest."""
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.geometry import find_crossings
+from hydrostat.learning.draw import Draw
+from hydrostat.learning.sample_plan import SamplePlan, physics_hash
+from hydrostat.mechanics import ContactEnergy, Reason
+from hydrostat.simulation import Simulation, SolvedPose
+
+REASONS = (*Reason, "error")
+"""What the column `reason` counts."""
+
+
+def sample_type(plan: SamplePlan) -> np.dtype:
+    """Columns of a file of samples, little-endian, SI units.
+
+    Among them are `touches`, whether parts of the body push one another off, and `crosses`, whether it passes through
+    itself, which it can only without contact.
+    """
+    robot, dim = plan.robot, plan.robot.body.mesh.dim
+    winches, markers = len(robot.winches), len(robot.markers)
+    columns = [
+        ("number", "<i8", ()),
+        ("draw", "u1", ()),
+        ("reason", "u1", ()),
+        ("stable", "u1", ()),
+        ("touches", "u1", ()),
+        ("crosses", "u1", ()),
+        ("iterations", "<i4", ()),
+        ("energy", "<f8", ()),
+        ("contractions", "<f8", (winches,)),
+        ("markers", "<f8", (markers, dim)),
+        ("jacobian", "<f8", (markers, dim, winches)),
+        ("tensions", "<f8", (len(robot.cables),)),
+    ]
+    kept = [("nodes", "<f4", robot.body.mesh.nodes.shape)] if plan.nodes else []
+    return np.dtype(columns + kept)
+
+
+def sample_shard(plan: SamplePlan, shard: int) -> np.ndarray:
+    """Samples of one file, columns as in `sample_type`; NaN where there is no equilibrium, and the reason."""
+    simulation, numbers = _simulation(plan), plan.numbers(shard)
+    rows = np.zeros(len(numbers), sample_type(plan))
+    for row, number, contractions in zip(rows, numbers, plan.contractions(numbers), strict=True):
+        draw = plan.draw_of(number)
+        row["number"], row["draw"] = number, list(Draw).index(draw)
+        _fill(row, simulation, contractions, plan.tension if draw is Draw.TENSION else None)
+    return rows
+
+
+def _simulation(plan: SamplePlan) -> Simulation:
+    """Physics of the robot, kept by a process from one file to the next."""
+    key = physics_hash(plan.robot) + str(plan.robot.contact)
+    if key not in _KEPT:
+        _KEPT.clear()
+        _KEPT[key] = Simulation(plan.robot)
+    return _KEPT[key]
+
+
+def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: float | None) -> None:
+    """Solve one sample; what has no equilibrium is NaN, never an exception that ends all others."""
+    columns = row.dtype.names or ()
+    for name in columns:
+        if row.dtype[name].base.kind == "f":
+            row[name] = np.nan
+    row["contractions"], row["reason"] = contractions, REASONS.index("error")
+    pose = _within(simulation, contractions, tension)
+    row["contractions"], row["iterations"] = pose.contractions, pose.result.iterations
+    row["reason"], row["stable"] = REASONS.index(pose.result.reason), pose.result.stable
+    if not pose.result.converged:
+        return
+    anchors = simulation.marker_anchors
+    row["energy"], row["tensions"] = pose.energy, pose.tensions
+    row["markers"] = anchors.positions(pose.nodes)
+    row["touches"], row["crosses"] = _touches(simulation, pose), _crosses(simulation, pose)
+    if "nodes" in columns:
+        row["nodes"] = pose.nodes
+    if pose.result.stable:
+        row["jacobian"] = np.einsum("pc,pcdw->pdw", anchors.weights, simulation.jacobian(pose)[anchors.stencils])
+
+
+def _within(simulation: Simulation, contractions: Vector, tension: float | None) -> SolvedPose:
+    """Pose at contractions that are let out, in proportion, until no cable pulls harder than allowed [N]."""
+    pose = simulation.solve(contractions, strict=False)
+    if tension is None:
+        return pose
+    for _ in range(_TRIALS):
+        most = float(pose.tensions.max(initial=0.0))
+        if pose.result.converged and most <= tension:
+            break
+        contractions = contractions * (np.clip(_CAUTION * tension / most, 0.5, 0.95) if pose.result.converged else 0.5)
+        pose = simulation.solve(contractions, strict=False)
+    return pose
+
+
+def _touches(simulation: Simulation, pose: SolvedPose) -> bool:
+    """Whether parts of the body push one another off."""
+    for energy in simulation.assembly.near(pose.nodes).energies:
+        if isinstance(energy, ContactEnergy) and energy.gradient(pose.nodes, pose.contractions).any():
+            return True
+    return False
+
+
+def _crosses(simulation: Simulation, pose: SolvedPose) -> bool:
+    robot = simulation.robot
+    return robot.contact is None and len(find_crossings(robot.body.mesh, pose.nodes)) > 0
+
+
+_KEPT: dict[str, Simulation] = {}
+"""Physics of the robot that this process samples."""
+
+_TRIALS = 12
+"""So often a sample is let out."""
+
+_CAUTION = 0.97
+"""Tensions grow faster than contractions, so it is let out a little less than in proportion to what is too much."""
