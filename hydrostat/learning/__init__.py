@@ -5,6 +5,7 @@ from hydrostat.learning.export import EXPORTS, export_samples
 from hydrostat.learning.sample_folder import SampleFolder
 from hydrostat.learning.sample_plan import SamplePlan, plan_samples
 from hydrostat.learning.sample_robot import BACKENDS, sample_robot
+from hydrostat.learning.sample_shard import sample_shard
 from hydrostat.learning.samples import Samples, read_samples
 
 __all__ = [
@@ -18,4 +19,5 @@ __all__ = [
     "plan_samples",
     "read_samples",
     "sample_robot",
+    "sample_shard",
 ]

@@ -9,6 +9,7 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Vector
 
 Rows = Float[np.ndarray, "samples winches"]
+Points = Float[np.ndarray, "samples dimensions"]
 Winches = Sequence[Sequence[int]]
 
 
@@ -26,7 +27,7 @@ def dimensions(draw: Draw, pairs: Winches, winches: int) -> int:
     return {Draw.ANTAGONIST: len(pairs), Draw.FACES: 2 * winches}.get(draw, winches)
 
 
-def contractions(draw: Draw, points: Rows, low: Vector, high: Vector, pairs: Winches) -> Rows:
+def contractions(draw: Draw, points: Points, low: Vector, high: Vector, pairs: Winches) -> Rows:
     """Contractions [m] of points in the unit cube.
 
     Args:
@@ -63,7 +64,7 @@ def antagonists(moves: Float[np.ndarray, "winches coordinates"]) -> tuple[tuple[
     return tuple(groups)
 
 
-def _against(points: Rows, high: Vector, pairs: Winches) -> Rows:
+def _against(points: Points, high: Vector, pairs: Winches) -> Rows:
     """Contractions of which only one of each pair is above 0: the first above the middle, the second below it."""
     rows = np.zeros((len(points), len(high)))
     for column, winches in enumerate(pairs):

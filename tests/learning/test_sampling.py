@@ -1,0 +1,243 @@
+"""Samples of a robot. Oracles: the simulator called directly, other ways of working, and the bytes on disk."""
+
+import errno
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import gallery_robot, strip_robot
+
+import hydrostat as hs
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.learning import Draw, SamplePlan, export_samples, plan_samples, read_samples, sample_robot, sample_shard
+from hydrostat.learning.sample_shard import REASONS
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+
+@pytest.fixture(scope="module")
+def plan() -> SamplePlan:
+    return plan_samples(strip_robot(columns=8, rows=2), 22, shard=5, draws=tuple(Draw)[:3], seed=3)
+
+
+@pytest.fixture(scope="module")
+def once(plan: SamplePlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return sample_robot(plan, tmp_path_factory.mktemp("samples")).path
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in sorted(folder.iterdir())}
+
+
+def test_a_sample_is_what_the_simulator_finds(plan: SamplePlan, once: Path) -> None:
+    samples, simulation = read_samples(once), hs.Simulation(plan.robot)
+    assert len(samples) == 22
+    assert samples.lost == 0
+    for place in (0, 7, 21):
+        pose = simulation.solve(samples.contractions[place])
+        assert np.array_equal(np.array(list(pose.markers.values())), samples.markers[place])
+        assert np.array_equal(pose.tensions, samples.tensions[place])
+        slopes = np.einsum(
+            "pc,pcdw->pdw",
+            simulation.marker_anchors.weights,
+            simulation.jacobian(pose)[simulation.marker_anchors.stencils],
+        )
+        assert np.array_equal(slopes, samples.jacobians[place])
+
+
+def test_bytes_do_not_depend_on_who_works(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
+    for part in range(3):
+        sample_robot(plan, tmp_path / "parts", part=(2 - part, 3))
+    sample_robot(plan, tmp_path / "processes", jobs=2)
+    assert contents(tmp_path / "parts") == contents(once) == contents(tmp_path / "processes")
+
+
+def test_a_number_decides_about_a_sample_however_many_there_are(plan: SamplePlan) -> None:
+    whole = plan.contractions(range(22))
+    more = replace(plan, count=1000, shard=64)
+    assert np.array_equal(more.contractions(range(9, 22)), whole[9:])
+
+
+def test_draws_keep_to_what_they_say() -> None:
+    robot = gallery_robot("cupping_hand")
+    plan = plan_samples(robot, 96, draws=[Draw.ANTAGONIST, Draw.FACES, Draw.BOX])
+    assert sorted(plan.pairs) == [(2 * finger, 2 * finger + 1) for finger in range(5)]  # flexor and extensor
+    rows, travel = plan.contractions(range(96)), np.array([winch.travel for winch in robot.winches])
+    assert (rows >= 0).all()
+    assert (rows <= travel).all()
+    against, faces, box = rows[0::3], rows[1::3], rows[2::3]
+    assert (np.minimum(against[:, 0::2], against[:, 1::2]) == 0).all()
+    assert 0.4 < (faces == 0).mean() < 0.6
+    assert (box > 0).all()
+    assert np.abs((box / travel).mean(axis=0) - 0.5).max() < 0.02
+
+
+def test_samples_drawn_by_tension_pull_no_harder(tmp_path: Path) -> None:
+    plan = plan_samples(strip_robot(columns=8, rows=2), 8, draws=[Draw.TENSION], tension=0.5)
+    free = hs.Simulation(plan.robot).solve_many(plan.contractions(range(8)), jacobians=False)
+    assert free.tensions.max() > 0.6
+    samples = read_samples(sample_robot(plan, tmp_path).path)
+    assert samples.tensions.max() <= 0.5
+    assert samples.tensions.max(axis=1).min() > 0.0
+
+
+def test_a_pose_that_is_not_found_is_a_row_with_its_reason(plan: SamplePlan, monkeypatch: pytest.MonkeyPatch) -> None:
+    hurried = hs.Simulation(plan.robot, options=hs.NewtonOptions(iterations=1))
+    monkeypatch.setattr(sys.modules["hydrostat.learning.sample_shard"], "_simulation", lambda plan: hurried)
+    rows = sample_shard(plan, 0)
+    lost = rows["reason"] != REASONS.index("converged")
+    assert lost.any()
+    assert {REASONS[reason] for reason in rows["reason"][lost]} <= {
+        "iteration limit reached",
+        "no step lowers the energy",
+    }
+    assert np.isnan(rows["jacobian"][lost]).all()
+    assert np.isnan(rows["markers"][lost]).all()
+    assert np.array_equal(rows["contractions"], plan.contractions(plan.numbers(0)))
+
+
+def test_contact_is_told(tmp_path: Path) -> None:
+    hand = gallery_robot("starfish")
+    draws = [Draw.BOX]
+    apart = read_samples(sample_robot(plan_samples(hand, 24, contact=True, draws=draws), tmp_path / "a").path)
+    through = read_samples(sample_robot(plan_samples(hand, 24, draws=draws), tmp_path / "b").path)
+    assert apart.touches.any()
+    assert not apart.crosses.any()
+    assert through.crosses.any()
+    assert not through.touches.any()
+    assert (apart.touches >= through.crosses).all()
+
+
+def test_going_on_makes_only_what_is_missing(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
+    sample_robot(plan, tmp_path)
+    kept = (tmp_path / "samples-000001.npy").stat().st_mtime_ns
+    (tmp_path / "samples-000003.npy").unlink()
+    (tmp_path / ".samples-000003.npy.part-999999999").write_bytes(b"half")  # of a run that was killed
+    sample_robot(plan, tmp_path)
+    assert contents(tmp_path) == contents(once)
+    assert (tmp_path / "samples-000001.npy").stat().st_mtime_ns == kept
+
+
+def test_a_killed_run_leaves_whole_files_and_goes_on(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
+    program = (
+        "import os, signal, sys, pickle\n"
+        "from pathlib import Path\n"
+        "from hydrostat.learning import sample_robot\n"
+        "plan = pickle.load(open(sys.argv[1], 'rb'))\n"
+        "kill = lambda stage, done, total: os.kill(os.getpid(), signal.SIGKILL) if done >= 10 else None\n"
+        "sample_robot(plan, Path(sys.argv[2]), tell=kill)\n"
+    )
+    (tmp_path / "plan").write_bytes(pickle.dumps(plan))
+    out = tmp_path / "out"
+    ended = subprocess.run([sys.executable, "-c", program, tmp_path / "plan", out], check=False)
+    assert ended.returncode == -signal.SIGKILL
+    assert len(list(out.glob("samples-*.npy"))) == 2
+    sample_robot(plan, out)
+    assert contents(out) == contents(once)
+
+
+def test_workers_that_die_are_made_good(
+    plan: SamplePlan, once: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def dies(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[tuple[int, np.ndarray]]:
+        yield shards[0], sample_shard(plan, shards[0])
+        raise BrokenPipeError
+
+    monkeypatch.setitem(sys.modules["hydrostat.learning.sample_robot"]._BY, "loky", dies)
+    sample_robot(plan, tmp_path / "some", jobs=2)
+    assert contents(tmp_path / "some") == contents(once)
+
+    def dead(plan: SamplePlan, shards: list[int], jobs: int) -> Iterator[tuple[int, np.ndarray]]:
+        raise BrokenPipeError
+        yield
+
+    monkeypatch.setitem(sys.modules["hydrostat.learning.sample_robot"]._BY, "loky", dead)
+    with pytest.raises(HydrostatError, match="workers died"):
+        sample_robot(plan, tmp_path / "none", jobs=2)
+
+
+def test_a_full_disk_is_one_line_and_nothing_half_written(
+    plan: SamplePlan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sync, calls = os.fsync, []
+
+    def full(file: int) -> None:
+        calls.append(file)
+        if len(calls) == 3:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        sync(file)
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(InputError, match=r"samples-000001.npy: cannot be written \(No space left on device\)"):
+        sample_robot(plan, tmp_path)
+    assert sorted(contents(tmp_path)) == ["samples-000000.npy", "samples.json"]
+
+
+def test_a_folder_of_something_else_is_refused(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="another plan: seed is 3, asked for 4"):
+        sample_robot(replace(plan, seed=4), once)
+    (tmp_path / "letter.txt").write_text("dear")
+    with pytest.raises(InputError, match=r"holds other things, such as letter.txt"):
+        sample_robot(plan, tmp_path)
+    with pytest.raises(InputError, match=r"there is no samples.json"):
+        read_samples(tmp_path)
+
+
+def test_damaged_files_are_told(plan: SamplePlan, tmp_path: Path) -> None:
+    sample_robot(plan, tmp_path)
+    file = tmp_path / "samples-000002.npy"
+    file.write_bytes(file.read_bytes()[:-9])
+    with pytest.raises(InputError, match=r"samples-000002.npy: is damaged"):
+        read_samples(tmp_path)
+    (tmp_path / "samples.json").write_text("{")
+    with pytest.raises(InputError, match=r"samples.json: is no JSON"):
+        read_samples(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"count": 0}, "count must be 1 or more"),
+        ({"shard": 0}, "shard must be 1 or more"),
+        ({"seed": -1}, "seed must be 0 or more"),
+        ({"draws": ()}, "there must be a way"),
+        ({"draws": (Draw.TENSION,)}, "needs the most that a cable"),
+    ],
+)
+def test_a_wrong_plan_is_one_line(plan: SamplePlan, wrong: dict, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        replace(plan, **wrong)
+
+
+def test_exports_hold_the_same_numbers(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"must end in .parquet or .zarr"):
+        export_samples(once, tmp_path / "all.csv")
+    samples = read_samples(once)
+    parquet = pytest.importorskip("pyarrow.parquet")
+    table = parquet.read_table(export_samples(once, tmp_path / "all.parquet"))
+    winch, marker = plan.robot.winches[1].name, plan.robot.markers[0].name
+    assert np.array_equal(table[f"contractions.{winch}"].to_numpy(), samples.contractions[:, 1])
+    assert np.array_equal(table[f"jacobian.{marker}.y.{winch}"].to_numpy(), samples.jacobians[:, 0, 1, 1])
+    assert json.loads(table.schema.metadata[b"hydrostat"])["count"] == 22
+    zarr = pytest.importorskip("zarr")
+    group = zarr.open_group(export_samples(once, tmp_path / "all.zarr"), mode="r")
+    assert np.array_equal(group["jacobian"][:], samples.jacobians)
+    with pytest.raises(InputError, match="is there already"):
+        export_samples(once, tmp_path / "all.zarr")
+
+
+@pytest.mark.slow
+def test_a_ray_cluster_that_loses_a_worker_gives_the_same_bytes(once: Path, plan: SamplePlan, tmp_path: Path) -> None:
+    pytest.importorskip("ray")
+    program = Path(__file__).with_name("ray_cluster.py")
+    (tmp_path / "plan").write_bytes(pickle.dumps(plan))
+    subprocess.run([sys.executable, program, tmp_path / "plan", tmp_path / "out"], check=True, timeout=300)
+    assert contents(tmp_path / "out") == contents(once)
