@@ -93,7 +93,9 @@ class ContactEnergy(Energy):
         self.stencils: Stencils = pairs.stencils
 
     @classmethod
-    def of(cls, mesh: Mesh, *, distance: float, young: float, thickness: float | None = None) -> Self:
+    def of(
+        cls, mesh: Mesh, *, distance: float, young: float, thickness: float | None = None, rest: Nodes | None = None
+    ) -> Self:
         """Contact of a body at rest with itself, in which nothing touches yet.
 
         Args:
@@ -101,9 +103,11 @@ class ContactEnergy(Energy):
             distance: at which parts begin to feel one another [m].
             young: pressure at half that distance: Young's modulus [Pa].
             thickness: of a flat body [m].
+            rest: all unknowns at rest [m], if there are more than the nodes of the mesh.
         """
+        rest = mesh.nodes if rest is None else rest
         areas = facet_areas(mesh)[1] * (thickness or 1.0)
-        skin = TouchingSkin(tree=BoundaryTree(mesh), rest=mesh.nodes, distance=distance, stiffness=young, areas=areas)
+        skin = TouchingSkin(tree=BoundaryTree(mesh), rest=rest, distance=distance, stiffness=young, areas=areas)
         return cls(skin, Pairs(np.empty((0, mesh.dim + 1), np.int64), np.empty(0, np.bool_)))
 
     @cached_property

@@ -103,7 +103,7 @@ class Energy(ABC):
     convex: ClassVar[bool] = True
     quadratic: ClassVar[bool] = False
     lifts_early: ClassVar[bool] = False
-    has_history: ClassVar[bool] = False
+    has_history: bool = False
 
     @abstractmethod
     def value(self, nodes: Nodes, controls: Vector) -> float:

@@ -12,7 +12,7 @@ from hydrostat.mechanics.falling_mode import falling_mode
 from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
 from hydrostat.mechanics.newton_result import NewtonResult
 from hydrostat.mechanics.stiffness import Stiffness
-from hydrostat.mechanics.warp import Warp
+from hydrostat.mechanics.warp import Bend
 
 
 def minimise(
@@ -22,7 +22,7 @@ def minimise(
     *,
     round_off: RoundOff,
     options: NewtonOptions,
-    warp: Warp | None = None,
+    warp: Bend | None = None,
     stiffness: Stiffness | None = None,
     exact: bool = False,
 ) -> NewtonResult:
@@ -87,7 +87,7 @@ class _EnergyDescent:
         controls: Vector,
         round_off: RoundOff,
         options: NewtonOptions,
-        warp: Warp | None,
+        warp: Bend | None,
         exact: bool,
     ) -> None:
         self.exact = exact

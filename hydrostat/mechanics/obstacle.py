@@ -1,5 +1,7 @@
 """`ObstacleEnergy`: a body does not pass through a rigid obstacle."""
 
+from copy import copy
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -9,86 +11,212 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.boundary_tree import facet_areas
 from hydrostat.geometry.distance_field import DistanceField, Distances
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Places, Stencils, add_blocks
+from hydrostat.mechanics.energy import (
+    Blocks,
+    Compliance,
+    Energy,
+    HessianBlocks,
+    Places,
+    Stencils,
+    add_blocks,
+    nearest_semidefinite,
+)
+from hydrostat.mechanics.grip import Grip
+from hydrostat.mechanics.rigid import Carriage
 
 
 class ObstacleEnergy(Energy):
-    """Barrier between samples of a body's boundary and a rigid obstacle.
+    """Barrier between samples of a body's boundary and a rigid obstacle, and Coulomb friction along it.
 
     A term is a sample: a node of the boundary, the middle of an edge, in space of a facet too. Its energy at distance d
     is W h phi(d^2/h), phi(r) = -(r - 1)^2 ln r below r = 1, with h the square of the distance at which it is felt.
+
+    All that an obstacle does is a function of where a sample is in the frame of the obstacle. If that moves, its rows
+    among the unknowns belong to the stencil of every sample. With friction it has a history: the anchors of its `Grip`.
     """
 
     convex: ClassVar[bool] = False
     lifts_early: ClassVar[bool] = True
 
     def __init__(
-        self, mesh: Mesh, field: DistanceField, *, distance: float, young: float, thickness: float | None = None
+        self,
+        mesh: Mesh,
+        field: DistanceField,
+        *,
+        distance: float,
+        young: float,
+        thickness: float | None = None,
+        friction: float = 0.0,
+        carriage: Carriage | None = None,
     ) -> None:
         """Barrier of a body at rest.
 
         Args:
             mesh: of the body.
-            field: distance of points from the obstacle.
+            field: distance of points from the obstacle, in its frame.
             distance: at which it begins to be felt [m].
             young: pressure at half that distance: Young's modulus [Pa].
             thickness: of a flat body [m].
+            friction: Coulomb's coefficient mu.
+            carriage: where the unknowns of its frame are; None if it stands still.
         """
-        self.field, self.distance = field, distance
-        self.stencils, self.shares, areas = _samples(mesh)
-        self.weights = young * areas * (thickness or 1.0) / (_HALF_WAY * distance)
+        self.field, self.distance, self.carriage = field, distance, carriage
+        self._corners, self.shares, areas = _samples(mesh)
+        areas = areas * (thickness or 1.0)
+        self.weights = young * areas / (_HALF_WAY * distance)
+        self.stencils = self._corners
+        if carriage is not None:
+            rows = np.broadcast_to(carriage.rows, (len(areas), len(carriage.rows)))
+            self.stencils = np.concatenate([self._corners, rows], axis=1)
+        self.has_history = friction > 0
+        self._friction = friction, _STICKS * young / distance * areas
+        self.grip: Grip | None = None
 
     def places(self, nodes: Nodes) -> Points:
-        """Where the samples are [m]."""
-        return np.einsum("tc,tcd->td", self.shares, nodes[self.stencils])
+        """Where the samples are, in the frame of the obstacle [m]."""
+        points = np.einsum("tc,tcd->td", self.shares, nodes[self._corners])
+        if self.carriage is None:
+            return points
+        return (points - self.carriage.place(nodes)) @ self.carriage.axes(nodes).T
 
     def gap(self, nodes: Nodes) -> float:
         """Distance of the nearest sample [m]; negative inside the obstacle."""
         return float(self.field(self.places(nodes)).values.min())
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        distances = self.field(self.places(nodes)).values
+        places = self.places(nodes)
+        distances = self.field(places).values
         if not (distances > 0).all():
             return np.inf
         r = np.minimum((distances / self.distance) ** 2, 1.0)
-        return float(self.distance**2 * (self.weights * (r - 1.0) ** 2) @ -np.log(r))
+        barrier = float(self.distance**2 * (self.weights * (r - 1.0) ** 2) @ -np.log(r))
+        return barrier + (0.0 if self.grip is None else self.grip.energy(places))
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        found = self.field(self.places(nodes))
+        places = self.places(nodes)
+        forces = self._forces(places)
+        if self.carriage is None:
+            return self.shares[:, :, None] * forces[:, None, :]
+        return np.einsum("tk,tkri->tri", forces, self._slopes(nodes, np.arange(len(places))))
+
+    def forces(self, nodes: Nodes) -> Points:
+        """Force of the obstacle on each sample, in the frame of the obstacle [N]."""
+        return -self._forces(self.places(nodes))
+
+    def _forces(self, places: Points) -> Points:
+        """Slope of the energy by the place of each sample in the frame [N]."""
+        found = self.field(places)
         forces = self._derivatives(found)[0][:, None] * found.normals
-        return self.shares[:, :, None] * forces[:, None, :]
+        return forces if self.grip is None else forces + self.grip.forces(places)
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.projected_hessian(nodes, controls, 0.0)
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        return self._blocks(self.shares, self.field(self.places(nodes)), self.weights, share)
+        return self._blocks(nodes, np.arange(len(self.stencils)), self.places(nodes), share)
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: Places) -> None:
-        values = self.field(self.places(nodes))
-        felt = values.values < self.distance
-        if felt.any():
-            near = Distances(*(part[felt] for part in values))
-            blocks = self._blocks(self.shares[felt], near, self.weights[felt], share)
-            add_blocks(self.stencils[felt], places.slots[felt], places.strides, blocks, places.data)
+        where = self.places(nodes)
+        felt = self.field(where).values < self.distance
+        if self.grip is not None:
+            felt |= self.grip.limits > 0
+        some = np.flatnonzero(felt)
+        if len(some):
+            blocks = self._blocks(nodes, some, where, share)
+            add_blocks(self.stencils[some], places.slots[some], places.strides, blocks, places.data)
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         """By conservative advancement: a sample cannot meet the obstacle before distance / speed."""
-        at = self.places(nodes)
-        way = np.einsum("tc,tcd->td", self.shares, move[self.stencils])
-        speeds = np.linalg.norm(way, axis=1)
-        distances = self.field(at).values
-        least, done = _KEPT * distances, np.zeros(len(at))
+        begin = self.places(nodes)
+        distances = self.field(begin).values
+        least, done = _KEPT * distances, np.zeros(len(begin))
+        speeds = self._speeds(nodes, move)
         going = np.flatnonzero(distances - least < speeds)
         for _ in range(_ADVANCES):
             if not len(going):
                 break
-            step = (distances[going] - least[going]) / speeds[going]
-            done[going] += step
-            distances[going] = self.field(at[going] + done[going, None] * way[going]).values
+            done[going] += (distances[going] - least[going]) / speeds[going]
+            distances[going] = self.field(self._on_the_way(nodes, move, going, done[going])).values
             going = going[(done[going] < 1.0) & (distances[going] > 1.1 * least[going])]
-        met = distances <= 1.1 * least
-        return float(np.clip(done[met & (done > 0)].min(initial=1.0), _LEAST_STEP, 1.0))
+        near = distances <= 1.1 * least
+        near[going] = True
+        return float(np.clip(done[near & (done > 0)].min(initial=1.0), _LEAST_STEP, 1.0))
+
+    @property
+    def history(self) -> Vector:
+        """Anchor of each sample in the frame of the obstacle [m], one after another."""
+        return np.zeros(0) if self.grip is None else self.grip.anchors.ravel()
+
+    def begun(self, nodes: Nodes) -> "ObstacleEnergy":
+        """The same with friction, as it is at rest."""
+        return self._gripping(Grip.at_rest(*self._friction, self.places(nodes))) if self.has_history else self
+
+    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
+        if self.grip is None:
+            return self
+        still = replace(self.grip, anchors=history.reshape(self.grip.anchors.shape))
+        return self._gripping(still.asked(*self._pushes(self.places(nodes))))
+
+    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+        if self.grip is None:
+            return 0.0
+        places = self.places(nodes)
+        asked = self.grip.asked(*self._pushes(places))
+        return float(np.abs(asked.forces(places) - self.grip.forces(places)).max(initial=0.0))
+
+    def corrected(self, nodes: Nodes, controls: Vector, compliance: Compliance | None) -> "ObstacleEnergy":
+        if self.grip is None:
+            return self
+        return self._gripping(self.grip.corrected(*self._pushes(self.places(nodes))))
+
+    def after(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
+        if self.grip is None:
+            return self
+        places = self.places(nodes)
+        return self._gripping(self.grip.asked(*self._pushes(places)).slipped(places))
+
+    def _gripping(self, grip: Grip) -> "ObstacleEnergy":
+        other = copy(self)
+        other.grip = grip
+        return other
+
+    def _pushes(self, places: Points) -> tuple[Vector, Points]:
+        """Normal force on each sample [N], and the normals."""
+        found = self.field(places)
+        return -self._derivatives(found)[0], found.normals
+
+    def _slopes(self, nodes: Nodes, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
+        """Slopes of the place in the frame by the unknowns of the stencil; only of an obstacle that moves."""
+        assert self.carriage is not None
+        axes, dim = self.carriage.axes(nodes), self.carriage.dim
+        spans = np.einsum("tc,tcd->td", self.shares[some], nodes[self._corners[some]]) - self.carriage.place(nodes)
+        by_corner = np.einsum("tc,ki->tkci", self.shares[some], axes)
+        by_place = np.broadcast_to(-axes[:, None, :], (len(some), dim, 1, dim))
+        by_axes = np.einsum("km,ti->tkmi", np.eye(dim), spans) / self.carriage.length
+        return np.concatenate([by_corner, by_place, by_axes], axis=2)
+
+    def _speeds(self, nodes: Nodes, move: Nodes) -> Vector:
+        """Bound of how far each sample goes in the frame while the unknowns make a straight move [m]."""
+        way = np.einsum("tc,tcd->td", self.shares, move[self._corners])
+        if self.carriage is None:
+            return np.linalg.norm(way, axis=1)
+        begin, end = self.carriage.axes(nodes), self.carriage.axes(nodes + move)
+        largest = max(np.linalg.norm(begin, 2), np.linalg.norm(end, 2))
+        spans = np.einsum("tc,tcd->td", self.shares, nodes[self._corners]) - self.carriage.place(nodes)
+        way = way - move[self.carriage.row]
+        reach = np.maximum(np.linalg.norm(spans, axis=1), np.linalg.norm(spans + way, axis=1))
+        return largest * np.linalg.norm(way, axis=1) + np.linalg.norm(end - begin, 2) * reach
+
+    def _on_the_way(self, nodes: Nodes, move: Nodes, some: np.ndarray, shares: Vector) -> Points:
+        """Where some samples are in the frame after a share each of a straight move [m]."""
+        corners = self._corners[some]
+        moved = nodes[corners] + shares[:, None, None] * move[corners]
+        points = np.einsum("tc,tcd->td", self.shares[some], moved)
+        if self.carriage is None:
+            return points
+        begin, end = self.carriage.axes(nodes), self.carriage.axes(nodes + move)
+        spans = points - self.carriage.place(nodes) - shares[:, None] * move[self.carriage.row]
+        return spans @ begin.T + shares[:, None] * (spans @ (end - begin).T)
 
     def _derivatives(self, found: Distances, weights: Vector | None = None) -> tuple[Vector, Vector]:
         """First two derivatives of each term by its distance."""
@@ -103,15 +231,31 @@ class ObstacleEnergy(Energy):
         two = np.where(r < 1.0, scale * (2.0 * slope + 4.0 * r * curve), 0.0)
         return one, two
 
-    def _blocks(
-        self, shares: Float[np.ndarray, "terms corners"], found: Distances, weights: Vector, share: float
-    ) -> HessianBlocks:
-        slope, curve = self._derivatives(found, weights)
+    def _blocks(self, nodes: Nodes, some: np.ndarray, places: Points, share: float) -> HessianBlocks:
+        """Hessian of some terms, with a share of what is negative taken out."""
+        found = Distances(*(part[some] for part in self.field(places)))
+        slope, curve = self._derivatives(found, self.weights[some])
         inner = curve[:, None, None] * (found.normals[:, :, None] * found.normals[:, None, :])
-        inner = inner + ((1.0 - share) * slope)[:, None, None] * found.curvatures
-        blocks = np.einsum("ta,tb,tij->taibj", shares, shares, inner)
-        size = shares.shape[1] * found.normals.shape[1]
-        return blocks.reshape(len(shares), size, size)
+        kept = 1.0 - share if self.carriage is None else 1.0
+        inner = inner + (kept * slope)[:, None, None] * found.curvatures
+        forces = slope[:, None] * found.normals
+        if self.grip is not None:
+            grip = self.grip.only(some)
+            inner = inner + grip.stiffness(places[some])
+            forces = forces + grip.forces(places[some])
+        dim, corners = inner.shape[1], self.shares.shape[1]
+        if self.carriage is None:
+            blocks = np.einsum("ta,tb,tij->taibj", self.shares[some], self.shares[some], inner)
+            return blocks.reshape(len(some), corners * dim, corners * dim)
+        slopes = self._slopes(nodes, some).reshape(len(some), dim, -1)
+        blocks = np.einsum("tkr,tkl,tls->trs", slopes, inner, slopes)
+        bends = blocks.reshape(len(some), corners + 1 + dim, dim, corners + 1 + dim, dim)
+        by_point = np.concatenate([self.shares[some], -np.ones((len(some), 1))], axis=1)
+        mixed = 1.0 / self.carriage.length * by_point[:, :, None] * forces[:, None, :]
+        axis = np.arange(dim)
+        bends[:, : corners + 1, axis, corners + 1 :, axis] += mixed[None]
+        bends[:, corners + 1 :, axis, : corners + 1, axis] += np.swapaxes(mixed, 1, 2)[None]
+        return blocks + share * (nearest_semidefinite(blocks) - blocks) if share else blocks
 
 
 def _samples(mesh: Mesh) -> tuple[Stencils, Float[np.ndarray, "terms corners"], Vector]:
@@ -136,6 +280,9 @@ def _samples(mesh: Mesh) -> tuple[Stencils, Float[np.ndarray, "terms corners"], 
 
 _HALF_WAY = 4.329
 """Force of the barrier at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2, phi' its slope."""
+
+_STICKS = 10.0
+"""Stiffness of a sample along the surface per area, in units of Young's modulus / distance."""
 
 _KEPT = 0.1
 """No step takes more than 1 less this share of the gap."""

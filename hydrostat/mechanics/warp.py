@@ -1,6 +1,7 @@
 """`Warp`: a step that turns material instead of stretching it."""
 
 import math
+from collections.abc import Callable
 from typing import no_type_check
 
 import numpy as np
@@ -10,6 +11,9 @@ from hydrostat.arrays import Nodes
 from hydrostat.kernel import INNER, LONG, native, njit
 from hydrostat.mechanics.energy import Stencils, element_groups
 from hydrostat.mechanics.factorisation import Analysis
+
+Bend = Callable[[Nodes, Nodes], Nodes]
+"""Where unknowns go when they make a step [m]."""
 
 
 class Warp:

@@ -1,12 +1,12 @@
 """`Contact` and `Obstacle`: that a body does not pass through itself, nor through what stands beside it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.distance_field import (
     DistanceField,
@@ -28,13 +28,25 @@ class Contact:
 
     Attributes:
         distance: at which parts begin to push one another off [m]; None: 1/200 of the size of the body.
+        friction: Coulomb's coefficient between the body and obstacles that state none.
+
+    Raises:
+        InputError: a distance or a friction that cannot be.
     """
 
     distance: float | None = None
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         if self.distance is not None:
             check_positive("distance", self.distance, "m")
+        check_friction(self.friction)
+
+
+def check_friction(friction: float) -> None:
+    """Check a coefficient of friction (InputError: it is not from 0 to 3)."""
+    if not 0 <= friction <= _MOST_FRICTION:
+        raise InputError(f"friction must be from 0 to {_MOST_FRICTION:g}, not {friction:g}: rubber has about 1")
 
 
 class ObstacleShape(StrEnum):
@@ -49,7 +61,7 @@ class ObstacleShape(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Obstacle:
-    """A rigid thing that stands still beside the body.
+    """A rigid thing beside the body: it stands still, or moves freely if it has a mass.
 
     Attributes:
         name: of it.
@@ -58,6 +70,8 @@ class Obstacle:
         to: the other end or corner [m]; only where there is one.
         radius: of a sphere, capsule or cylinder [m].
         normal: out of a plane, of any length.
+        friction: Coulomb's coefficient; None: that of the contact of the body.
+        mass: of a thing that moves as it is pushed and pulled [kg], spread evenly; None: it stands still.
 
     Raises:
         InputError: a key that is missing or does not belong to the shape, or a wrong value.
@@ -69,6 +83,8 @@ class Obstacle:
     to: Point | None = None
     radius: float | None = None
     normal: Point | None = None
+    friction: float | None = None
+    mass: float | None = None
 
     def __post_init__(self) -> None:
         check_name(self.name)
@@ -89,6 +105,7 @@ class Obstacle:
                 check_point(key, point)
                 if len(point) != len(self.at):
                     raise InputError(f"{key} has {len(point)} entries, at has {len(self.at)}; give as many")
+        self._check_motion()
         if self.normal is not None and not any(self.normal):
             raise InputError("normal must not be 0 along every axis")
         if self.to is not None and (
@@ -97,6 +114,14 @@ class Obstacle:
             raise InputError("at and to leave nothing between them; move one of them")
         if self.shape is ObstacleShape.CYLINDER and len(self.at) == 2:
             raise InputError("a flat body meets no cylinder; use a sphere, which is a disc in the plane, or a box")
+
+    def _check_motion(self) -> None:
+        if self.friction is not None:
+            check_friction(self.friction)
+        if self.mass is not None:
+            check_positive("mass", self.mass, "kg")
+            if self.shape is ObstacleShape.PLANE:
+                raise InputError("a plane has no end, so no mass; remove mass, and it stands still")
 
     def spine(self) -> Points:
         """Points within it, (points, dim): along the way from `at` to `to`; none of a plane, which has no end [m]."""
@@ -108,6 +133,30 @@ class Obstacle:
     def field(self) -> DistanceField:
         """Distance of points from it."""
         return _FIELDS[ObstacleShape(self.shape)](self)
+
+    def frame(self) -> tuple[Vector, Points]:
+        """Where its middle is [m], and its axes, a row for each: the first along it, if it is long."""
+        at, dim = np.array(self.at), len(self.at)
+        if self.to is None:
+            return at, np.eye(dim)
+        span = np.array(self.to) - at
+        if self.shape is ObstacleShape.BOX:
+            return at + 0.5 * span, np.eye(dim)
+        axes = np.linalg.svd(span[None])[2]
+        axes[0] = span / np.linalg.norm(span)
+        return at + 0.5 * span, axes
+
+    def centred(self) -> "Obstacle":
+        """The same thing as it is in its own frame."""
+        place, axes = self.frame()
+        at, to = (
+            None if end is None else tuple((axes @ (np.array(end) - place)).tolist()) for end in (self.at, self.to)
+        )
+        return replace(self, at=at or (), to=to)
+
+    def second_moments(self) -> Vector:
+        """Mean squares of the coordinates of its mass along its axes [m^2]."""
+        return _MOMENTS[ObstacleShape(self.shape)](self)
 
 
 _SPINE = 41
@@ -127,3 +176,37 @@ _FIELDS: dict[ObstacleShape, Callable[[Obstacle], DistanceField]] = {
     ObstacleShape.CYLINDER: lambda one: cylinder_field(np.array(one.at), np.array(one.to), one.radius or 0.0),
     ObstacleShape.BOX: lambda one: box_field(np.array(one.at), np.array(one.to)),
 }
+
+
+def _box_moments(box: Obstacle) -> Vector:
+    return np.subtract(box.to or (), box.at) ** 2 / 12
+
+
+def _round_moments(sphere: Obstacle) -> Vector:
+    dim = len(sphere.at)
+    return np.full(dim, (sphere.radius or 0.0) ** 2 / (dim + 2))
+
+
+def _rod_moments(rod: Obstacle) -> Vector:
+    """Of a cylinder, or of a capsule: its straight part and its two round ends."""
+    dim, r, h = len(rod.at), rod.radius or 0.0, float(np.linalg.norm(np.subtract(rod.to or (), rod.at)))
+    straight = np.array([h**2 / 12, *([r**2 / 3] if dim == 2 else [r**2 / 4] * 2)])
+    if rod.shape is ObstacleShape.CYLINDER:
+        return straight
+    out = 4 * r / (3 * np.pi) if dim == 2 else 3 * r / 8  # middle of a half disc, of half a ball
+    ends = np.full(dim, r**2 / (dim + 2))
+    ends[0] += h**2 / 4 + h * out
+    middle = 2 * h if dim == 2 else np.pi * h  # times r^(dim - 1), as the next
+    round_ = np.pi * r if dim == 2 else 4 / 3 * np.pi * r
+    return (middle * straight + round_ * ends) / (middle + round_)
+
+
+_MOMENTS: dict[ObstacleShape, Callable[[Obstacle], Vector]] = {
+    ObstacleShape.SPHERE: _round_moments,
+    ObstacleShape.CAPSULE: _rod_moments,
+    ObstacleShape.CYLINDER: _rod_moments,
+    ObstacleShape.BOX: _box_moments,
+}
+
+_MOST_FRICTION = 3.0
+"""No coefficient of friction is larger."""

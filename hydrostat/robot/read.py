@@ -71,9 +71,7 @@ class RobotReader(TablesFile):
             poses[pose.name] = pose
         body = self._body()
         gravity = self.at("", lambda: _gravity(table.gravity, body.mesh.dim))
-        contact = (
-            None if table.contact is None else self.at("contact", lambda: Contact(**_given(table.contact, "distance")))
-        )
+        contact = None if table.contact is None else self.at("contact", lambda: self._contact(table.contact))
         options = {"length_unit": self.unit, "gravity": gravity, "face": table.face, "contact": contact}
         return self.at("", lambda: Robot(name=table.name, body=body, poses=poses, **options, **parts))
 
@@ -85,6 +83,10 @@ class RobotReader(TablesFile):
             **_given(entry, "stiffness"),
         )
 
+    def _contact(self, entry: Any) -> Contact:
+        friction = {} if entry.friction is None else {"friction": float(entry.friction)}
+        return Contact(**_given(entry, "distance"), **friction)
+
     def _obstacle(self, entry: Any) -> Obstacle:
         given: dict[str, Any] = {}
         if entry.to is not None:
@@ -93,6 +95,9 @@ class RobotReader(TablesFile):
             given["radius"] = units.scale_up(entry.radius, self.unit, units.LENGTH)
         if entry.normal is not None:
             given["normal"] = tuple(float(value) for value in entry.normal)
+        if entry.friction is not None:
+            given["friction"] = float(entry.friction)
+        given |= _given(entry, "mass")
         return Obstacle(name=entry.name, shape=entry.shape, at=self.point(entry.at), **given)
 
     def _winch(self, entry: Any) -> Winch:

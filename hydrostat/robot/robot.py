@@ -43,7 +43,7 @@ class Robot:
         gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
         face: on which face of a flat body its cables run, or a word such as "pairs"; None: not said.
         contact: how the body feels itself and obstacles; None: it passes through itself.
-        obstacles: rigid things that stand still beside the body.
+        obstacles: rigid things beside the body.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -111,6 +111,12 @@ class Robot:
         """Distance at which parts that touch, and obstacles, begin to be felt [m]."""
         given = None if self.contact is None else self.contact.distance
         return DISTANCE * self.body.mesh.size if given is None else given
+
+    def friction_of(self, obstacle: Obstacle) -> float:
+        """Coulomb's coefficient between the body and an obstacle."""
+        if obstacle.friction is not None:
+            return obstacle.friction
+        return 0.0 if self.contact is None else self.contact.friction
 
     @property
     def spool_ratios(self) -> Vector:

@@ -79,6 +79,7 @@ def _format(value: object) -> object:
 
 Length = Annotated[float, BeforeValidator(_quantity(units.LENGTH))]
 Pressure = Annotated[float, BeforeValidator(_quantity(units.PRESSURE))]
+Mass = Annotated[float, BeforeValidator(_quantity(units.MASS))]
 Density = Annotated[float, BeforeValidator(_quantity(units.DENSITY))]
 Stiffness = Annotated[float, BeforeValidator(_quantity(units.STIFFNESS))]
 Acceleration = Annotated[float, BeforeValidator(_quantity(units.ACCELERATION))]
@@ -215,6 +216,7 @@ class ContactTable(TomlTable):
     """[contact]."""
 
     distance: Length | None = None
+    friction: Number | None = None
 
 
 class ObstacleTable(TomlTable):
@@ -226,6 +228,8 @@ class ObstacleTable(TomlTable):
     to: Coordinates | None = None
     radius: Number | None = None
     normal: Coordinates | None = None
+    friction: Number | None = None
+    mass: Mass | None = None
 
 
 class RobotTable(TomlTable):

@@ -174,6 +174,8 @@ class _Writer:
         table = self._toml.table()
         if contact.distance is not None:
             table["distance"] = units.format_quantity(contact.distance, units.LENGTH)
+        if contact.friction:
+            table["friction"] = contact.friction
         return table
 
     def obstacle(self, obstacle: Obstacle) -> dict[str, Any]:
@@ -186,6 +188,10 @@ class _Writer:
             entry["normal"] = self._array(
                 self._toml.value(units.plain(Decimal(repr(value)))) for value in obstacle.normal
             )
+        if obstacle.friction is not None:
+            entry["friction"] = obstacle.friction
+        if obstacle.mass is not None:
+            entry["mass"] = units.format_quantity(obstacle.mass, units.MASS)
         return entry
 
     def pin(self, pin: Pin) -> dict[str, Any]:

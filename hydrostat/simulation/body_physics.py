@@ -1,6 +1,7 @@
 """`BodyPhysics`: what the physics of a robot has of its body alone, whatever network pulls at it."""
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -20,7 +21,9 @@ from hydrostat.mechanics import (
 )
 from hydrostat.mechanics.patch_volume import PatchVolume
 from hydrostat.mechanics.patches import PATCH_SIZE, grow_patches
-from hydrostat.robot import Robot, Volume
+from hydrostat.mechanics.rigid import Carriage, CarriedWarp, RigidEnergy
+from hydrostat.mechanics.warp import Bend
+from hydrostat.robot import Obstacle, Robot, Volume
 
 
 class BodyPhysics:
@@ -34,7 +37,9 @@ class BodyPhysics:
         assembly: all of its energies together; they read no control.
         material: of the body.
         thickness: of a flat body [m]; None in space.
-        masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
+        masses: of the unknowns [kg], (rows,): each element shares its own evenly among its corners.
+        carriages: where the unknowns of obstacles that move are, by their number among the obstacles.
+        begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the obstacles that move.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -47,18 +52,22 @@ class BodyPhysics:
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.material.lame
+        self.carriages = _carriages(robot)
+        moving = [carriage.unknowns(*robot.obstacles[index].frame()) for index, carriage in self.carriages.items()]
+        self.begin = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
         patched = body.volume is Volume.PATCH
-        self.elastic = NeoHookean(mesh.nodes, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness)
+        self.elastic = NeoHookean(self.begin, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness)
         self.pins = _pins(robot)
-        self.masses = _masses(robot)
+        carried = [_carried(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
+        self.masses = np.concatenate([_masses(robot), *carried])
         energies: list[Energy] = [self.elastic, self.pins]
         if patched:
             patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
-            energies.append(PatchVolume(mesh.nodes, mesh.elements, patches, lame=lame, thickness=thickness))
+            energies.append(PatchVolume(self.begin, mesh.elements, patches, lame=lame, thickness=thickness))
         if robot.gravity is not None:
-            energies.append(WeightEnergy(mesh.nodes, self.masses[:, None] * np.array(robot.gravity)))
-        energies += _contact(robot)
-        self.assembly = Assembly(energies, rest=mesh.nodes, control_count=0)
+            energies.append(WeightEnergy(self.begin, self._heavy[:, None] * np.array(robot.gravity)))
+        energies += self._contact(robot)
+        self.assembly = Assembly(energies, rest=self.begin, control_count=0)
 
     def fits(self, robot: Robot) -> bool:
         """Tell whether this is the physics of the body of a robot: the same body, equal pins, gravity, contact."""
@@ -74,9 +83,37 @@ class BodyPhysics:
         if not self.fits(robot):
             raise InputError("these body physics are of another body, other pins, gravity or contact; make new ones")
 
+    @property
+    def _heavy(self) -> Float[np.ndarray, " rows"]:
+        """Masses that gravity pulls at: not the axes of obstacles, which are at their middle."""
+        heavy = self.masses.copy()
+        for carriage in self.carriages.values():
+            heavy[carriage.rows[1:]] = 0.0
+        return heavy
+
+    def _contact(self, robot: Robot) -> list[Energy]:
+        """What keeps the body from passing through itself, if it has contact, and through obstacles."""
+        body, distance, young = robot.body, robot.contact_distance, robot.body.material.young
+        felt: dict[str, Any] = {"distance": distance, "young": young, "thickness": body.thickness}
+        energies: list[Energy] = [] if robot.contact is None else [ContactEnergy.of(body.mesh, **felt, rest=self.begin)]
+        for index, obstacle in enumerate(robot.obstacles):
+            carriage, friction = self.carriages.get(index), robot.friction_of(obstacle)
+            field = (obstacle if carriage is None else obstacle.centred()).field()
+            met = ObstacleEnergy(body.mesh, field, **felt, friction=friction, carriage=carriage)
+            energies.append(met.begun(self.begin))
+            if carriage is not None:
+                energies.append(RigidEnergy(carriage, _RIGID * young * carriage.length**3))
+        return energies
+
     @cached_property
-    def warp(self) -> Warp:
+    def warp(self) -> Bend:
         """Steps along arcs."""
+        if not self.carriages:
+            return self._body_warp
+        return CarriedWarp(self._body_warp, len(self._given[0].mesh.nodes), tuple(self.carriages.values()))
+
+    @cached_property
+    def _body_warp(self) -> Warp:
         return Warp(
             stencils=self.elastic.stencils,
             shape_gradients=self.elastic.shape_gradients,
@@ -89,7 +126,7 @@ class BodyPhysics:
     @cached_property
     def rest_factors(self) -> Factorisation:
         """Hessian of the body at rest, factorised; cables that do not pull add nothing to it."""
-        return self.assembly.stiffness(self._given[0].mesh.nodes, np.zeros(0)).factors
+        return self.assembly.near(self.begin).stiffness(self.begin, np.zeros(0)).factors
 
     def round_off(self, stiffest: float = 0.0) -> RoundOff:
         """What the rounding errors of the body's own forces hide, and those of springs up to `stiffest` [N/m]."""
@@ -104,15 +141,25 @@ class BodyPhysics:
         mu, lame = body.material.lame
         scale = (2 * mu + lame) * float(body.mesh.volumes.sum()) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
-        return scale, reach, max((pin.stiffness for pin in pins), default=0.0), body.mesh.size
+        springs = [pin.stiffness for pin in pins]
+        springs += [_RIGID * body.material.young * carriage.length for carriage in self.carriages.values()]
+        return scale, reach, max(springs, default=0.0), body.mesh.size
 
 
-def _contact(robot: Robot) -> list[Energy]:
-    """What keeps the body of a robot from passing through itself, if it has contact, and through obstacles."""
-    body, distance = robot.body, robot.contact_distance
-    felt = {"distance": distance, "young": body.material.young, "thickness": body.thickness}
-    own = [] if robot.contact is None else [ContactEnergy.of(body.mesh, **felt)]
-    return [*own, *(ObstacleEnergy(body.mesh, obstacle.field(), **felt) for obstacle in robot.obstacles)]
+def _carriages(robot: Robot) -> dict[int, Carriage]:
+    """Rows of the unknowns of obstacles that move, after those of the nodes."""
+    carriages, row, dim = {}, len(robot.body.mesh.nodes), robot.body.mesh.dim
+    for index, obstacle in enumerate(robot.obstacles):
+        if obstacle.mass is not None:
+            carriages[index] = Carriage(row, 2 * float(np.sqrt(obstacle.second_moments().max())), dim)
+            row += 1 + dim
+    return carriages
+
+
+def _carried(obstacle: Obstacle, carriage: Carriage) -> Float[np.ndarray, " rows"]:
+    """Masses of the rows of an obstacle that moves [kg]: its own, then that of each of its axes."""
+    mass = obstacle.mass or 0.0
+    return mass * np.append(1.0, obstacle.second_moments() / carriage.length**2)
 
 
 def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
@@ -146,3 +193,7 @@ def _pins(robot: Robot) -> PinEnergy:
         ),
         supports=np.repeat(np.arange(len(anchors)), [len(held.stencils) for held in anchors]),
     )
+
+
+_RIGID = 1e3
+"""Stiffness of what keeps obstacles rigid, in units of Young's modulus of the body times their length cubed."""

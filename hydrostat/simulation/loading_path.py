@@ -35,9 +35,9 @@ class LoadingPath:
     friction, is held fixed; this is corrected until it is in balance with the shape that is found.
     """
 
-    def __init__(self, robot: Robot, solver: StaticSolver) -> None:
-        """Physics of a robot at rest."""
-        self._rest = _PathState(robot.body.mesh.nodes, np.zeros(len(robot.winches)), solver.assembly)
+    def __init__(self, robot: Robot, solver: StaticSolver, begin: Nodes) -> None:
+        """Physics of a robot, and its unknowns at rest [m]."""
+        self._rest = _PathState(begin, np.zeros(len(robot.winches)), solver.assembly)
         self._solver = solver
         wholes = [
             (cable.winch, cable.length / ratio) for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
@@ -54,7 +54,7 @@ class LoadingPath:
         """
         state = self._rest
         if start is not None:
-            state = _PathState(start.nodes, start.contractions, self.resumed(start))
+            state = _PathState(start.unknowns, start.contractions, self.resumed(start))
         begin = state.contractions
         steps = max(1, ceil(float((np.abs(goal - begin) / self._increment).max(initial=0.0)) - 1e-9))
         iterations = 0
@@ -87,7 +87,7 @@ class LoadingPath:
 
     def resumed(self, pose: SolvedPose) -> Assembly:
         """Physics that remember how a pose was reached."""
-        return self._rest.assembly.near(pose.nodes).resumed(pose.history, pose.nodes, pose.contractions)
+        return self._rest.assembly.near(pose.unknowns).resumed(pose.history, pose.unknowns, pose.contractions)
 
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 4) -> _PathState:
         """The next equilibrium, by way of more if it is not found: so often is the increment halved."""

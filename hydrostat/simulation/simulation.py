@@ -1,6 +1,8 @@
 """`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
+from dataclasses import replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -76,6 +78,20 @@ class Simulation:
         hidden = self.body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
+    def replacing(self, old: Energy, new: Energy) -> "Simulation":
+        """The same physics with one of the energies given to it in another state, such as a guide that has moved.
+
+        Args:
+            old: one of the energies.
+            new: what takes its place, on the same stencils.
+        """
+        other = copy(self)
+        for name in ("rest", "rest_stiffness", "path", "dynamics"):
+            other.__dict__.pop(name, None)
+        other.assembly = self.assembly.with_energies([new if one is old else one for one in self.assembly.energies])
+        other.solver = replace(self.solver, assembly=other.assembly)
+        return other
+
     def contractions(self, given: Contractions) -> Vector:
         """Contractions as an array in winch order [m].
 
@@ -114,11 +130,13 @@ class Simulation:
         self.check_start(start)
         history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy)
         if self.assembly.has_history:
-            path = self.path if seconds is None else LoadingPath(self.robot, self.solver.within(seconds))
+            path = (
+                self.path if seconds is None else LoadingPath(self.robot, self.solver.within(seconds), self.body.begin)
+            )
             result, history = path.solve(goal, start)
         else:
-            begin = None if start is None else (start.nodes, start.contractions, self.stiffness_of(start))
-            result = solver.solve(goal, (self.robot.body.mesh.nodes, self.rest_stiffness), begin)
+            begin = None if start is None else (start.unknowns, start.contractions, self.stiffness_of(start))
+            result = solver.solve(goal, (self.body.begin, self.rest_stiffness), begin)
         pose = self.posed(goal, result, history)
         if strict and not result.converged:
             raise NotConvergedError(
@@ -171,7 +189,7 @@ class Simulation:
 
     def in_the_way(self, pose: SolvedPose) -> tuple[str, ...]:
         """Tell what kept a solve from an equilibrium: the cable that pulls hardest, an element next to flat."""
-        forces = self.forces(pose.nodes, pose.contractions).reshape(pose.nodes.shape)
+        forces = self.forces(pose.unknowns, pose.contractions).reshape(self.assembly.shape)[: len(pose.nodes)]
         return obstacles(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
     def check_start(self, start: SolvedPose | None) -> None:
@@ -196,8 +214,9 @@ class Simulation:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
         if not self.assembly.has_history:
-            right = -self.assembly.near(pose.nodes).control_derivative(pose.nodes, pose.contractions).toarray()
-            return self.response(pose, right).reshape(*pose.nodes.shape, -1)
+            where = pose.unknowns
+            right = -self.assembly.near(where).control_derivative(where, pose.contractions).toarray()
+            return self.response(pose, right).reshape(*where.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
         compliance = stiffness.compliance_of(slice(0, len(pose.history)))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
@@ -236,7 +255,7 @@ class Simulation:
         return rubbing_slopes(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
     def _rubbing(self, pose: SolvedPose) -> tuple[FrictionCableEnergy, Stiffness]:
-        if self.friction is None or not self._plain:
+        if self.friction is None or not self._plain or any(map(self.robot.friction_of, self.robot.obstacles)):
             raise InputError("physics that remember the way have a derivative only for cables with friction alone")
         return self.friction.resumed(pose.history, pose.nodes, pose.contractions), self._regular(pose)
 
@@ -256,7 +275,8 @@ class Simulation:
         if self.assembly.has_history:
             raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
         stiffness = self._regular(pose)
-        return response(self.assembly.near(pose.nodes), stiffness, (pose.nodes, pose.contractions), forces)
+        where = pose.unknowns
+        return response(self.assembly.near(where), stiffness, (where, pose.contractions), forces)
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
@@ -268,8 +288,8 @@ class Simulation:
         self.check_start(pose)
         if pose is None:
             idle, history = self.contractions({}), self.assembly.history
-            return self.dynamics.still(self.robot.body.mesh.nodes, idle, velocities, history)
-        return self.dynamics.still(pose.nodes, pose.contractions, velocities, pose.history)
+            return self.dynamics.still(self.body.begin, idle, velocities, history)
+        return self.dynamics.still(pose.unknowns, pose.contractions, velocities, pose.history)
 
     def step(
         self,
@@ -334,15 +354,22 @@ class Simulation:
     def tensions(self, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Vector:
         """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""
         if self.friction is not None and history is not None:
-            slips = history[: len(self.friction.history)]  # the cables come first among what has a history
+            slips = self._slips(history)
             return self.friction.resumed(slips, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
+
+    def _slips(self, history: Vector) -> Vector:
+        """What the cables remember, of all that is remembered."""
+        energies = self.assembly.energies
+        before = energies[: energies.index(self.friction)] if self.friction is not None else ()
+        begin = sum(len(energy.history) for energy in before)
+        return history[begin : begin + (0 if self.friction is None else len(self.friction.history))]
 
     def stiffness(self, pose: SolvedPose) -> Stiffness:
         """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
         if self.assembly.has_history:
-            return self.path.resumed(pose).stiffness(pose.nodes, pose.contractions)
-        return self.stiffness_of(pose) or self.assembly.near(pose.nodes).stiffness(pose.nodes, pose.contractions)
+            return self.path.resumed(pose).stiffness(pose.unknowns, pose.contractions)
+        return self.stiffness_of(pose) or self.assembly.near(pose.unknowns).stiffness(pose.unknowns, pose.contractions)
 
     def _regular(self, pose: SolvedPose) -> Stiffness:
         stiffness = self.stiffness(pose)
@@ -352,7 +379,8 @@ class Simulation:
 
     def stiffness_of(self, pose: SolvedPose) -> Stiffness | None:
         """The Hessian that a pose of this simulation brings along; None if it brings none, or its nodes were moved."""
-        known, unmoved = pose.result.stiffness, pose.nodes is pose.result.nodes
+        found = pose.result.nodes
+        known, unmoved = pose.result.stiffness, found is pose.nodes or found is pose.nodes.base
         return known if known is not None and unmoved and known.token is self.assembly.token else None
 
     @cached_property
@@ -367,7 +395,7 @@ class Simulation:
     @cached_property
     def rest_stiffness(self) -> Stiffness:
         """The Hessian at the nodes' rest positions."""
-        nodes, idle = self.robot.body.mesh.nodes, np.zeros(len(self.robot.winches))
+        nodes, idle = self.body.begin, np.zeros(len(self.robot.winches))
         if not self._plain:
             return self.assembly.near(nodes).stiffness(nodes, idle)
         return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
@@ -375,7 +403,7 @@ class Simulation:
     @cached_property
     def path(self) -> LoadingPath:
         """Incremental loading; only for energies with a history."""
-        return LoadingPath(self.robot, self.solver)
+        return LoadingPath(self.robot, self.solver, self.body.begin)
 
     def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
         """Residual forces dE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
@@ -387,10 +415,11 @@ class Simulation:
 
     def posed(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> SolvedPose:
         """Pose that Newton found, with all that the robot shows there."""
-        positions = self.marker_anchors.positions(result.nodes)
+        positions, count = self.marker_anchors.positions(result.nodes), len(self.robot.body.mesh.nodes)
         return SolvedPose(
             contractions=contractions,
-            nodes=result.nodes,
+            nodes=result.nodes[:count] if self.body.carriages else result.nodes,
+            carried=result.nodes[count:] if self.body.carriages else None,
             markers={marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)},
             tensions=self.tensions(result.nodes, contractions, history),
             energy=result.energy,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh
@@ -28,7 +28,8 @@ class SolvedPose:
         energy: total energy [J].
         result: how the solver ended: reason, residual [N], iterations, stability; and the factorised Hessian there.
         history: what the physics remember of the way there: how much cable has slipped over each point with friction
-            until now [m]; empty without friction.
+            until now, where obstacles with friction hold the skin [m]; empty without friction.
+        carried: unknowns of obstacles that move [m]: place and axes of each; empty if none does.
     """
 
     contractions: Vector
@@ -38,6 +39,12 @@ class SolvedPose:
     energy: float
     result: NewtonResult
     history: Vector = field(default_factory=lambda: np.zeros(0))
+    carried: Points | None = None
+
+    @property
+    def unknowns(self) -> Nodes:
+        """All that energies are functions of [m]: the nodes, then the rows of obstacles that move."""
+        return self.nodes if self.carried is None else np.concatenate([self.nodes, self.carried])
 
     def without_factors(self) -> "SolvedPose":
         """Pose without its factorised Hessian, to be kept with many others: that takes megabytes."""

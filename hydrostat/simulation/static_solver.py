@@ -7,7 +7,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, RoundOff, Stiffness, Warp, minimise
+from hydrostat.mechanics import Assembly, NewtonOptions, NewtonResult, Reason, RoundOff, Stiffness, minimise
+from hydrostat.mechanics.warp import Bend
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +25,7 @@ class StaticSolver:
     assembly: Assembly
     options: NewtonOptions
     round_off: RoundOff
-    warp: Warp | None
+    warp: Bend | None
 
     def relax(
         self,

@@ -1,0 +1,111 @@
+"""`Grip`: Coulomb friction of many samples on a rigid thing, by anchored springs along its surface."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Points, Vector
+
+Squares = Float[np.ndarray, "samples dim dim"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Grip:
+    """Springs from samples to their anchors, along the surface, that slip at a limit (elastic Coulomb friction).
+
+    All is told in the frame of the thing, so anchors go with it. While energy is minimised normals and limits are held
+    fixed: then the springs have a potential, Huber's function of the way along the surface. `corrected` brings limits
+    and normals nearer to what the shape found asks for, `slipped` lets anchors go along.
+
+    Attributes:
+        friction: Coulomb's coefficient mu.
+        springs: stiffness of each sample [N/m].
+        anchors: where each sample sticks [m].
+        normals: of the surface at each sample.
+        limits: the largest force along the surface, mu x normal force [N].
+        trail: limits tried before and what each asked for, the last ones.
+    """
+
+    friction: float
+    springs: Vector
+    anchors: Points
+    normals: Points
+    limits: Vector
+    trail: tuple[tuple[Vector, Vector], ...] = ()
+
+    @classmethod
+    def at_rest(cls, friction: float, springs: Vector, places: Points) -> "Grip":
+        """Nothing pushes yet: anchors are where the samples are [m]."""
+        return cls(
+            friction=friction,
+            springs=springs,
+            anchors=places,
+            normals=np.zeros_like(places),
+            limits=np.zeros(len(places)),
+        )
+
+    def only(self, some: np.ndarray) -> "Grip":
+        """The springs of some samples."""
+        parts = (self.springs, self.anchors, self.normals, self.limits)
+        springs, anchors, normals, limits = (part[some] for part in parts)
+        return Grip(friction=self.friction, springs=springs, anchors=anchors, normals=normals, limits=limits)
+
+    def ways(self, places: Points) -> tuple[Points, Vector]:
+        """How far each sample is from its anchor along the surface [m], and the length of it."""
+        spans = places - self.anchors
+        spans = spans - (spans * self.normals).sum(axis=1)[:, None] * self.normals
+        return spans, np.linalg.norm(spans, axis=1)
+
+    def energy(self, places: Points) -> float:
+        """Energy of all springs [J]."""
+        lengths, limits = self.ways(places)[1], self.limits
+        sticks = self.springs * lengths <= limits
+        slipping = limits * lengths - 0.5 * limits**2 / self.springs
+        return float(np.where(sticks, 0.5 * self.springs * lengths**2, slipping).sum())
+
+    def forces(self, places: Points) -> Points:
+        """Slope of the energy by the place of each sample [N]."""
+        spans, lengths = self.ways(places)
+        return self._secants(lengths)[:, None] * spans
+
+    def stiffness(self, places: Points) -> Squares:
+        """Second derivative of the energy [N/m]; never negative."""
+        spans, lengths = self.ways(places)
+        secants = self._secants(lengths)
+        across = np.eye(places.shape[1]) - self.normals[:, :, None] * self.normals[:, None, :]
+        slips = self.springs * lengths > self.limits
+        units = spans / np.where(slips, lengths, 1.0)[:, None]
+        along = np.where(slips, secants, 0.0)[:, None, None] * (units[:, :, None] * units[:, None, :])
+        return secants[:, None, None] * across - along
+
+    def asked(self, pushes: Vector, normals: Points) -> "Grip":
+        """The same with the limits and normals that these normal forces [N] ask for."""
+        return replace(self, limits=self.friction * pushes, normals=normals, trail=())
+
+    def corrected(self, pushes: Vector, normals: Points) -> "Grip":
+        """Limits nearer to what a shape asks for that was found with these (Anderson's acceleration)."""
+        trail = (*self.trail, (self.limits, self.friction * pushes))[-_KEPT:]
+        tried, wanted = (np.array(part) for part in zip(*trail, strict=True))
+        limits = wanted[-1]
+        if len(trail) > 1:
+            misses = wanted - tried
+            turns = np.linalg.lstsq(np.diff(misses, axis=0).T, misses[-1], rcond=1e-10)[0]
+            limits = np.maximum(wanted[-1] - turns @ np.diff(wanted, axis=0), 0.0)
+        return replace(self, limits=limits, normals=normals, trail=trail)
+
+    def slipped(self, places: Points) -> "Grip":
+        """The same with anchors that were dragged along to where the springs pull no harder than the limits."""
+        spans, lengths = self.ways(places)
+        held = np.minimum(1.0, self.limits / np.maximum(self.springs * lengths, _TINY))
+        return replace(self, anchors=places - held[:, None] * spans, trail=())
+
+    def _secants(self, lengths: Vector) -> Vector:
+        return np.minimum(self.springs, self.limits / np.maximum(lengths, _TINY))
+
+
+_KEPT = 6
+"""So many limits tried before are remembered."""
+
+_TINY = np.finfo(float).tiny
+"""Above 0."""
