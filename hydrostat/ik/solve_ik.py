@@ -39,7 +39,8 @@ def solve_ik(
     is a local optimum; where it misses its goal, the search begins elsewhere a few times. docs/theory/inverse.md.
 
     Where cables rub, the way counts. The answer is the pose in which the robot ends when the winches go straight from
-    `start`, or from rest, to the contractions, all in proportion, as in `Simulation.solve`.
+    `start`, or from rest, to the contractions, all in proportion, as in `Simulation.solve`. Friction on obstacles is
+    left out of the search; the way to its answer is then followed with it, and errors are those at its end.
 
     Args:
         simulation: the robot's physics.
@@ -56,6 +57,10 @@ def solve_ik(
         NotConvergedError: no equilibrium where the search begins.
     """
     target = as_pose(targets)
+    if simulation.smooth is not simulation:
+        begin = None if start is None else replace(start, history=np.zeros(0))
+        found = solve_ik(simulation.smooth, target, limits=limits, objectives=objectives, start=begin, options=options)
+        return _followed(simulation, found, start)
     given = limits or Limits()
     allowed = bounds(simulation, given)
     if given.rate is not None:
@@ -75,6 +80,17 @@ def solve_ik(
     if not simulation.assembly.has_history:
         return reached
     return replace(reached, friction_band=_band(simulation, reached.pose))
+
+
+def _followed(simulation: Simulation, found: ReachedPose, start: SolvedPose | None) -> ReachedPose:
+    """What was found without friction on obstacles, as the way to its contractions ends with it."""
+    pose = simulation.solve(found.pose.contractions, start=start)
+    targets = {} if found.target is None else found.target.targets
+    errors = {
+        name: float(np.linalg.norm(pose.markers[name] - targets[name])) if name in targets else error
+        for name, error in found.errors.items()
+    }
+    return replace(found, pose=pose, errors=errors)
 
 
 def _band(simulation: Simulation, pose: SolvedPose) -> Mapping[str, float]:

@@ -97,15 +97,13 @@ class Grip:
     def slipped(self, places: Points) -> "Grip":
         """The same with anchors that were dragged along to where the springs pull no harder than the limits."""
         spans, lengths = self.ways(places)
-        held = np.minimum(1.0, self.limits / np.maximum(self.springs * lengths, _TINY))
+        held = np.where(self.limits > 0, self._secants(lengths) / self.springs, 0.0)
         return replace(self, anchors=places - held[:, None] * spans, trail=())
 
     def _secants(self, lengths: Vector) -> Vector:
-        return np.minimum(self.springs, self.limits / np.maximum(lengths, _TINY))
+        slips = self.springs * lengths > self.limits
+        return np.where(slips, self.limits / np.where(slips, lengths, 1.0), self.springs)
 
 
 _KEPT = 6
 """So many limits tried before are remembered."""
-
-_TINY = np.finfo(float).tiny
-"""Above 0."""

@@ -37,7 +37,8 @@ class BodyPhysics:
         assembly: all of its energies together; they read no control.
         material: of the body.
         thickness: of a flat body [m]; None in space.
-        masses: of the unknowns [kg], (rows,): each element shares its own evenly among its corners.
+        masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
+        inertias: the masses that the unknowns have in motion [kg], (rows,).
         carriages: where the unknowns of obstacles that move are, by their number among the obstacles.
         begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the obstacles that move.
     """
@@ -59,7 +60,8 @@ class BodyPhysics:
         self.elastic = NeoHookean(self.begin, mesh.elements, mu=mu, lame=None if patched else lame, thickness=thickness)
         self.pins = _pins(robot)
         carried = [_carried(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
-        self.masses = np.concatenate([_masses(robot), *carried])
+        self.masses = _masses(robot)
+        self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
         energies: list[Energy] = [self.elastic, self.pins]
         if patched:
             patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
@@ -86,7 +88,7 @@ class BodyPhysics:
     @property
     def _heavy(self) -> Float[np.ndarray, " rows"]:
         """Masses that gravity pulls at: not the axes of obstacles, which are at their middle."""
-        heavy = self.masses.copy()
+        heavy = self.inertias.copy()
         for carriage in self.carriages.values():
             heavy[carriage.rows[1:]] = 0.0
         return heavy

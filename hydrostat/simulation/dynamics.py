@@ -86,25 +86,27 @@ class Dynamics:
         options: NewtonOptions,
     ) -> None:
         """The robot's physics at rest; tensions by nodes, contractions and history; its markers; how Newton goes."""
-        mesh, material = robot.body.mesh, robot.body.material
-        self.robot, self.masses = robot, body.masses
+        material = robot.body.material
+        self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
         branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
         branches += [(material.viscosity, 0.0)] if material.viscosity else []
         viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
-        self.memory = Memory(mesh.nodes, body.elastic, viscosities=viscosities, times=times)
+        self.memory = Memory(body.begin, body.elastic, viscosities=viscosities, times=times)
         self._round_off = body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
-        rest = self.still(mesh.nodes, np.zeros(len(robot.winches)), None, statics.history)
-        begin = _MotionState(rest.nodes, rest.velocities, rest.metrics)
+        rest = self.still(body.begin, np.zeros(len(robot.winches)), None, statics.history)
+        begin = _state(rest)
         moving = self._energies(begin, 1.0, 0.0, list(statics.energies))[len(statics.energies) :]
         self._assembly = statics.extended(moving, control_count=len(robot.winches))
 
     def still(self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector) -> Motion:
         """A motion that begins at `nodes`, with all viscous branches settled there, after what `history` remembers."""
-        still = np.zeros_like(nodes)
-        if velocities is not None and not (velocities.shape == nodes.shape and np.isfinite(velocities).all()):
-            raise InputError(f"velocities must be finite, {nodes.shape}, not {velocities.shape}")
-        state = _MotionState(nodes, still if velocities is None else velocities, self.memory.settled(nodes))
+        still, shape = np.zeros_like(nodes), self.robot.body.mesh.nodes.shape
+        if velocities is not None and not (velocities.shape == shape and np.isfinite(velocities).all()):
+            raise InputError(f"velocities must be finite, {shape}, not {velocities.shape}")
+        begin = still.copy()
+        begin[: shape[0]] = 0.0 if velocities is None else velocities
+        state = _MotionState(nodes, begin, self.memory.settled(nodes))
         shifts = np.zeros((len(self.robot.pins), nodes.shape[1]))
         return self._motion(0.0, (contractions, shifts, history), state, still, None)
 
@@ -161,8 +163,9 @@ class Dynamics:
         self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
     ) -> tuple[Motion, NewtonResult]:
         """One step, and how its last minimisation ended; if that failed, the motion is not to be used."""
-        begin = _MotionState(motion.nodes, motion.velocities, motion.metrics)
-        end, rates, acceleration = begin, [], motion.accelerations
+        begin = _state(motion)
+        end, rates = begin, []
+        acceleration = _joined(motion.accelerations, motion, 2)
         history, at = motion.history, motion.contractions
         result, iterations = None, 0
         for *weights, diagonal in SCHEMES[options.scheme].table:
@@ -261,13 +264,16 @@ class Dynamics:
         (contractions, shifts, history), nodes = held, state.nodes
         places = self._markers.positions(nodes)
         statics = self._remembering(history, nodes, contractions, shifts)
+        count = len(self.robot.body.mesh.nodes)
+        carried = (nodes[count:], state.velocities[count:], accelerations[count:])
         return Motion(
             time=time,
             contractions=contractions,
             pin_shifts=shifts,
-            nodes=nodes,
-            velocities=state.velocities,
-            accelerations=accelerations,
+            nodes=nodes[:count],
+            velocities=state.velocities[:count],
+            accelerations=accelerations[:count],
+            carried=carried if len(carried[0]) else None,
             metrics=state.metrics,
             markers={marker.name: place for marker, place in zip(self.robot.markers, places, strict=True)},
             tensions=self._tensions(nodes, contractions, history),
@@ -277,3 +283,13 @@ class Dynamics:
             history=history,
             result=result,
         )
+
+
+def _state(motion: Motion) -> _MotionState:
+    """State of motion of all unknowns."""
+    return _MotionState(_joined(motion.nodes, motion, 0), _joined(motion.velocities, motion, 1), motion.metrics)
+
+
+def _joined(rows: Nodes, motion: Motion, part: int) -> Nodes:
+    """Rows of the nodes, and those of the obstacles that move."""
+    return rows if motion.carried is None else np.concatenate([rows, motion.carried[part]])

@@ -87,6 +87,7 @@ def follow_branch(
             "with friction equilibria are no branch, for every way ends elsewhere; set friction = 0 to follow one, or "
             "compare ways by path_dependence"
         )
+    simulation.check_still("a branch of equilibria")
     rest = simulation.robot.body.mesh.nodes
     if start.nodes.shape != rest.shape or start.contractions.shape != goal.shape:
         raise InputError(f"start must be a pose of this robot, {rest.shape} nodes, not {start.nodes.shape}")

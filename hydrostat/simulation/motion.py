@@ -29,6 +29,7 @@ class Motion:
         potential: energy of body, cables, pins, weight and branches [J].
         history: what the physics remember of the way: how much cable has slipped over each point with friction [m];
             empty without.
+        carried: unknowns of obstacles that move [m], their velocities [m/s] and accelerations [m/s^2]; None if none do.
         result: how the last minimisation of the step ended; its energy is that of the step, its iterations are of all.
     """
 
@@ -45,6 +46,7 @@ class Motion:
     potential: float
     history: Vector = field(default_factory=lambda: np.zeros(0))
     result: NewtonResult | None = None
+    carried: tuple[Points, Points, Points] | None = None
 
     @property
     def energy(self) -> float:
@@ -68,4 +70,5 @@ class Motion:
             energy=self.potential,
             result=self.result,
             history=self.history,
+            carried=None if self.carried is None else self.carried[0],
         )

@@ -74,7 +74,7 @@ class Simulation:
         self.friction = friction_energy(robot, self.route_points)
         more = [self.friction or self.cables, *energies]
         self.assembly: Assembly = self.body.assembly.extended(more, control_count=len(robot.winches))
-        self._plain = not energies
+        self._more = tuple(energies)
         hidden = self.body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
@@ -91,6 +91,31 @@ class Simulation:
         other.assembly = self.assembly.with_energies([new if one is old else one for one in self.assembly.energies])
         other.solver = replace(self.solver, assembly=other.assembly)
         return other
+
+    @cached_property
+    def smooth(self) -> "Simulation":
+        """The same without friction on obstacles; itself where there is none."""
+        robot = self.robot
+        if not any(map(robot.friction_of, robot.obstacles)):
+            return self
+        contact = None if robot.contact is None else replace(robot.contact, friction=0.0)
+        obstacles = tuple(replace(obstacle, friction=None) for obstacle in robot.obstacles)
+        return Simulation(
+            replace(robot, contact=contact, obstacles=obstacles), options=self.options, energies=self._more
+        )
+
+    def check_still(self, what: str) -> None:
+        """Check that no obstacle moves.
+
+        Args:
+            what: does not know obstacles that move, in words.
+
+        Raises:
+            InputError: one has a mass.
+        """
+        for index in self.body.carriages:
+            name = self.robot.obstacles[index].name
+            raise InputError(f'{what} knows no obstacle that moves: "{name}" has a mass; without it, it stands still')
 
     def contractions(self, given: Contractions) -> Vector:
         """Contractions as an array in winch order [m].
@@ -232,9 +257,10 @@ class Simulation:
             tensions: dL / d tensions; none if left out.
 
         Raises:
-            InputError: other energies that remember the way; cotangents of a wrong shape.
+            InputError: other energies that remember the way; cotangents of a wrong shape; obstacles that move.
             NotConvergedError: as for `jacobian`.
         """
+        self.check_still("the adjoint")
         if self.assembly.has_history:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
             slopes = self.rubbing_slopes(pose, (right.reshape(1, -1), pulls[None]))
@@ -255,7 +281,7 @@ class Simulation:
         return rubbing_slopes(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
     def _rubbing(self, pose: SolvedPose) -> tuple[FrictionCableEnergy, Stiffness]:
-        if self.friction is None or not self._plain or any(map(self.robot.friction_of, self.robot.obstacles)):
+        if self.friction is None or self._more or any(map(self.robot.friction_of, self.robot.obstacles)):
             raise InputError("physics that remember the way have a derivative only for cables with friction alone")
         return self.friction.resumed(pose.history, pose.nodes, pose.contractions), self._regular(pose)
 
@@ -396,7 +422,7 @@ class Simulation:
     def rest_stiffness(self) -> Stiffness:
         """The Hessian at the nodes' rest positions."""
         nodes, idle = self.body.begin, np.zeros(len(self.robot.winches))
-        if not self._plain:
+        if self._more:
             return self.assembly.near(nodes).stiffness(nodes, idle)
         return Stiffness(self.body.rest_factors, self.assembly.coupling(nodes, idle), token=self.assembly.token)
 

@@ -107,6 +107,7 @@ class InverseProblem:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
+        simulation.check_still("inverse kinematics")
         own = simulation.friction or simulation.cables
         others = [energy for energy in simulation.assembly.energies if energy is not own]
         idle = simulation.robot.body.mesh.nodes, np.zeros(len(robot.winches))
