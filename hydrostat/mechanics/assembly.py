@@ -117,7 +117,9 @@ class Assembly:
         for energy, part in zip(self.energies, self.couplings(nodes, controls), strict=True):
             begin, end = end, end + (0 if part is None else part.columns.shape[1])
             compliance = None if stiffness is None else stiffness.compliance_of(slice(begin, end))
-            energies.append(energy.corrected(nodes, controls, compliance))
+            energies.append(
+                energy.corrected(nodes, controls, compliance, None if stiffness is None else stiffness.solve)
+            )
         return self.with_energies(energies)
 
     def after(self, nodes: Nodes, controls: Vector) -> "Assembly":

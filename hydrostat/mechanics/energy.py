@@ -1,7 +1,7 @@
 """`Energy`: the contract of every term of the potential energy E(x; a)."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Protocol, Self, no_type_check, runtime_checkable
 
@@ -45,6 +45,10 @@ class Compliance(NamedTuple):
 
     moves: Columns
     compliance: Small
+
+
+Response = Callable[[Columns], Columns]
+"""How all degrees of freedom move under forces on them, a column for each case [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -190,8 +194,17 @@ class Energy(ABC):
         """Force [N] by which what is held fixed while minimising is off what it should be at `nodes`; 0 for most."""
         return 0.0
 
-    def corrected(self, nodes: Nodes, controls: Vector, compliance: Compliance | None) -> Self:
-        """Energy in which that is nearer to what it should be; by Newton's method if a compliance is given."""
+    def corrected(
+        self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
+    ) -> Self:
+        """Energy in which that is nearer to what it should be; by Newton's method if it is told how the body gives way.
+
+        Args:
+            nodes: equilibrium with what is held fixed [m].
+            controls: contractions [m].
+            compliance: how the body gives way to the springs of this energy; None if not known.
+            response: how it gives way to any forces; None if not known.
+        """
         return self
 
     def after(self, nodes: Nodes, controls: Vector) -> Self:

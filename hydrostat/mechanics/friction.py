@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Int
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
 from hydrostat.mechanics.chain_law import ChainLaw
-from hydrostat.mechanics.energy import Blocks, Compliance, Coupling, Energy, HessianBlocks, Small
+from hydrostat.mechanics.energy import Blocks, Compliance, Coupling, Energy, HessianBlocks, Response, Small
 from hydrostat.mechanics.tension_law import TensionLaw
 from hydrostat.mechanics.turns import Turns
 
@@ -185,14 +185,18 @@ class FrictionCableEnergy(Energy):
         slips = self.slips + self.law.slips(self.elongations(nodes, controls))
         return self._with(self.capstan_limits(nodes, controls), slips)
 
-    def corrected(self, nodes: Nodes, controls: Vector, compliance: Compliance | None) -> "FrictionCableEnergy":
+    def corrected(
+        self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
+    ) -> "FrictionCableEnergy":
         """Energy with better limits: those of the capstan law here, or where a step of Newton towards it leads.
 
         Args:
             nodes: equilibrium with the limits as they are [m].
             controls: contractions [m].
             compliance: of the body there.
+            response: not needed.
         """
+        del response
         if compliance is None:
             return self.with_limits(self.capstan_limits(nodes, controls))
         elongations = self.elongations(nodes, controls)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Points, Vector
 
@@ -25,6 +25,8 @@ class Grip:
         normals: of the surface at each sample.
         limits: the largest force along the surface, mu x normal force [N].
         trail: limits tried before and what each asked for, the last ones.
+        share: of the way to what is asked that a correction goes; less where corrections do not bring it nearer.
+        missed: force [N] by which the last correction was off.
     """
 
     friction: float
@@ -33,6 +35,8 @@ class Grip:
     normals: Points
     limits: Vector
     trail: tuple[tuple[Vector, Vector], ...] = ()
+    share: float = 1.0
+    missed: float = np.inf
 
     @classmethod
     def at_rest(cls, friction: float, springs: Vector, places: Points) -> "Grip":
@@ -81,18 +85,47 @@ class Grip:
 
     def asked(self, pushes: Vector, normals: Points) -> "Grip":
         """The same with the limits and normals that these normal forces [N] ask for."""
-        return replace(self, limits=self.friction * pushes, normals=normals, trail=())
+        return replace(self, limits=self.friction * pushes, normals=normals, trail=(), share=1.0, missed=np.inf)
 
     def corrected(self, pushes: Vector, normals: Points) -> "Grip":
         """Limits nearer to what a shape asks for that was found with these (Anderson's acceleration)."""
-        trail = (*self.trail, (self.limits, self.friction * pushes))[-_KEPT:]
-        tried, wanted = (np.array(part) for part in zip(*trail, strict=True))
-        limits = wanted[-1]
-        if len(trail) > 1:
-            misses = wanted - tried
-            turns = np.linalg.lstsq(np.diff(misses, axis=0).T, misses[-1], rcond=1e-10)[0]
-            limits = np.maximum(wanted[-1] - turns @ np.diff(wanted, axis=0), 0.0)
-        return replace(self, limits=limits, normals=normals, trail=trail)
+        wanted = self.friction * pushes
+        return replace(self, limits=self.limits + self.share * (wanted - self.limits), normals=normals)
+
+    def slipping(self, places: Points) -> Bool[np.ndarray, " samples"]:
+        """Which samples are at their limit."""
+        return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - _HAIR) * self.limits)
+
+    def directions(self, places: Points) -> Points:
+        """Unit vectors along the ways from the anchors."""
+        spans, lengths = self.ways(places)
+        return spans / np.where(lengths > 0, lengths, 1.0)[:, None]
+
+    def stepped(
+        self,
+        pushes: Vector,
+        normals: Points,
+        slips: Int[np.ndarray, " slipping"],
+        moves: Float[np.ndarray, "slipping slipping"],
+    ) -> "Grip":
+        """Limits and normals that are asked for, those of the slipping samples by a step of Newton's method.
+
+        Args:
+            pushes: normal forces at these limits [N].
+            normals: of the surface.
+            slips: the samples that slip.
+            moves: how what is asked of these changes with their limits.
+        """
+        wanted = self.friction * pushes
+        limits = self.limits + self.share * (wanted - self.limits)
+        step = np.linalg.solve(np.eye(len(slips)) - self.share * moves, self.share * (wanted - self.limits)[slips])
+        limits[slips] = np.clip(self.limits[slips] + step, 0.0, _MOST * np.maximum(self.limits, wanted)[slips])
+        return replace(self, limits=limits, normals=normals, trail=())
+
+    def judged(self, missed: float) -> "Grip":
+        """The same after a correction that is off by so much [N]: with more care if that is no less than before."""
+        share = max(0.5 * self.share, _LEAST) if missed > _FALLS * self.missed else min(2.0 * self.share, 1.0)
+        return replace(self, share=share, missed=missed)
 
     def slipped(self, places: Points) -> "Grip":
         """The same with anchors that were dragged along to where the springs pull no harder than the limits."""
@@ -104,6 +137,18 @@ class Grip:
         slips = self.springs * lengths > self.limits
         return np.where(slips, self.limits / np.where(slips, lengths, 1.0), self.springs)
 
+
+_HAIR = 1e-9
+"""Nearer to its limit than this share a sample slips."""
+
+_MOST = 4.0
+"""No step makes a limit so many times larger than what was asked."""
+
+_FALLS = 0.8
+"""A correction that leaves more than this share of what was off was too long."""
+
+_LEAST = 1 / 32
+"""No correction goes less than this share of its way."""
 
 _KEPT = 6
 """So many limits tried before are remembered."""

@@ -17,6 +17,7 @@ from hydrostat.mechanics.energy import (
     Energy,
     HessianBlocks,
     Places,
+    Response,
     Stencils,
     add_blocks,
     nearest_semidefinite,
@@ -99,9 +100,10 @@ class ObstacleEnergy(Energy):
             return self.shares[:, :, None] * forces[:, None, :]
         return np.einsum("tk,tkri->tri", forces, self._slopes(nodes, np.arange(len(places))))
 
-    def forces(self, nodes: Nodes) -> Points:
-        """Force of the obstacle on each sample, in the frame of the obstacle [N]."""
-        return -self._forces(self.places(nodes))
+    def push(self, nodes: Nodes) -> Vector:
+        """Force of the body on the obstacle [N]."""
+        total = self._forces(self.places(nodes)).sum(axis=0)
+        return total if self.carriage is None else total @ self.carriage.axes(nodes)
 
     def _forces(self, places: Points) -> Points:
         """Slope of the energy by the place of each sample in the frame [N]."""
@@ -164,10 +166,34 @@ class ObstacleEnergy(Energy):
         asked = self.grip.asked(*self._pushes(places))
         return float(np.abs(asked.forces(places) - self.grip.forces(places)).max(initial=0.0))
 
-    def corrected(self, nodes: Nodes, controls: Vector, compliance: Compliance | None) -> "ObstacleEnergy":
+    def corrected(
+        self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
+    ) -> "ObstacleEnergy":
         if self.grip is None:
             return self
-        return self._gripping(self.grip.corrected(*self._pushes(self.places(nodes))))
+        places, grip = self.places(nodes), self.grip.judged(self.imbalance(nodes, controls))
+        slips = np.flatnonzero(grip.slipping(places))
+        pushes, normals = self._pushes(places)
+        if response is None or not len(slips):
+            return self._gripping(grip.corrected(pushes, normals))
+        found = Distances(*(part[slips] for part in self.field(places)))
+        rises = -self._derivatives(found, self.weights[slips])[1][:, None] * found.normals  # of the pushes
+        ways = grip.only(slips).directions(places[slips])
+        by_push, by_limit = (self._columns(nodes, slips, rows) for rows in (rises, ways))
+        moves = -grip.friction * (by_push.T @ response(by_limit))
+        return self._gripping(grip.stepped(pushes, normals, slips, moves))
+
+    def _columns(self, nodes: Nodes, some: np.ndarray, rows: Points) -> Float[np.ndarray, "dofs some"]:
+        """Slopes by all degrees of freedom of numbers with these slopes by the place of one sample each."""
+        slopes = self._slopes(nodes, some) if self.carriage is not None else self._still_slopes(some)
+        blocks = np.einsum("tk,tkri->tri", rows, slopes)
+        columns = np.zeros((*nodes.shape, len(some)))
+        for column, (stencil, block) in enumerate(zip(self.stencils[some], blocks, strict=True)):
+            columns[stencil, :, column] += block
+        return columns.reshape(nodes.size, len(some))
+
+    def _still_slopes(self, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
+        return np.einsum("tc,ki->tkci", self.shares[some], np.eye(self.shares.shape[1]))
 
     def after(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
         if self.grip is None:

@@ -40,6 +40,7 @@ class BodyPhysics:
         masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
         inertias: the masses that the unknowns have in motion [kg], (rows,).
         carriages: where the unknowns of obstacles that move are, by their number among the obstacles.
+        obstacles: energies of the obstacles, by their number among all energies of a simulation.
         begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the obstacles that move.
     """
 
@@ -68,7 +69,12 @@ class BodyPhysics:
             energies.append(PatchVolume(self.begin, mesh.elements, patches, lame=lame, thickness=thickness))
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.begin, self._heavy[:, None] * np.array(robot.gravity)))
-        energies += self._contact(robot)
+        if robot.contact is not None:
+            energies.append(ContactEnergy.of(mesh, **_felt(robot), rest=self.begin))
+        self.obstacles = []
+        for index, obstacle in enumerate(robot.obstacles):
+            self.obstacles.append(len(energies))
+            energies += self._met(robot, obstacle, self.carriages.get(index))
         self.assembly = Assembly(energies, rest=self.begin, control_count=0)
 
     def fits(self, robot: Robot) -> bool:
@@ -93,19 +99,16 @@ class BodyPhysics:
             heavy[carriage.rows[1:]] = 0.0
         return heavy
 
-    def _contact(self, robot: Robot) -> list[Energy]:
-        """What keeps the body from passing through itself, if it has contact, and through obstacles."""
-        body, distance, young = robot.body, robot.contact_distance, robot.body.material.young
-        felt: dict[str, Any] = {"distance": distance, "young": young, "thickness": body.thickness}
-        energies: list[Energy] = [] if robot.contact is None else [ContactEnergy.of(body.mesh, **felt, rest=self.begin)]
-        for index, obstacle in enumerate(robot.obstacles):
-            carriage, friction = self.carriages.get(index), robot.friction_of(obstacle)
-            field = (obstacle if carriage is None else obstacle.centred()).field()
-            met = ObstacleEnergy(body.mesh, field, **felt, friction=friction, carriage=carriage)
-            energies.append(met.begun(self.begin))
-            if carriage is not None:
-                energies.append(RigidEnergy(carriage, _RIGID * young * carriage.length**3))
-        return energies
+    def _met(self, robot: Robot, obstacle: Obstacle, carriage: Carriage | None) -> list[Energy]:
+        """What keeps the body from passing through an obstacle; and the obstacle rigid, if it moves."""
+        field = (obstacle if carriage is None else obstacle.centred()).field()
+        friction = robot.friction_of(obstacle)
+        met = ObstacleEnergy(robot.body.mesh, field, **_felt(robot), friction=friction, carriage=carriage)
+        rigid = _RIGID * robot.body.material.young
+        return [
+            met.begun(self.begin),
+            *([] if carriage is None else [RigidEnergy(carriage, rigid * carriage.length**3)]),
+        ]
 
     @cached_property
     def warp(self) -> Bend:
@@ -146,6 +149,12 @@ class BodyPhysics:
         springs = [pin.stiffness for pin in pins]
         springs += [_RIGID * body.material.young * carriage.length for carriage in self.carriages.values()]
         return scale, reach, max(springs, default=0.0), body.mesh.size
+
+
+def _felt(robot: Robot) -> dict[str, Any]:
+    """How what touches the body is felt."""
+    body = robot.body
+    return {"distance": robot.contact_distance, "young": body.material.young, "thickness": body.thickness}
 
 
 def _carriages(robot: Robot) -> dict[int, Carriage]:

@@ -92,7 +92,7 @@ class LoadingPath:
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 4) -> _PathState:
         """The next equilibrium, by way of more if it is not found: so often is the increment halved."""
         found = self._solve(state, goal)
-        if found.arrived or not halvings:
+        if found.arrived or not halvings or (goal == state.contractions).all():
             return found
         middle = self._advance(state, 0.5 * (state.contractions + goal), halvings - 1)
         if not middle.arrived:

@@ -92,6 +92,12 @@ class Simulation:
         other.solver = replace(self.solver, assembly=other.assembly)
         return other
 
+    def obstacle_forces(self, pose: SolvedPose) -> Float[np.ndarray, "obstacles dim"]:
+        """Force of the body on each obstacle at an equilibrium [N], friction included."""
+        assembly = self.path.resumed(pose) if self.assembly.has_history else self.assembly
+        forces = [assembly.energies[slot].push(pose.unknowns) for slot in self.body.obstacles]  # type: ignore[attr-defined]
+        return np.array(forces).reshape(len(forces), pose.nodes.shape[1])
+
     @cached_property
     def smooth(self) -> "Simulation":
         """The same without friction on obstacles; itself where there is none."""

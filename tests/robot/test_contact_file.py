@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from builders import gallery_robot
 
@@ -16,6 +17,7 @@ OTHERS = (
     Obstacle(name="ball", shape="sphere", at=(0.3, 0.0), radius=0.02),
     Obstacle(name="rod", shape="capsule", at=(0.3, 0.1), to=(0.4, 0.2), radius=0.01),
     Obstacle(name="step", shape="box", at=(-0.3, 0.0), to=(-0.2, 0.1)),
+    Obstacle(name="puck", shape="sphere", at=(0.3, 0.0), radius=0.02, friction=0.4, mass=0.05),
 )
 
 
@@ -23,7 +25,7 @@ def starfish(contact: Contact | None = None, *obstacles: Obstacle) -> Robot:
     return replace(gallery_robot("starfish"), contact=contact, obstacles=obstacles)
 
 
-@pytest.mark.parametrize("contact", [None, Contact(), Contact(distance=2e-3)])
+@pytest.mark.parametrize("contact", [None, Contact(), Contact(distance=2e-3), Contact(friction=0.3)])
 def test_what_is_written_is_read(contact: Contact | None, tmp_path: Path) -> None:
     robot = starfish(contact, *OTHERS)
     save_robot(robot, tmp_path / "star")
@@ -59,7 +61,19 @@ def test_the_distance_is_a_share_of_the_size() -> None:
             r"contact.distance of 90 mm is large beside a body of 279.3 mm; it is usually",
         ),
         ("[contact]\ndistance = 1", r"line \d+: contact.distance: 1 has no unit"),
-        ("[contact]\nfriction = 0.3", r'contact: unknown key "friction"|contact.friction'),
+        ("[contact]\nfriction = 30", r"line \d+: contact.friction|contact: friction must be from 0 to 3, not 30"),
+        (
+            '[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]\nradius = 5\nfriction = -1',
+            r"obstacle\[0\].friction must be from 0 to 3, not -1",
+        ),
+        (
+            '[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]\nradius = 5\nmass = "0 g"',
+            r"obstacle\[0\].mass must be finite and above 0",
+        ),
+        (
+            '[[obstacle]]\nname = "a"\nshape = "plane"\nat = [0, -900]\nnormal = [0, 1]\nmass = "5 g"',
+            r"obstacle\[0\]: a plane has no end, so no mass",
+        ),
         ('[[obstacle]]\nname = "a"\nshape = "cone"\nat = [900, 0]', r"obstacle\[0\].shape"),
         ('[[obstacle]]\nname = "a"\nshape = "sphere"\nat = [900, 0]', r"obstacle\[0\]: a sphere needs a radius"),
         ('[[obstacle]]\nname = "a"\nshape = "plane"\nat = [0, 0]\nnormal = [0, 0]', "normal must not be 0"),
@@ -93,3 +107,27 @@ def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path
 def test_a_body_that_crosses_itself_at_rest_is_risky() -> None:
     robot = starfish(Contact())
     assert not any("passes through itself" in risk for risk in find_risks(robot))
+
+
+def test_friction_of_an_obstacle_is_its_own_or_that_of_the_contact() -> None:
+    puck = OTHERS[-1]
+    assert starfish(Contact(friction=0.2), WALL).friction_of(WALL) == 0.2
+    assert starfish(Contact(friction=0.2), puck).friction_of(puck) == 0.4
+    assert starfish(None, WALL).friction_of(WALL) == 0.0
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("shape", ["sphere", "capsule", "cylinder", "box"])
+def test_second_moments_and_frames(shape: str, dim: int) -> None:
+    """Oracle: points drawn within, and distances that do not care in which frame they are told."""
+    if shape == "cylinder" and dim == 2:
+        pytest.skip("a flat body meets no cylinder")
+    sizes = {"sphere": {"radius": 0.03}, "box": {"to": (0.1, 0.08, 0.07)[:dim]}}
+    rod = {"to": (0.1, 0.05, 0.02)[:dim], "radius": 0.03}
+    thing = Obstacle(name="thing", shape=shape, at=(0.01,) * dim, mass=1.0, **sizes.get(shape, rod))
+    place, axes = thing.frame()
+    points = np.random.default_rng(0).uniform(-0.12, 0.12, (400_000, dim))
+    distances = thing.centred().field()(points).values
+    assert np.allclose(thing.field()(place + points[:1000] @ axes).values, distances[:1000], atol=1e-12)
+    assert axes @ axes.T == pytest.approx(np.eye(dim), abs=1e-12)
+    assert (points[distances < 0] ** 2).mean(axis=0) == pytest.approx(thing.second_moments(), rel=0.03)

@@ -1,6 +1,7 @@
 """Many poses at once. Oracles: one solve after the other, to the byte; finite differences; errors put in on purpose."""
 
 import _thread
+import signal
 import threading
 import time
 from collections.abc import Callable
@@ -191,8 +192,12 @@ def test_an_interrupt_ends_it(simulation: Simulation, monkeypatch: pytest.Monkey
         return solve(goal, **options)
 
     monkeypatch.setattr(simulation, "solve", slow)
-    with pytest.raises(KeyboardInterrupt):
-        simulation.solve_many(np.zeros((10_000, len(simulation.robot.winches))), threads=threads)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it comes ignored
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            simulation.solve_many(np.zeros((10_000, len(simulation.robot.winches))), threads=threads)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert len(solved) < 1000
 
 

@@ -142,7 +142,7 @@ class YieldingTie(Energy):
     def imbalance(self, nodes, controls):
         return max(self.stiffness * float(np.linalg.norm(self._off(nodes))) - self.limit, 0.0)
 
-    def corrected(self, nodes, controls, compliance):
+    def corrected(self, nodes, controls, compliance, response=None):
         off = self._off(nodes)
         size = float(np.linalg.norm(off))
         return self._with(self.slip + off * max(1.0 - self.limit / (self.stiffness * size), 0.0) if size else self.slip)

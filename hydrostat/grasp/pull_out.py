@@ -1,0 +1,163 @@
+"""`pull_out`: a robot closes on a thing, which is then pulled away; the force that it takes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.mechanics.rigid import GuideEnergy
+from hydrostat.robot import Obstacle, Robot
+from hydrostat.simulation import BodyPhysics, Contractions, Simulation, SolvedPose
+
+Tell = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PullOptions:
+    """How a thing is pulled.
+
+    Attributes:
+        direction: of the pull, of any length.
+        step: how far the hand that pulls goes at a time [m].
+        travel: the most that it goes [m]; None: the size of the thing and a half.
+        along: stiffness of what pulls [N/m].
+        across: stiffness that holds the thing across the pull [N/m], and against turning, there at its rim.
+
+    Raises:
+        InputError: no direction, or a number that is not above 0.
+    """
+
+    direction: tuple[float, ...]
+    step: float = 1e-3
+    travel: float | None = None
+    along: float = 5e3
+    across: float = 5e3
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.direction).all() and np.any(self.direction)):
+            raise InputError("the pull must have a direction, such as +z")
+        for name in ("step", "along", "across"):
+            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
+                raise InputError(f"{name} of the pull must be above 0, not {getattr(self, name):g}")
+
+    @property
+    def unit(self) -> Vector:
+        """Direction of the pull, of length 1."""
+        return np.array(self.direction) / np.linalg.norm(self.direction)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PullOut:
+    """A thing pulled out of a grasp, step by step; the first row is the grasp before the pull.
+
+    Attributes:
+        robot: with the thing as its last obstacle.
+        pulled: how far the hand that pulls has gone [m], (rows,).
+        moved: how far the thing has gone along the pull [m], (rows,).
+        forces: along the pull, that it takes to hold the thing there [N], (rows,).
+        contact: force of the robot on the thing [N], (rows, dim).
+        poses: of the robot, with the thing.
+        released: whether nothing touched the thing at the end.
+        reason: why the pull ended, in words.
+    """
+
+    robot: Robot
+    pulled: Vector
+    moved: Vector
+    forces: Vector
+    contact: Points
+    poses: tuple[SolvedPose, ...]
+    released: bool
+    reason: str
+
+    @property
+    def peak(self) -> float:
+        """The largest force [N]."""
+        return float(self.forces.max())
+
+    @property
+    def work(self) -> float:
+        """Work of the pull up to where the thing comes free [J]: without friction, the energy that held it."""
+        return float(np.trapezoid(np.maximum(self.forces, 0.0), self.moved))
+
+
+def pull_out(
+    robot: Robot,
+    thing: Obstacle,
+    contractions: Contractions,
+    options: PullOptions,
+    *,
+    tell: Tell | None = None,
+) -> PullOut:
+    """Close a robot on a thing that is held still, let the thing find its balance, then pull it away in small steps.
+
+    The thing is held by springs: along the pull one so stiff that the force may fall after its peak, across it one so
+    weak that the thing follows the grasp. Friction remembers the way, so the answer does not depend on the steps.
+
+    Args:
+        robot: which.
+        thing: with a mass; where it is at rest, clear of the body.
+        contractions: that close the robot [m].
+        options: of the pull.
+        tell: is told "pulling", how far it has come, and how far at most [mm].
+
+    Raises:
+        InputError: a thing that stands in the body, has no mass, or is never touched.
+        NotConvergedError: the robot could not be closed.
+    """
+    if thing.mass is None:
+        raise InputError(f'"{thing.name}" has no mass; give it one, such as 58 g')
+    full = replace(robot, obstacles=(*robot.obstacles, thing))
+    body = BodyPhysics(full)
+    carriage = body.carriages[len(robot.obstacles)]
+    place, axes = thing.frame()
+    unit, dim = options.unit, len(place)
+    whole = np.eye(dim)
+    held = GuideEnergy(carriage, place=place, axes=axes, along=options.along * whole, turning=options.along)
+    closing = Simulation(full, body=body, energies=[held])
+    pose = closing.solve(contractions)
+    if not closing.obstacle_forces(pose)[-1].any():
+        raise InputError(f'"{thing.name}" is touched by nothing when the robot has closed; put it elsewhere')
+    straight = np.outer(unit, unit)
+    springs = options.along * straight + options.across * (whole - straight)
+    rows: list[tuple[float, SolvedPose, Vector, Vector]] = []
+    travel = options.travel or 1.5 * _size(thing)
+    count, reason = max(1, int(np.ceil(travel / options.step))), "the hand that pulls has gone all its way"
+    for number in range(count + 1):
+        pulled = min(number * options.step, travel)
+        guide = GuideEnergy(carriage, place=place + pulled * unit, axes=axes, along=springs, turning=options.across)
+        pulling = closing.replacing(held, guide)
+        found = pulling.solve(contractions, start=pose, strict=False)
+        if not found.result.converged:
+            reason = f"no equilibrium found after {1e3 * pulled:.3g} mm: {found.result.reason}"
+            break
+        pose = found
+        push = pulling.obstacle_forces(pose)[-1]
+        rows.append((pulled, pose.without_factors(), guide.pull(pose.unknowns), push))
+        if tell is not None:
+            tell("pulling [mm]", round(1e3 * pulled), round(1e3 * travel))
+        if number and not push.any():
+            reason = "the thing is free"
+            break
+    if not rows:
+        raise InputError(f'"{thing.name}" finds no balance in the grasp before it is pulled: {reason}')
+    if tell is not None:
+        tell("pulling [mm]", round(1e3 * travel), round(1e3 * travel))
+    distances, poses, pulls, pushes = zip(*rows, strict=True)
+    return PullOut(
+        robot=full,
+        pulled=np.array(distances),
+        moved=np.array([(carriage.place(pose.unknowns) - place) @ unit for pose in poses]),
+        forces=np.array(pulls) @ unit,
+        contact=np.array(pushes),
+        poses=poses,
+        released=not pushes[-1].any(),
+        reason=reason,
+    )
+
+
+def _size(thing: Obstacle) -> float:
+    """About how large a thing is [m]."""
+    return float(np.sqrt(12 * thing.second_moments().max()))
