@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.learned import learned_start, read_model
 from hydrostat.cli.options import EqualWinches, MostTension, pose_limits
 from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
@@ -35,11 +36,15 @@ def pose(
         int | None, typer.Option(metavar="N", help="How often to begin elsewhere where a goal is missed.")
     ] = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
+    model: Annotated[
+        Path | None, typer.Option(metavar="MODEL", help="Begin from what hydrostat learn has written.")
+    ] = None,
 ) -> None:
     """Find the contractions that come nearest to a pose.
 
     Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png; several poses get a folder each.
-    A pose is markers at points, or with --drawing a whole shape; --pose and --drawing together are both.
+    A pose is markers at points, or with --drawing a whole shape; --pose and --drawing together are both. With --model
+    it tells what the networks expect and what the simulator finds there, and begins from it.
 
     Example: hydrostat pose examples/starfish --pose wave --out build/wave
     """
@@ -55,11 +60,13 @@ def pose(
     outline = None if drawing is None else drawn_pose(loaded, drawing)
     wishes = [] if outline is None else [ShapeGoal(outline=outline)]
     targets = _targets(loaded, robot, name, drawing)
+    learned, loaded = (None, loaded) if model is None else read_model(model, loaded)
     simulation = Simulation(loaded)
     stuck = False
     for title, target in targets:
         began = time.process_time()
-        reached = solve_ik(simulation, target, limits=limits, objectives=wishes, options=options)
+        start = None if learned is None or target is None else learned_start(simulation, learned, target)
+        reached = solve_ik(simulation, target, limits=limits, objectives=wishes, start=start, options=options)
         seconds = time.process_time() - began
         folder: Path = out / title if len(targets) > 1 else out
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)

@@ -1,9 +1,15 @@
 """Learned inverse kinematics: samples of the simulator, networks trained on them, answers certified by it."""
 
+from hydrostat.learning.certify import certify, solve_exactly
 from hydrostat.learning.draw import Draw
 from hydrostat.learning.export import EXPORTS, export_samples
+from hydrostat.learning.learn_model import learn_model
+from hydrostat.learning.learn_options import LearnOptions
+from hydrostat.learning.learned_model import LearnedModel
+from hydrostat.learning.learned_pose import LearnedPose, Tier
+from hydrostat.learning.model_file import load_model, save_model
 from hydrostat.learning.sample_folder import SampleFolder
-from hydrostat.learning.sample_plan import SamplePlan, plan_samples
+from hydrostat.learning.sample_plan import SamplePlan, physics_hash, plan_samples
 from hydrostat.learning.sample_robot import BACKENDS, sample_robot
 from hydrostat.learning.sample_shard import sample_shard
 from hydrostat.learning.samples import Samples, read_samples
@@ -12,12 +18,22 @@ __all__ = [
     "BACKENDS",
     "EXPORTS",
     "Draw",
+    "LearnOptions",
+    "LearnedModel",
+    "LearnedPose",
     "SampleFolder",
     "SamplePlan",
     "Samples",
+    "Tier",
+    "certify",
     "export_samples",
+    "learn_model",
+    "load_model",
+    "physics_hash",
     "plan_samples",
     "read_samples",
     "sample_robot",
     "sample_shard",
+    "save_model",
+    "solve_exactly",
 ]

@@ -1,0 +1,53 @@
+"""`hydrostat learn`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrostat.cli.sample import told
+from hydrostat.cli.waiting import one_interrupt
+from hydrostat.errors import InputError
+
+
+def learn(
+    data: Annotated[Path, typer.Argument(metavar="DATA", help="Folder of samples that hydrostat sample has written.")],
+    out: Annotated[Path, typer.Option(metavar="MODEL", help="The file to write.")],
+    count: Annotated[int | None, typer.Option(metavar="N", help="Learn from the first N samples; default all.")] = None,
+    members: Annotated[
+        int | None, typer.Option(metavar="N", help="Networks; their disagreement is the model's doubt.")
+    ] = None,
+    steps: Annotated[
+        int | None, typer.Option(metavar="N", help="Of training; more take longer and err a little less.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of all that is drawn at random.")] = 0,
+    threads: Annotated[int, typer.Option(metavar="N", help="Cores to train on.")] = 1,
+) -> None:
+    """Learn from samples where a robot's markers go, and how to bring them somewhere.
+
+    Writes one file that needs no simulator and no PyTorch to be used: hydrostat pose ROBOT --model MODEL, or in Python
+    hydrostat.learning.load_model(MODEL).solve(targets). Ctrl-C ends it early; the file then holds the best so far.
+
+    Example: hydrostat learn build/samples --out build/starfish.model
+    """
+    from hydrostat.learning import LearnOptions, learn_model, read_samples, save_model
+
+    if out.is_dir() or not out.parent.is_dir():
+        raise InputError(f"--out {out}: {'is a folder' if out.is_dir() else 'its folder is not there'}; name a file")
+    chosen = {"members": members, "steps": steps}
+    options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})
+    samples = read_samples(data)
+    samples = samples if count is None else samples.first(count)
+    with one_interrupt("stopping; what was learned so far is kept"):
+        model = learn_model(samples, options=options, tell=told())
+        save_model(model, out)
+    facts = model.facts
+    moved, error = 1e3 * facts["displacement"], 1e3 * facts["error"]
+    print(f"{len(samples)} samples: markers that move {moved:.1f} mm are expected within {error:.3f} mm", end="")
+    print("" if facts["inverse_error"] is None else f", brought back within {1e3 * facts['inverse_error']:.3f} mm")
+    print(f"Wrote {out}")
+    if facts["stopped"]:
+        print(
+            "It was stopped early: this is the best so far" + ("" if model.inverse else ", without an inverse network")
+        )
+        raise typer.Exit(130)

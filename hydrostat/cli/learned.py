@@ -1,0 +1,37 @@
+"""A learned model on the command line: to be read for a robot, and to begin from."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hydrostat.learning import LearnedModel
+    from hydrostat.robot import Pose, Robot
+    from hydrostat.simulation import Simulation, SolvedPose
+
+
+def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
+    """A model, and the robot, which feels contact if the model knows it (InputError: it is another robot's)."""
+    from hydrostat.learning import load_model
+    from hydrostat.robot import Contact
+
+    model = load_model(path)
+    if model.facts["contact"] and robot.contact is None:
+        robot = replace(robot, contact=Contact())
+        print("note: the model knows contact, so the body feels itself here too")
+    model.check(robot)
+    return model, robot
+
+
+def learned_start(simulation: "Simulation", model: "LearnedModel", target: "Pose") -> "SolvedPose | None":
+    """The pose that a model's answer leads to, and a line about it; None where that is no equilibrium."""
+    from hydrostat.learning import certify
+
+    found = certify(simulation, model, model.solve(target))
+    expected = sum(found.errors.values()) / len(found.errors)
+    words = f"networks expect {1e3 * expected:.2f} mm left, with a doubt of {1e3 * found.doubt:.2f} mm"
+    if found.certified is None:
+        print(f"{target.name}: {words}; there the simulator says: {found.reason}")
+        return None
+    print(f"{target.name}: {words}; the simulator finds {1e3 * found.error:.2f} mm there")
+    return found.pose

@@ -1,0 +1,82 @@
+"""`learn_model`: from samples to a model."""
+
+import time
+from dataclasses import asdict
+from importlib.metadata import version
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.learning.learn_options import LearnOptions
+from hydrostat.learning.learned_model import LearnedModel
+from hydrostat.learning.lesson import lesson_of
+from hydrostat.learning.sample_robot import Tell
+from hydrostat.learning.samples import Samples
+
+
+def learn_model(samples: Samples, *, options: LearnOptions | None = None, tell: Tell | None = None) -> LearnedModel:
+    """Train forward networks on values and slopes of samples, then an inverse network through them. Needs PyTorch.
+
+    Ctrl-C ends it early: the model is then the best so far, without an inverse network if that was not begun, and says
+    so in `facts["stopped"]`.
+
+    Args:
+        samples: of one robot.
+        options: how.
+        tell: is told "forward" or "inverse", steps done, and steps in all.
+
+    Raises:
+        InputError: too few samples, or no PyTorch.
+        KeyboardInterrupt: before there was anything to keep.
+    """
+    from hydrostat.learning.train import train_forward, train_inverse
+
+    options, told = options or LearnOptions(), tell or _silent
+    began, lesson, dim = time.process_time(), lesson_of(samples), samples.facts["dim"]
+    length = float(lesson.unit[0])
+    forward = train_forward(lesson, dim, options, told)
+    if not np.isfinite(forward.error):
+        if forward.stopped:
+            raise KeyboardInterrupt
+        raise InputError("the networks learned nothing: try a smaller rate")
+    inverse = None if forward.stopped else train_inverse(lesson, dim, forward.networks, options, told)
+    some = np.linspace(0, len(samples) - 1, min(len(samples), KNOWN)).astype(int)
+    facts = {name: samples.facts[name] for name in _KEPT} | {
+        "version": version("hydrostat"),
+        "samples": len(samples),
+        "lost": samples.lost,
+        "error": length * forward.error,
+        "inverse_error": None if inverse is None or not np.isfinite(inverse.error) else length * inverse.error,
+        "displacement": float(_moved(samples.markers).mean()),
+        "stopped": forward.stopped or (inverse is not None and inverse.stopped),
+        "options": asdict(options),
+        "seconds": time.process_time() - began,
+    }
+    return LearnedModel(
+        facts=facts,
+        low=lesson.low,
+        high=lesson.high,
+        middle=lesson.middle,
+        unit=lesson.unit,
+        forward=forward.networks,
+        inverse=None if inverse is None or not np.isfinite(inverse.error) else inverse.networks,
+        known=samples.contractions[some].astype(np.float32).astype(float),
+        reached=samples.markers[some].reshape(len(some), -1).astype(np.float32).astype(float),
+    )
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """Tell nothing."""
+    del stage, done, total
+
+
+def _moved(markers: np.ndarray) -> np.ndarray:
+    """How far markers are from their mean."""
+    return np.linalg.norm(markers - markers.mean(axis=0), axis=-1)
+
+
+KNOWN = 2000
+"""So many samples a model keeps, to begin a search from."""
+
+_KEPT = ("robot", "physics", "contact", "draws", "winches", "markers", "cables", "dim", "node_count", "size")
+"""Facts of the samples that a model tells."""

@@ -1,0 +1,56 @@
+"""`LearnOptions`: how networks are trained."""
+
+from dataclasses import dataclass
+from math import isfinite
+
+from hydrostat.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class LearnOptions:
+    """How networks are trained. Defaults were measured on the cupping hand (docs/decisions/0035-learning.md).
+
+    Attributes:
+        members: forward networks, each of which holds out other samples; their disagreement is the model's doubt.
+        width: units in each hidden layer.
+        depth: hidden layers.
+        steps: of training the forward networks.
+        inverse_steps: of training the inverse network.
+        batch: samples in a step.
+        rate: largest learning rate; it rises, then falls as a cosine.
+        slopes: how much errors of slopes count beside those of values; 0 learns from values alone.
+        directions: along which slopes are compared, drawn anew in each step.
+        tensions: how much errors of tensions count beside those of markers.
+        effort: how much the inverse network minds tension and contraction, so that its answer is one.
+        held_out: share of the samples that a network does not learn from, but is chosen by.
+        seed: of all that is drawn at random.
+        threads: cores that PyTorch may use.
+    """
+
+    members: int = 3
+    width: int = 128
+    depth: int = 3
+    steps: int = 6000
+    inverse_steps: int = 4000
+    batch: int = 128
+    rate: float = 3e-3
+    slopes: float = 0.1
+    directions: int = 3
+    tensions: float = 0.1
+    effort: float = 1e-5
+    held_out: float = 0.1
+    seed: int = 0
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        for name in ("members", "width", "depth", "steps", "inverse_steps", "batch", "directions", "threads"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
+        for name in ("rate", "slopes", "tensions", "effort"):
+            value = getattr(self, name)
+            if not (isfinite(value) and value >= 0) or (name == "rate" and value == 0):
+                raise InputError(f"{name} must be {'above 0' if name == 'rate' else '0 or more'}, not {value:g}")
+        if not 0 < self.held_out <= 0.5:
+            raise InputError(f"held_out must be above 0 and at most 0.5, not {self.held_out:g}")
+        if self.seed < 0:
+            raise InputError(f"seed must be 0 or more, not {self.seed}")

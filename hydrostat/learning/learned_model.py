@@ -1,0 +1,201 @@
+"""`LearnedModel`: networks that know where the markers of one robot go, and how to bring them somewhere."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.ik import Targets
+from hydrostat.ik.objectives.marker_goal import named_targets
+from hydrostat.learning.learned_pose import LearnedPose, Tier
+from hydrostat.learning.perceptrons import Perceptrons
+from hydrostat.learning.sample_plan import physics_hash
+from hydrostat.robot import Pose, Robot
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LearnedModel:
+    """Networks of one robot; `solve` needs neither its simulator nor torch.
+
+    Inside, contractions are numbers from -1 to 1 between the least and the most that the winches take in, and what is
+    expected (markers, then tensions) is counted from its mean in a unit for each.
+
+    Attributes:
+        facts: which robot it is, what was learned from, how, and with what success.
+        low: least contraction of each winch [m].
+        high: largest [m].
+        middle: mean of what is expected: of the coordinates of the markers [m], then of the tensions [N].
+        unit: of each of them.
+        forward: from contractions to what is expected; several, learned apart, so that they can disagree.
+        inverse: from markers to contractions; None where learning was stopped before.
+        known: contractions of samples to begin a search from [m].
+        reached: where the markers were then [m], a row each.
+    """
+
+    facts: Mapping[str, Any]
+    low: Vector
+    high: Vector
+    middle: Vector
+    unit: Vector
+    forward: Perceptrons
+    inverse: Perceptrons | None
+    known: Float[np.ndarray, "samples winches"]
+    reached: Float[np.ndarray, "samples coordinates"]
+
+    def check(self, robot: Robot) -> None:
+        """Check that this was learned of a robot.
+
+        Raises:
+            InputError: it was learned of another, or the one feels contact and the other does not.
+        """
+        if self.facts["physics"] != physics_hash(robot):
+            raise InputError(
+                f"the model was learned of another robot than {robot.name!r} ({self.facts['robot']!r}, or what it was "
+                f"before it was changed): sample and learn again"
+            )
+        if self.facts["contact"] != (robot.contact is not None):
+            have, lack = ("the model", "the robot") if self.facts["contact"] else ("the robot", "the model")
+            raise InputError(f"{have} knows contact and {lack} does not: give both or none [contact]")
+
+    def expect(self, contractions: Vector) -> tuple[Vector, Vector]:
+        """What is expected at contractions [m]: coordinates of the markers [m], then tensions [N]; and their spread."""
+        values = self.forward.values(self._scaled(self._winches(contractions)))
+        return self.middle + self.unit * values.mean(axis=0), self.unit * values.std(axis=0)
+
+    def slopes(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
+        """How the networks expect the markers to go when winches take in cable."""
+        _, slopes = self.forward.slopes(self._scaled(self._winches(contractions)))
+        return (self.unit[:, None] * slopes / (0.5 * self._span))[: self._coordinates]
+
+    def inverted(self, markers: Vector) -> Vector:
+        """Contractions [m] by the inverse network alone, for coordinates of all markers [m] in their order.
+
+        Raises:
+            InputError: there is no inverse network, or another number of coordinates.
+        """
+        if self.inverse is None:
+            raise InputError("the model has no inverse network: its learning was stopped before")
+        given = np.asarray(markers, dtype=float).ravel()
+        count = self._coordinates
+        if given.shape != (count,) or not np.isfinite(given).all():
+            raise InputError(f"markers must be {count} finite coordinates [m]")
+        raw = self.inverse.values((given - self.middle[:count]) / self.unit[:count])[0]
+        return self._contractions(np.clip(_BEYOND * np.tanh(raw), -1.0, 1.0))
+
+    def solve(self, targets: Targets, *, search: bool = True) -> LearnedPose:
+        """Contractions that bring markers to targets, as the networks know it.
+
+        Args:
+            targets: where markers should go [m]; markers that are not named may go anywhere.
+            search: whether to search on the networks from the inverse network's answer, and, where that leaves more
+                than usual, from the nearest samples. The inverse network alone is faster.
+
+        Raises:
+            InputError: no targets, a marker that the model does not have, no place in the body's space; a model without
+                an inverse network that may not search.
+        """
+        target = self._pose(targets)
+        goal, asked = self._goal(target)
+        whole = np.where(asked, goal, self._nearest(goal, asked, 1)[1][0])
+        if not search:
+            return self.judged(target, self.inverted(whole), Tier.NETWORK)
+        return self.judged(target, self._search(whole, asked), Tier.SEARCH)
+
+    def judged(self, target: Pose, contractions: Vector, tier: Tier) -> LearnedPose:
+        """An answer, with what the networks say of it."""
+        expected, spread = self.expect(contractions)
+        names, dim, count = self.facts["markers"], self.facts["dim"], self._coordinates
+        markers = dict(zip(names, expected[:count].reshape(-1, dim), strict=True))
+        doubts = np.linalg.norm(spread[:count].reshape(-1, dim), axis=1)
+        asked = [name for name in names if name in target.targets]
+        return LearnedPose(
+            target=target,
+            tier=tier,
+            contractions=contractions,
+            commands=dict(zip(self.facts["winches"], contractions.tolist(), strict=True)),
+            markers=markers,
+            tensions=dict(zip(self.facts["cables"], np.maximum(expected[count:], 0.0).tolist(), strict=True)),
+            errors={name: float(np.linalg.norm(markers[name] - np.array(target.targets[name]))) for name in asked},
+            spread={name: float(doubts[names.index(name)]) for name in asked},
+        )
+
+    def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
+        """The best of descents from the inverse network's answer and, if need be, from samples."""
+        count = self._coordinates
+        weights = np.zeros(len(self.unit))
+        weights[:count] = asked * self.unit[:count]  # what is left is then in metres
+        wanted = np.zeros(len(self.unit))
+        wanted[:count] = (goal - self.middle[:count]) / self.unit[:count]
+        enough = asked.sum() / self.facts["dim"] * (_USUAL * self.facts["error"]) ** 2
+        starts = [] if self.inverse is None else [self.inverted(goal)]
+        best, least = np.zeros(len(self.low)), np.inf
+        for start in [*starts, *self._nearest(goal, asked, _STARTS)[0]]:
+            found, left = self.forward.descend(self._scaled(start), wanted, weights)
+            if left < least:
+                best, least = found, left
+            if least <= enough:
+                break
+        return self._contractions(best)
+
+    def _nearest(self, goal: Vector, asked: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Samples whose markers were nearest to what is asked: contractions, coordinates."""
+        squares = np.square(self.reached[:, asked] - goal[asked]).sum(axis=1)
+        best = np.argsort(squares, kind="stable")[:count] if count > 1 else squares.argmin(keepdims=True)
+        return self.known[best], self.reached[best]
+
+    def _pose(self, targets: Targets) -> Pose:
+        return targets if isinstance(targets, Pose) else Pose(name="target", targets=dict(named_targets(targets)))
+
+    def _goal(self, target: Pose) -> tuple[Vector, np.ndarray]:
+        """Coordinates of all markers [m], and which of them are asked for."""
+        names, dim = self.facts["markers"], self.facts["dim"]
+        goal, asked = np.zeros((len(names), dim)), np.zeros((len(names), dim), dtype=bool)
+        if not target.targets:
+            raise InputError("there is nothing to reach: give targets for markers")
+        for name, point in target.targets.items():
+            if name not in names:
+                raise InputError(f'the model has no marker "{name}"; it has: {", ".join(names)}')
+            place = np.asarray(point, dtype=float)
+            if place.shape != (dim,) or not np.isfinite(place).all():
+                raise InputError(f'target of marker "{name}" must be {dim} finite coordinates [m]')
+            goal[names.index(name)], asked[names.index(name)] = place, True
+        return goal.ravel(), asked.ravel()
+
+    def _winches(self, contractions: Vector) -> Vector:
+        given = np.asarray(contractions, dtype=float)
+        if given.shape != self.low.shape or not np.isfinite(given).all():
+            raise InputError(f"contractions must be {len(self.low)} finite numbers [m]")
+        return given
+
+    def _scaled(self, contractions: Vector) -> Vector:
+        return 2.0 * (contractions - self.low) / self._span - 1.0
+
+    def _contractions(self, scaled: Vector) -> Vector:
+        return self.low + 0.5 * self._span * (scaled + 1.0)
+
+    @property
+    def _span(self) -> Vector:
+        return span_of(self.low, self.high)
+
+    @property
+    def _coordinates(self) -> int:
+        return len(self.facts["markers"]) * self.facts["dim"]
+
+
+def span_of(low: Vector, high: Vector) -> Vector:
+    """From the least to the most that each winch takes in [m]; 1 where that is nothing."""
+    return np.where(high > low, high - low, 1.0)
+
+
+_BEYOND = 1.02
+"""The inverse network's answer may reach so far beyond the limits, so that they can be reached; it is cut off there."""
+
+_STARTS = 3
+"""Samples that a search begins from where the inverse network's answer is not near enough."""
+
+_USUAL = 3.0
+"""What is left of a target is unusual above so many times the mean error of the networks."""

@@ -1,0 +1,67 @@
+"""`LearnedPose`: contractions for a pose, found by networks, and what is known of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.ik import InverseReason
+from hydrostat.mechanics import Reason
+from hydrostat.robot import Pose
+from hydrostat.simulation import SolvedPose
+
+
+class Tier(StrEnum):
+    """How an answer was found; each is better, and takes longer, than the one before."""
+
+    NETWORK = "the inverse network"
+    SEARCH = "search on the networks"
+    STEP = "exact steps"
+    EXACT = "inverse kinematics"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LearnedPose:
+    """Contractions that bring markers near targets: what networks say of them, and what the simulator says.
+
+    Attributes:
+        target: what was asked for.
+        tier: how it was found.
+        contractions: cable taken in [m], in the order of the model's winches.
+        commands: the same by winch.
+        markers: where the networks expect each marker [m].
+        tensions: what they expect each cable to pull [N].
+        errors: how far they expect each marker that was asked for from its target [m].
+        spread: how far they disagree about it, root of the mean square [m]: their doubt.
+        certified: how far the simulator finds each from its target [m]; None where it was not asked.
+        reason: why the simulator ended: of an equilibrium, or, for `Tier.EXACT`, of inverse kinematics.
+        pose: the equilibrium; None where there is none.
+    """
+
+    target: Pose
+    tier: Tier
+    contractions: Vector
+    commands: Mapping[str, float]
+    markers: Mapping[str, np.ndarray]
+    tensions: Mapping[str, float]
+    errors: Mapping[str, float]
+    spread: Mapping[str, float]
+    certified: Mapping[str, float] | None = None
+    reason: Reason | InverseReason | None = None
+    pose: SolvedPose | None = None
+
+    @property
+    def error(self) -> float:
+        """Mean distance of the markers from their targets [m]: certified where it is, else expected."""
+        return float(np.mean(list((self.errors if self.certified is None else self.certified).values())))
+
+    @property
+    def doubt(self) -> float:
+        """Mean spread of the markers that were asked for [m]."""
+        return float(np.mean(list(self.spread.values())))
+
+    def without_factors(self) -> "LearnedPose":
+        """The same with a pose that keeps no factorised Hessian, to be kept with many others."""
+        return replace(self, pose=None if self.pose is None else self.pose.without_factors())

@@ -1,0 +1,89 @@
+"""`Lesson`: samples as networks see them, without units."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.learning.learned_model import span_of
+from hydrostat.learning.samples import Samples
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Lesson:
+    """What there is to learn: inputs from -1 to 1, and what they lead to, markers first, in a unit for each kind.
+
+    Attributes:
+        low: least contraction of each winch [m].
+        high: largest [m].
+        middle: mean of what is expected.
+        unit: of each of it: one length for all coordinates of markers, one force for all tensions.
+        inputs: of the networks.
+        outputs: markers, then tensions.
+        slopes: of the markers.
+        linear: the best linear map from inputs to outputs, with its constant as the last row.
+    """
+
+    low: Vector
+    high: Vector
+    middle: Vector
+    unit: Vector
+    inputs: Float[np.ndarray, "samples winches"]
+    outputs: Float[np.ndarray, "samples outputs"]
+    slopes: Float[np.ndarray, "samples coordinates winches"]
+    linear: Float[np.ndarray, "rows outputs"]
+
+    @property
+    def coordinates(self) -> int:
+        """How many of the outputs are of markers."""
+        return self.slopes.shape[1]
+
+
+def lesson_of(samples: Samples) -> Lesson:
+    """What there is to learn from samples.
+
+    Raises:
+        InputError: there are fewer than `LEAST`.
+    """
+    count, facts = len(samples), samples.facts
+    if count < LEAST:
+        raise InputError(f"there are {count} samples; learning takes {LEAST} or more")
+    low, high = -np.array(facts["release"], dtype=float), np.array(facts["travel"], dtype=float)
+    span = span_of(low, high)
+    inputs = 2.0 * (samples.contractions - low) / span - 1.0
+    markers = samples.markers.reshape(count, -1)
+    found = np.hstack([markers, samples.tensions])
+    middle, coordinates = found.mean(axis=0), markers.shape[1]
+    length, force = (_spread(part) for part in np.split(found - middle, [coordinates], axis=1))
+    unit = np.r_[np.full(coordinates, length), np.full(found.shape[1] - coordinates, force)]
+    slopes = samples.jacobians.reshape(count, coordinates, -1) * (0.5 * span / length)
+    outputs = (found - middle) / unit
+    return Lesson(
+        low=low,
+        high=high,
+        middle=middle,
+        unit=unit,
+        inputs=inputs,
+        outputs=outputs,
+        slopes=slopes,
+        linear=linear_map(inputs, outputs),
+    )
+
+
+def linear_map(inputs: np.ndarray, outputs: np.ndarray) -> np.ndarray:
+    """Ridge regression; the constant is the last row."""
+    rows = np.hstack([inputs, np.ones((len(inputs), 1))])
+    return np.linalg.solve(rows.T @ rows + _RIDGE * len(rows) * np.eye(rows.shape[1]), rows.T @ outputs)
+
+
+def _spread(part: np.ndarray) -> float:
+    """Root of the mean square; 1 where there is none."""
+    return float(np.sqrt(np.mean(np.square(part)))) if np.any(part) else 1.0
+
+
+LEAST = 20
+"""Fewer samples teach nothing."""
+
+_RIDGE = 1e-3

@@ -1,0 +1,243 @@
+"""Training of networks on samples, by PyTorch; the only file of this room that needs it."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.errors import InputError
+from hydrostat.learning.learn_options import LearnOptions
+from hydrostat.learning.lesson import Lesson, linear_map
+from hydrostat.learning.perceptrons import Perceptrons
+
+try:
+    import torch  # pyright: ignore[reportMissingImports]
+    from torch import Tensor  # pyright: ignore[reportMissingImports]
+except ImportError:
+    raise InputError("learning needs PyTorch; install hydrostat with its extra learn, hydrostat[learn]") from None
+
+Tell = Callable[[str, int, int], None]
+Numbers = Sequence[Tensor]  # weights and biases of each layer, then S, each (members, ...)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trained:
+    """Networks as they were when they did best on what they had not learned from.
+
+    Attributes:
+        networks: of one shape.
+        error: mean distance of markers on held-out samples, in the lesson's unit; infinite where none was looked at.
+        stopped: whether Ctrl-C ended it.
+    """
+
+    networks: Perceptrons
+    error: float
+    stopped: bool
+
+
+def train_forward(lesson: Lesson, dim: int, options: LearnOptions, tell: Tell) -> Trained:
+    """Networks from contractions to markers and tensions; each holds out other samples."""
+    torch.set_num_threads(options.threads)
+    draw = torch.Generator().manual_seed(options.seed)
+    inputs, outputs, slopes = (_tensor(part) for part in (lesson.inputs, lesson.outputs, lesson.slopes))
+    sizes = [inputs.shape[1], *[options.width] * options.depth, outputs.shape[1]]
+    numbers = _begin(sizes, options.members, lesson.linear, draw)
+    learned, held = _folds(len(inputs), options, draw)
+    batches = _batches(learned, options.batch, draw)
+    coordinates = lesson.coordinates
+
+    def loss() -> Tensor:
+        rows = next(batches)
+        ways = torch.randn(*rows.shape, options.directions, sizes[0], generator=draw) if options.slopes else None
+        return sobolev_loss(numbers, inputs[rows], ways, outputs[rows], slopes[rows], options)
+
+    def error() -> Tensor:
+        value, _ = answer(numbers, inputs[held], None)
+        missed = (value - outputs[held])[..., :coordinates].unflatten(-1, (-1, dim))
+        return missed.norm(dim=-1).mean((1, 2))
+
+    best, errors, stopped = _train(numbers, loss, error, options.steps, options.rate, lambda n: tell("forward", *n))
+    return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
+
+
+def train_inverse(lesson: Lesson, dim: int, forward: Perceptrons, options: LearnOptions, tell: Tell) -> Trained:
+    """A network from markers to contractions, taught by what the forward networks make of its answers.
+
+    It sees the samples' markers, and what the networks expect between samples; so it is never told contractions, of
+    which many may do the same, but only what they lead to, and what effort they are.
+    """
+    draw = torch.Generator().manual_seed(options.seed + 1)
+    inputs, markers = _tensor(lesson.inputs), _tensor(lesson.outputs[:, : lesson.coordinates])
+    teacher = tensors_of(forward)
+    sizes = [lesson.coordinates, *[options.width] * options.depth, inputs.shape[1]]
+    numbers = _begin(sizes, 1, linear_map(lesson.outputs[:, : lesson.coordinates], lesson.inputs), draw)
+    held = torch.arange(0, len(inputs), max(2, round(1 / options.held_out)))
+    learned = torch.tensor(np.setdiff1d(np.arange(len(inputs)), held.numpy()))[None]
+    batches, members = _batches(learned, options.batch, draw), len(forward)
+
+    def reached(goals: Tensor, number: int) -> tuple[Tensor, Tensor, Tensor]:
+        scaled = BEYOND * torch.tanh(answer(numbers, goals[None], None)[0])
+        value = answer([part[number : number + 1] for part in teacher], scaled, None)[0][0]
+        return value[:, : lesson.coordinates], value[:, lesson.coordinates :], scaled[0]
+
+    def loss() -> Tensor:
+        rows, others = next(batches)[0], next(batches)[0]
+        number = int(torch.randint(members, (1,), generator=draw))
+        share = _BETWEEN * torch.rand(len(rows), 1, generator=draw)
+        between = inputs[rows] + share * (inputs[others] - inputs[rows])
+        with torch.no_grad():
+            expected = answer([part[number : number + 1] for part in teacher], between[None], None)[0][0]
+        goals = torch.cat([markers[rows], expected[:, : lesson.coordinates]])
+        found, pulls, scaled = reached(goals, number)
+        effort = torch.relu(pulls).square().sum(-1) + (1 + scaled).square().sum(-1)
+        return (found - goals).square().sum(-1).mean() + options.effort * effort.mean()
+
+    def error() -> Tensor:
+        found = torch.stack([reached(markers[held], number)[0] for number in range(members)]).mean(0)
+        return (found - markers[held]).unflatten(-1, (-1, dim)).norm(dim=-1).mean()[None]
+
+    best, errors, stopped = _train(
+        numbers, loss, error, options.inverse_steps, options.rate, lambda n: tell("inverse", *n)
+    )
+    return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
+
+
+def sobolev_loss(
+    numbers: Numbers, points: Tensor, ways: Tensor | None, outputs: Tensor, slopes: Tensor, options: LearnOptions
+) -> Tensor:
+    """Mean squares of what values and slopes along some ways miss, summed over the networks (members, batch, ...)."""
+    value, moved = answer(numbers, points, ways)
+    coordinates = slopes.shape[-2]
+    missed = (value - outputs).square()
+    loss = missed[..., :coordinates].sum(-1) + options.tensions * missed[..., coordinates:].sum(-1)
+    if moved is not None and ways is not None:
+        true = torch.einsum("mbkw,mbcw->mbkc", ways, slopes)
+        loss = loss + options.slopes * (moved[..., :coordinates] - true).square().sum(-1).mean(-1)
+    return loss.mean(1).sum()
+
+
+def answer(numbers: Numbers, points: Tensor, ways: Tensor | None) -> tuple[Tensor, Tensor | None]:
+    """What networks answer at points (members, batch, inputs), and how it moves along ways (members, batch, ways, ...).
+
+    Slopes go forward with the values, as by `torch.func.jvp`, along several ways at once.
+    """
+    layers = (len(numbers) - 1) // 2
+    value, moved = points, ways
+    for layer in range(layers):
+        weights, biases = numbers[2 * layer], numbers[2 * layer + 1]
+        value = torch.baddbmm(biases, value, weights)
+        moved = None if moved is None else _moved(moved, weights)
+        if layer < layers - 1:
+            gate = torch.sigmoid(value)
+            value = value * gate
+            moved = None if moved is None else moved * (gate + value * (1.0 - gate))[:, :, None]
+    value = value + torch.bmm(points, numbers[-1])
+    return value, None if moved is None or ways is None else moved + _moved(ways, numbers[-1])
+
+
+def tensors_of(networks: Perceptrons, kind: torch.dtype = torch.float32) -> list[Tensor]:
+    """Numbers of networks as tensors."""
+    found, at, sizes = [], 0, networks.sizes.tolist()
+    shapes = [shape for one, two in pairwise(sizes) for shape in ((one, two), (1, two))]
+    for rows, columns in [*shapes, (sizes[0], sizes[-1])]:
+        part = networks.numbers[:, at : at + rows * columns].reshape(-1, rows, columns)
+        found.append(torch.tensor(part, dtype=kind))
+        at += rows * columns
+    return found
+
+
+def _train(
+    numbers: list[Tensor],
+    loss: Callable[[], Tensor],
+    error: Callable[[], Tensor],
+    steps: int,
+    rate: float,
+    tell: Callable[[tuple[int, int]], None],
+) -> tuple[list[Tensor], Tensor, bool]:
+    """Adam; the numbers of each network when its error was least. Ctrl-C ends it with those."""
+    for part in numbers:
+        part.requires_grad_(True)
+    optimiser = torch.optim.Adam(numbers, lr=rate, betas=(0.9, 0.99))
+    schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda step: _rate(step / steps))
+    best, least = [part.detach().clone() for part in numbers], torch.full((len(numbers[0]),), math.inf)
+    often = max(1, steps // _LOOKS)
+    try:
+        for step in range(steps):
+            optimiser.zero_grad(set_to_none=True)
+            loss().backward()
+            optimiser.step()
+            schedule.step()
+            if (step + 1) % often == 0 or step == steps - 1:
+                with torch.no_grad():
+                    now = error()
+                    for member in torch.nonzero(now < least).flatten().tolist():
+                        for part, new in zip(best, numbers, strict=True):
+                            part[member] = new[member]
+                    least = torch.minimum(now, least)
+                tell((step + 1, steps))
+    except KeyboardInterrupt:
+        return best, least, True
+    return best, least, False
+
+
+def _rate(share: float) -> float:
+    """Learning rate as a share of the largest: a short rise, then a cosine."""
+    return share / _RISE if share < _RISE else 0.5 * (1.0 + math.cos(math.pi * (share - _RISE) / (1.0 - _RISE)))
+
+
+def _begin(sizes: list[int], members: int, linear: np.ndarray, draw: torch.Generator) -> list[Tensor]:
+    """Random layers that add little at first to the linear map of the samples."""
+    found: list[Tensor] = []
+    for number, (one, two) in enumerate(pairwise(sizes)):
+        last, gain = number == len(sizes) - 2, 1.0 if number == 0 else 2.0
+        scale = math.sqrt(gain / one) * (0.1 if last else 1.0)
+        found.append(scale * torch.randn(members, one, two, generator=draw))
+        found.append(torch.rand(members, 1, two, generator=draw) - 0.5)
+    found[-1] = _tensor(linear[-1]).expand(members, 1, -1).clone()
+    return [*found, _tensor(linear[:-1]).expand(members, -1, -1).clone()]
+
+
+def _folds(count: int, options: LearnOptions, draw: torch.Generator) -> tuple[Tensor, Tensor]:
+    """For each network which samples it learns from, and which it does not."""
+    size, order = max(1, round(options.held_out * count)), torch.randperm(count, generator=draw)
+    turns = [order.roll(-size * member) for member in range(options.members)]
+    return torch.stack([turn[size:] for turn in turns]), torch.stack([turn[:size] for turn in turns])
+
+
+def _batches(rows: Tensor, size: int, draw: torch.Generator) -> Iterator[Tensor]:
+    """Without end: some of the rows of each network, (members, batch), each once before any comes again."""
+    count = rows.shape[1]
+    size = min(size, count)
+    while True:
+        mixed = torch.stack([row[torch.randperm(count, generator=draw)] for row in rows])
+        for at in range(0, count - size + 1, size):
+            yield mixed[:, at : at + size]
+
+
+def _moved(ways: Tensor, weights: Tensor) -> Tensor:
+    return torch.bmm(ways.flatten(1, 2), weights).unflatten(1, ways.shape[1:3])
+
+
+def _tensor(values: Float[np.ndarray, "..."]) -> Tensor:
+    return torch.tensor(values, dtype=torch.float32)
+
+
+def _perceptrons(sizes: list[int], numbers: Numbers) -> Perceptrons:
+    flat = torch.cat([part.flatten(1) for part in numbers], dim=1)
+    return Perceptrons(sizes=np.array(sizes), numbers=flat.double().numpy())
+
+
+BEYOND = 1.02
+"""The inverse network may answer so far beyond the limits, so that they can be reached; `LearnedModel` cuts it off."""
+
+_BETWEEN = 0.5
+"""Goals of the inverse network lie up to so far on the way from one sample to another."""
+
+_LOOKS = 60
+"""So often held-out samples are looked at."""
+
+_RISE = 0.05
+"""Share of the steps in which the learning rate rises."""
