@@ -33,7 +33,7 @@ class LearnOptions:
     steps: int = 6000
     inverse_steps: int = 4000
     batch: int = 128
-    rate: float = 3e-3
+    rate: float = 1e-2
     slopes: float = 0.1
     directions: int = 3
     tensions: float = 0.1

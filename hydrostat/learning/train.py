@@ -173,10 +173,9 @@ def _train(
             if (step + 1) % often == 0 or step == steps - 1:
                 with torch.no_grad():
                     now = error()
-                    for member in torch.nonzero(now < least).flatten().tolist():
-                        for part, new in zip(best, numbers, strict=True):
-                            part[member] = new[member]
-                    least = torch.minimum(now, least)
+                    better = (now < least)[:, None, None]
+                    kept = [torch.where(better, one, other) for one, other in zip(numbers, best, strict=True)]
+                best, least = kept, torch.minimum(now, least)
                 tell((step + 1, steps))
     except KeyboardInterrupt:
         return best, least, True
