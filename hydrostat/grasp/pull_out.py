@@ -9,7 +9,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics.rigid import GuideEnergy
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.simulation import BodyPhysics, Contractions, Simulation, SolvedPose
+from hydrostat.simulation import BodyPhysics, Contractions, Simulation, SolvedPose, obstacle_forces, replacing
 
 Tell = Callable[[str, int, int], None]
 
@@ -118,7 +118,7 @@ def pull_out(
     held = GuideEnergy(carriage, place=place, axes=axes, along=options.along * whole, turning=options.along)
     closing = Simulation(full, body=body, energies=[held])
     pose = closing.solve(contractions)
-    if not closing.obstacle_forces(pose)[-1].any():
+    if not obstacle_forces(closing, pose)[-1].any():
         raise InputError(f'"{thing.name}" is touched by nothing when the robot has closed; put it elsewhere')
     straight = np.outer(unit, unit)
     springs = options.along * straight + options.across * (whole - straight)
@@ -128,13 +128,13 @@ def pull_out(
     for number in range(count + 1):
         pulled = min(number * options.step, travel)
         guide = GuideEnergy(carriage, place=place + pulled * unit, axes=axes, along=springs, turning=options.across)
-        pulling = closing.replacing(held, guide)
+        pulling = replacing(closing, held, guide)
         found = pulling.solve(contractions, start=pose, strict=False)
         if not found.result.converged:
             reason = f"no equilibrium found after {1e3 * pulled:.3g} mm: {found.result.reason}"
             break
         pose = found
-        push = pulling.obstacle_forces(pose)[-1]
+        push = obstacle_forces(pulling, pose)[-1]
         rows.append((pulled, pose.without_factors(), guide.pull(pose.unknowns), push))
         if tell is not None:
             tell("pulling [mm]", round(1e3 * pulled), round(1e3 * travel))

@@ -18,7 +18,7 @@ from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_p
 from hydrostat.ik.search.others_stay import others_stayed
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
 from hydrostat.robot import Point, Pose
-from hydrostat.simulation import Simulation, SolvedPose, friction_band
+from hydrostat.simulation import Simulation, SolvedPose, friction_band, smooth_robot
 
 Targets = Pose | Mapping[str, Point]  # where markers should go [m]: a pose, or points by name
 
@@ -57,9 +57,16 @@ def solve_ik(
         NotConvergedError: no equilibrium where the search begins.
     """
     target = as_pose(targets)
-    if simulation.smooth is not simulation:
+    if (robot := smooth_robot(simulation.robot)) is not simulation.robot:
         begin = None if start is None else replace(start, history=np.zeros(0))
-        found = solve_ik(simulation.smooth, target, limits=limits, objectives=objectives, start=begin, options=options)
+        found = solve_ik(
+            Simulation(robot, options=simulation.options),
+            target,
+            limits=limits,
+            objectives=objectives,
+            start=begin,
+            options=options,
+        )
         return _followed(simulation, found, start)
     given = limits or Limits()
     allowed = bounds(simulation, given)

@@ -6,7 +6,7 @@ from hydrostat.arrays import Vector
 from hydrostat.geometry import find_crossings
 from hydrostat.learning.draw import Draw
 from hydrostat.learning.sample_plan import SamplePlan, physics_hash
-from hydrostat.mechanics import ContactEnergy, Reason
+from hydrostat.mechanics import Reason
 from hydrostat.simulation import Simulation, SolvedPose
 
 REASONS = (*Reason, "error")
@@ -97,10 +97,10 @@ def _within(simulation: Simulation, contractions: Vector, tension: float | None)
 
 def _touches(simulation: Simulation, pose: SolvedPose) -> bool:
     """Whether parts of the body push one another off."""
-    for energy in simulation.assembly.near(pose.nodes).energies:
-        if isinstance(energy, ContactEnergy) and energy.gradient(pose.nodes, pose.contractions).any():
-            return True
-    return False
+    slot = simulation.body.own_contact
+    if slot is None:
+        return False
+    return bool(simulation.assembly.near(pose.nodes).energies[slot].gradient(pose.nodes, pose.contractions).any())
 
 
 def _crosses(simulation: Simulation, pose: SolvedPose) -> bool:

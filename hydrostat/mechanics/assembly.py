@@ -101,6 +101,12 @@ class Assembly:
         """What all energies remember of the loading path."""
         return np.concatenate([np.zeros(0), *(energy.history for energy in self.energies)])
 
+    def part_of(self, history: Vector, energy: Energy) -> Vector:
+        """What one of the energies remembers, of what all remember."""
+        number = self.energies.index(energy)
+        begin = sum(len(other.history) for other in self.energies[:number])
+        return history[begin : begin + len(energy.history)]
+
     def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "Assembly":
         """Sum of energies that remember `history`, at equilibrium in a given state."""
         ends = np.cumsum([len(energy.history) for energy in self.energies])

@@ -8,6 +8,7 @@ from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_fil
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.friction_band import friction_band
 from hydrostat.simulation.many_poses import ManyPoses
+from hydrostat.simulation.meeting import check_still, obstacle_forces, replacing, smooth_robot
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
@@ -41,16 +42,20 @@ __all__ = [
     "Simulation",
     "SolvedPose",
     "StepOptions",
+    "check_still",
     "filled_motion",
     "follow_branch",
     "friction_band",
     "largest_distance",
+    "obstacle_forces",
     "path_dependence",
     "pose_facts",
     "profile_text",
     "quickly_filled",
     "read_profile",
+    "replacing",
     "rig_slopes",
+    "smooth_robot",
     "write_motion",
     "write_pose",
     "write_profile",

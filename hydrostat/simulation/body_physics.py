@@ -40,7 +40,9 @@ class BodyPhysics:
         masses: of the nodes [kg], (nodes,): each element shares its own evenly among its corners.
         inertias: the masses that the unknowns have in motion [kg], (rows,).
         carriages: where the unknowns of obstacles that move are, by their number among the obstacles.
-        obstacles: energies of the obstacles, by their number among all energies of a simulation.
+        own_contact: energy of the contact of the body with itself, by its number among all energies of a simulation;
+            None if it does not feel itself.
+        obstacles: energies of the obstacles, by their numbers.
         begin: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the obstacles that move.
     """
 
@@ -69,6 +71,7 @@ class BodyPhysics:
             energies.append(PatchVolume(self.begin, mesh.elements, patches, lame=lame, thickness=thickness))
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.begin, self._heavy[:, None] * np.array(robot.gravity)))
+        self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
             energies.append(ContactEnergy.of(mesh, **_felt(robot), rest=self.begin))
         self.obstacles = []
@@ -76,6 +79,11 @@ class BodyPhysics:
             self.obstacles.append(len(energies))
             energies += self._met(robot, obstacle, self.carriages.get(index))
         self.assembly = Assembly(energies, rest=self.begin, control_count=0)
+
+    @property
+    def count(self) -> int | None:
+        """How many of the unknowns are nodes of the body; None if all are."""
+        return len(self._given[0].mesh.nodes) if self.carriages else None
 
     def fits(self, robot: Robot) -> bool:
         """Tell whether this is the physics of the body of a robot: the same body, equal pins, gravity, contact."""

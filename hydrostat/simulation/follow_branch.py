@@ -11,6 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult, Reason
 from hydrostat.simulation.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
+from hydrostat.simulation.meeting import check_still
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
@@ -87,7 +88,7 @@ def follow_branch(
             "with friction equilibria are no branch, for every way ends elsewhere; set friction = 0 to follow one, or "
             "compare ways by path_dependence"
         )
-    simulation.check_still("a branch of equilibria")
+    check_still(simulation.robot, "a branch of equilibria")
     rest = simulation.robot.body.mesh.nodes
     if start.nodes.shape != rest.shape or start.contractions.shape != goal.shape:
         raise InputError(f"start must be a pose of this robot, {rest.shape} nodes, not {start.nodes.shape}")

@@ -1,5 +1,6 @@
 """`LoadingPath`: incremental loading, where the way to contractions decides where a robot ends."""
 
+from copy import copy
 from dataclasses import dataclass, replace
 from math import ceil
 
@@ -46,6 +47,14 @@ class LoadingPath:
             min((whole for own, whole in wholes if own == winch.name), default=np.inf) for winch in robot.winches
         ]
         self._increment = _INCREMENT * np.array(lengths)
+
+    def within(self, seconds: float | None) -> "LoadingPath":
+        """The same that stops after so many seconds, counted from now; itself if that is None."""
+        if seconds is None:
+            return self
+        other = copy(self)
+        other._solver = self._solver.within(seconds)
+        return other
 
     def solve(self, goal: Vector, start: SolvedPose | None) -> tuple[NewtonResult, Vector]:
         """Equilibrium at contractions `goal` [m], on the way from `start` or from rest; and what is remembered there.

@@ -1,8 +1,6 @@
 """`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from copy import copy
-from dataclasses import replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -19,6 +17,7 @@ from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.loading_path import LoadingPath
 from hydrostat.simulation.many_poses import LONG_ENOUGH, ManyPoses, PoseRow, in_threads, many_poses, pose_row
+from hydrostat.simulation.meeting import check_still
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.obstacles import obstacles
 from hydrostat.simulation.profile import Profile
@@ -78,51 +77,6 @@ class Simulation:
         hidden = self.body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
-    def replacing(self, old: Energy, new: Energy) -> "Simulation":
-        """The same physics with one of the energies given to it in another state, such as a guide that has moved.
-
-        Args:
-            old: one of the energies.
-            new: what takes its place, on the same stencils.
-        """
-        other = copy(self)
-        for name in ("rest", "rest_stiffness", "path", "dynamics"):
-            other.__dict__.pop(name, None)
-        other.assembly = self.assembly.with_energies([new if one is old else one for one in self.assembly.energies])
-        other.solver = replace(self.solver, assembly=other.assembly)
-        return other
-
-    def obstacle_forces(self, pose: SolvedPose) -> Float[np.ndarray, "obstacles dim"]:
-        """Force of the body on each obstacle at an equilibrium [N], friction included."""
-        assembly = self.path.resumed(pose) if self.assembly.has_history else self.assembly
-        forces = [assembly.energies[slot].push(pose.unknowns) for slot in self.body.obstacles]  # type: ignore[attr-defined]
-        return np.array(forces).reshape(len(forces), pose.nodes.shape[1])
-
-    @cached_property
-    def smooth(self) -> "Simulation":
-        """The same without friction on obstacles; itself where there is none."""
-        robot = self.robot
-        if not any(map(robot.friction_of, robot.obstacles)):
-            return self
-        contact = None if robot.contact is None else replace(robot.contact, friction=0.0)
-        obstacles = tuple(replace(obstacle, friction=None) for obstacle in robot.obstacles)
-        return Simulation(
-            replace(robot, contact=contact, obstacles=obstacles), options=self.options, energies=self._more
-        )
-
-    def check_still(self, what: str) -> None:
-        """Check that no obstacle moves.
-
-        Args:
-            what: does not know obstacles that move, in words.
-
-        Raises:
-            InputError: one has a mass.
-        """
-        for index in self.body.carriages:
-            name = self.robot.obstacles[index].name
-            raise InputError(f'{what} knows no obstacle that moves: "{name}" has a mass; without it, it stands still')
-
     def contractions(self, given: Contractions) -> Vector:
         """Contractions as an array in winch order [m].
 
@@ -161,10 +115,7 @@ class Simulation:
         self.check_start(start)
         history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy)
         if self.assembly.has_history:
-            path = (
-                self.path if seconds is None else LoadingPath(self.robot, self.solver.within(seconds), self.body.begin)
-            )
-            result, history = path.solve(goal, start)
+            result, history = self.path.within(seconds).solve(goal, start)
         else:
             begin = None if start is None else (start.unknowns, start.contractions, self.stiffness_of(start))
             result = solver.solve(goal, (self.body.begin, self.rest_stiffness), begin)
@@ -245,9 +196,8 @@ class Simulation:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
         if not self.assembly.has_history:
-            where = pose.unknowns
-            right = -self.assembly.near(where).control_derivative(where, pose.contractions).toarray()
-            return self.response(pose, right).reshape(*where.shape, -1)[: len(pose.nodes)]
+            right = -self.assembly.near(pose.unknowns).control_derivative(pose.unknowns, pose.contractions).toarray()
+            return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
         compliance = stiffness.compliance_of(slice(0, len(pose.history)))
         return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
@@ -266,7 +216,7 @@ class Simulation:
             InputError: other energies that remember the way; cotangents of a wrong shape; obstacles that move.
             NotConvergedError: as for `jacobian`.
         """
-        self.check_still("the adjoint")
+        check_still(self.robot, "the adjoint")
         if self.assembly.has_history:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
             slopes = self.rubbing_slopes(pose, (right.reshape(1, -1), pulls[None]))
@@ -307,8 +257,7 @@ class Simulation:
         if self.assembly.has_history:
             raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
         stiffness = self._regular(pose)
-        where = pose.unknowns
-        return response(self.assembly.near(where), stiffness, (where, pose.contractions), forces)
+        return response(self.assembly.near(pose.unknowns), stiffness, (pose.unknowns, pose.contractions), forces)
 
     def still(self, pose: SolvedPose | None = None, *, velocities: Nodes | None = None) -> Motion:
         """A motion that begins in a pose, the rest pose if left out, with all viscous branches settled.
@@ -386,16 +335,9 @@ class Simulation:
     def tensions(self, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Vector:
         """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""
         if self.friction is not None and history is not None:
-            slips = self._slips(history)
+            slips = self.assembly.part_of(history, self.friction)
             return self.friction.resumed(slips, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
-
-    def _slips(self, history: Vector) -> Vector:
-        """What the cables remember, of all that is remembered."""
-        energies = self.assembly.energies
-        before = energies[: energies.index(self.friction)] if self.friction is not None else ()
-        begin = sum(len(energy.history) for energy in before)
-        return history[begin : begin + (0 if self.friction is None else len(self.friction.history))]
 
     def stiffness(self, pose: SolvedPose) -> Stiffness:
         """The Hessian at a pose, factorised; after a solve perhaps where its last step began, a hair from there."""
@@ -404,16 +346,14 @@ class Simulation:
         return self.stiffness_of(pose) or self.assembly.near(pose.unknowns).stiffness(pose.unknowns, pose.contractions)
 
     def _regular(self, pose: SolvedPose) -> Stiffness:
-        stiffness = self.stiffness(pose)
-        if not stiffness.singular:
-            return stiffness
-        raise NotConvergedError("no derivative: the Hessian is singular, the pose is about to snap", pose.result)
+        if (stiffness := self.stiffness(pose)).singular:
+            raise NotConvergedError("no derivative: the Hessian is singular, the pose is about to snap", pose.result)
+        return stiffness
 
     def stiffness_of(self, pose: SolvedPose) -> Stiffness | None:
         """The Hessian that a pose of this simulation brings along; None if it brings none, or its nodes were moved."""
-        found = pose.result.nodes
-        known, unmoved = pose.result.stiffness, found is pose.nodes or found is pose.nodes.base
-        return known if known is not None and unmoved and known.token is self.assembly.token else None
+        known = pose.result.stiffness
+        return known if known is not None and pose.moved_by_none and known.token is self.assembly.token else None
 
     @cached_property
     def rest(self) -> SolvedPose:
@@ -447,11 +387,11 @@ class Simulation:
 
     def posed(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> SolvedPose:
         """Pose that Newton found, with all that the robot shows there."""
-        positions, count = self.marker_anchors.positions(result.nodes), len(self.robot.body.mesh.nodes)
+        positions, count = self.marker_anchors.positions(result.nodes), self.body.count
         return SolvedPose(
             contractions=contractions,
-            nodes=result.nodes[:count] if self.body.carriages else result.nodes,
-            carried=result.nodes[count:] if self.body.carriages else None,
+            nodes=result.nodes if count is None else result.nodes[:count],
+            carried=None if count is None else result.nodes[count:],
             markers={marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)},
             tensions=self.tensions(result.nodes, contractions, history),
             energy=result.energy,

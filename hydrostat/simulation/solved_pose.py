@@ -46,6 +46,11 @@ class SolvedPose:
         """All that energies are functions of [m]: the nodes, then the rows of obstacles that move."""
         return self.nodes if self.carried is None else np.concatenate([self.nodes, self.carried])
 
+    @property
+    def moved_by_none(self) -> bool:
+        """Whether its nodes are the very ones that the solver found."""
+        return self.result.nodes is (self.nodes if self.carried is None else self.nodes.base)
+
     def without_factors(self) -> "SolvedPose":
         """Pose without its factorised Hessian, to be kept with many others: that takes megabytes."""
         return replace(self, result=replace(self.result, stiffness=None))

@@ -11,7 +11,15 @@ import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.mechanics.rigid import Carriage, GuideEnergy
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
-from hydrostat.simulation import BodyPhysics, Motion, Simulation, SolvedPose, StepOptions
+from hydrostat.simulation import (
+    BodyPhysics,
+    Motion,
+    Simulation,
+    SolvedPose,
+    StepOptions,
+    obstacle_forces,
+    replacing,
+)
 
 FRICTION, MASS, WEIGHT = 0.4, 0.05, 0.05 * 9.81
 
@@ -67,7 +75,7 @@ class Drag:
     def to(self, way: float) -> np.ndarray:
         """Force [N] that drags when the spring's end has gone so far [m]."""
         guide = self.guide.moved(self.at + way * np.eye(len(self.at))[0], self.axes)
-        self.pose = self.simulation.replacing(self.guide, guide).solve({}, start=self.pose)
+        self.pose = replacing(self.simulation, self.guide, guide).solve({}, start=self.pose)
         return guide.pull(self.pose.unknowns)
 
 
@@ -78,7 +86,7 @@ def test_a_block_slips_at_friction_times_its_weight(dim: int) -> None:
     assert 0.1 * FRICTION * WEIGHT < stuck < 0.9 * FRICTION * WEIGHT
     forces = np.array([drag.to(way)[0] for way in np.arange(1, 8) * 2e-4])
     assert forces[1:] == pytest.approx(FRICTION * WEIGHT, rel=0.01)
-    assert drag.simulation.obstacle_forces(drag.pose)[0, -1] == pytest.approx(WEIGHT, rel=1e-6)
+    assert obstacle_forces(drag.simulation, drag.pose)[0, -1] == pytest.approx(WEIGHT, rel=1e-6)
 
 
 @pytest.mark.slow

@@ -40,7 +40,7 @@ class Spacing:
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class CurveSamples:
     """The rings of an outline, finely and evenly sampled, in units of the element size."""
 
     places: Float[np.ndarray, "samples 2"]  # (samples, 2)
@@ -50,7 +50,7 @@ class Samples:
     bends: Float[np.ndarray, " samples"]  # spacing that the bend of the ring allows
 
 
-def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Samples:
+def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> CurveSamples:
     """Sample rings; `corners` are the stations of the true corners, whose bend does not count."""
     parts = []
     for ring, (curve, sharp) in enumerate(zip(curves, corners, strict=True)):
@@ -65,10 +65,10 @@ def sample_rings(curves: tuple[Curve, ...], corners: tuple[Stations, ...]) -> Sa
         bends = np.clip(np.sqrt(_BEND / np.maximum(bend, 1e-9)), _LEAST_BEND, 1.0)
         inward = np.column_stack([-tangents[:, 1], tangents[:, 0]])
         parts.append((curve.at(stations), inward, np.full(count, float(ring)), stations, bends))
-    return Samples(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    return CurveSamples(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def widths_at(samples: Samples, curves: tuple[Curve, ...], polygon: Polygon) -> tuple[Vector, Vector]:
+def widths_at(samples: CurveSamples, curves: tuple[Curve, ...], polygon: Polygon) -> tuple[Vector, Vector]:
     """Width of the body at each sample, at most 1, and the same without pointed tips.
 
     Two samples span a width if they face each other through the body and the way between them along the outline is

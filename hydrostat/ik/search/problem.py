@@ -12,7 +12,7 @@ from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import Moves, Posture, Rows, Slopes, Term, follows, posture_of
 from hydrostat.ik.search.linear_model import LinearModel, channels, least_squares, slopes
 from hydrostat.mechanics import NewtonResult
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, check_still
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +107,7 @@ class InverseProblem:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
-        simulation.check_still("inverse kinematics")
+        check_still(simulation.robot, "inverse kinematics")
         own = simulation.friction or simulation.cables
         others = [energy for energy in simulation.assembly.energies if energy is not own]
         idle = simulation.robot.body.mesh.nodes, np.zeros(len(robot.winches))
