@@ -8,7 +8,7 @@ from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_fil
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.friction_band import friction_band
 from hydrostat.simulation.many_poses import ManyPoses
-from hydrostat.simulation.meeting import check_still, obstacle_forces, replacing, smooth_robot
+from hydrostat.simulation.meeting import obstacle_forces, replacing
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
@@ -17,6 +17,7 @@ from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, re
 from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import Contractions, SolvedPose, largest_distance
+from hydrostat.simulation.still import check_still, smooth_robot
 
 __all__ = [
     "BodyPhysics",

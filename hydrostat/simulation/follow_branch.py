@@ -11,9 +11,9 @@ from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult, Reason
 from hydrostat.simulation.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
-from hydrostat.simulation.meeting import check_still
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
+from hydrostat.simulation.still import check_still
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""What meets a robot: forces on obstacles, guides that move them, physics without their friction."""
+"""What meets a robot: forces on obstacles, and guides that move them."""
 
 from copy import copy
 from dataclasses import replace
@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.errors import InputError
 from hydrostat.mechanics import Energy
-from hydrostat.robot import Robot
 from hydrostat.simulation.solved_pose import SolvedPose
 
 if TYPE_CHECKING:
@@ -39,28 +37,3 @@ def replacing(simulation: "Simulation", old: Energy, new: Energy) -> "Simulation
     )
     other.solver = replace(simulation.solver, assembly=other.assembly)
     return other
-
-
-def smooth_robot(robot: Robot) -> Robot:
-    """The same robot without friction on obstacles; itself where there is none."""
-    if not any(map(robot.friction_of, robot.obstacles)):
-        return robot
-    contact = None if robot.contact is None else replace(robot.contact, friction=0.0)
-    obstacles = tuple(replace(obstacle, friction=None) for obstacle in robot.obstacles)
-    return replace(robot, contact=contact, obstacles=obstacles)
-
-
-def check_still(robot: Robot, what: str) -> None:
-    """Check that no obstacle moves.
-
-    Args:
-        robot: which.
-        what: does not know obstacles that move, in words.
-
-    Raises:
-        InputError: one has a mass.
-    """
-    for obstacle in robot.obstacles:
-        if obstacle.mass is not None:
-            name = obstacle.name
-            raise InputError(f'{what} knows no obstacle that moves: "{name}" has a mass; without it, it stands still')

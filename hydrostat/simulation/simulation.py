@@ -17,7 +17,6 @@ from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.dynamics import Dynamics, PinShifts, StepOptions
 from hydrostat.simulation.loading_path import LoadingPath
 from hydrostat.simulation.many_poses import LONG_ENOUGH, ManyPoses, PoseRow, in_threads, many_poses, pose_row
-from hydrostat.simulation.meeting import check_still
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.obstacles import obstacles
 from hydrostat.simulation.profile import Profile
@@ -26,6 +25,7 @@ from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.rubbing_slopes import RubbingSlopes, rubbing_sensitivity, rubbing_slopes
 from hydrostat.simulation.solved_pose import Contractions, SolvedPose, check_apart, check_pose, contraction_values
 from hydrostat.simulation.static_solver import StaticSolver
+from hydrostat.simulation.still import check_still
 
 
 class Simulation:

@@ -1,0 +1,31 @@
+"""What does not know all that obstacles do: `smooth_robot` has no friction on them, `check_still` asks that none move."""
+
+from dataclasses import replace
+
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+
+
+def smooth_robot(robot: Robot) -> Robot:
+    """The same robot without friction on obstacles; itself where there is none."""
+    if not any(map(robot.friction_of, robot.obstacles)):
+        return robot
+    contact = None if robot.contact is None else replace(robot.contact, friction=0.0)
+    obstacles = tuple(replace(obstacle, friction=None) for obstacle in robot.obstacles)
+    return replace(robot, contact=contact, obstacles=obstacles)
+
+
+def check_still(robot: Robot, what: str) -> None:
+    """Check that no obstacle moves.
+
+    Args:
+        robot: which.
+        what: does not know obstacles that move, in words.
+
+    Raises:
+        InputError: one has a mass.
+    """
+    for obstacle in robot.obstacles:
+        if obstacle.mass is not None:
+            name = obstacle.name
+            raise InputError(f'{what} knows no obstacle that moves: "{name}" has a mass; without it, it stands still')
