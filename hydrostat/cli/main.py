@@ -14,6 +14,7 @@ from hydrostat.cli.branches import branches
 from hydrostat.cli.check import check
 from hydrostat.cli.design import design
 from hydrostat.cli.fabricate import fabricate
+from hydrostat.cli.grasp import grasp
 from hydrostat.cli.learn import learn
 from hydrostat.cli.materials import materials
 from hydrostat.cli.new import new
@@ -66,6 +67,7 @@ for command in (
     animate,
     design,
     fabricate,
+    grasp,
     sample,
     learn,
     studio,

@@ -1,5 +1,17 @@
 """Grasps: a robot closes on a thing, which is pulled out again."""
 
 from hydrostat.grasp.pull_out import PullOptions, PullOut, pull_out
+from hydrostat.grasp.spread import PullCase, pull_bands
+from hydrostat.grasp.thing import FORMS, moved_thing, place_thing, read_thing
 
-__all__ = ["PullOptions", "PullOut", "pull_out"]
+__all__ = [
+    "FORMS",
+    "PullCase",
+    "PullOptions",
+    "PullOut",
+    "moved_thing",
+    "place_thing",
+    "pull_bands",
+    "pull_out",
+    "read_thing",
+]

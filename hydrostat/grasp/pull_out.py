@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
+from hydrostat.grasp.thing import moved_thing
 from hydrostat.mechanics.rigid import GuideEnergy
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import BodyPhysics, Contractions, Simulation, SolvedPose, obstacle_forces, replacing
@@ -23,7 +24,8 @@ class PullOptions:
         step: how far the hand that pulls goes at a time [m].
         travel: the most that it goes [m]; None: the size of the thing and a half.
         along: stiffness of what pulls [N/m].
-        across: stiffness that holds the thing across the pull [N/m], and against turning, there at its rim.
+        across: stiffness that holds the thing across the pull [N/m], and against turning, there at its rim: as stiff as
+            what pulls, the thing goes straight; much softer, it finds its own way.
 
     Raises:
         InputError: no direction, or a number that is not above 0.
@@ -79,8 +81,15 @@ class PullOut:
 
     @property
     def work(self) -> float:
-        """Work of the pull up to where the thing comes free [J]: without friction, the energy that held it."""
-        return float(np.trapezoid(np.maximum(self.forces, 0.0), self.moved))
+        """The most work that the pull has done at any place [J]: without friction, the energy to escape."""
+        done = 0.5 * (self.forces[1:] + self.forces[:-1]) * np.diff(self.moved)
+        return float(np.cumsum(done).max(initial=0.0))
+
+    def thing_at(self, row: int) -> Obstacle:
+        """The thing where it is in a row, turned as little as that is seen."""
+        pose = self.poses[row]
+        assert pose.carried is not None
+        return moved_thing(self.robot.obstacles[-1], pose.carried[-1 - pose.carried.shape[1]])
 
 
 def pull_out(
@@ -93,8 +102,8 @@ def pull_out(
 ) -> PullOut:
     """Close a robot on a thing that is held still, let the thing find its balance, then pull it away in small steps.
 
-    The thing is held by springs: along the pull one so stiff that the force may fall after its peak, across it one so
-    weak that the thing follows the grasp. Friction remembers the way, so the answer does not depend on the steps.
+    The thing is held by springs so stiff that the force may fall after its peak. Friction remembers the way, so the
+    answer does not depend on the steps.
 
     Args:
         robot: which.

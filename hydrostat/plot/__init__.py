@@ -6,6 +6,7 @@ from hydrostat.plot.branch_figure import draw_branches
 from hydrostat.plot.design_charts import draw_front, draw_growth
 from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, winch_stops
 from hydrostat.plot.frame import Frame
+from hydrostat.plot.grasp_figure import draw_pull, pull_frames
 from hydrostat.plot.healing_figure import draw_healing
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
@@ -29,6 +30,7 @@ __all__ = [
     "draw_network",
     "draw_portrait",
     "draw_pose",
+    "draw_pull",
     "draw_reach",
     "draw_reached",
     "draw_rest",
@@ -41,6 +43,7 @@ __all__ = [
     "motion_frames",
     "motion_svg",
     "pose_stops",
+    "pull_frames",
     "report_text",
     "save_gif",
     "save_glb",

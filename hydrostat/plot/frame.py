@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Pose, Robot
 from hydrostat.simulation import Motion, SolvedPose
@@ -21,13 +21,15 @@ class Frame:
     contractions: Vector | None = None  # cable taken in by each winch [m]; without, no winch is seen to turn
     target: Pose | None = None  # the pose that is approached, whose targets are shown
     words: str = ""  # what happens, in a line
+    lines: tuple[Points, ...] = ()  # of things beside the robot [m]
 
     @classmethod
-    def of(cls, found: SolvedPose | Motion, *, target: Pose | None = None, words: str = "") -> Self:
-        """The frame that shows an equilibrium, or an instant of a motion."""
-        return cls(
-            nodes=found.nodes, tensions=found.tensions, contractions=found.contractions, target=target, words=words
-        )
+    def of(
+        cls, found: SolvedPose | Motion, *, target: Pose | None = None, words: str = "", lines: Sequence[Points] = ()
+    ) -> Self:
+        """The frame that shows an equilibrium, or an instant of a motion, and lines of things beside the robot [m]."""
+        told = {"nodes": found.nodes, "tensions": found.tensions, "contractions": found.contractions}
+        return cls(**told, target=target, words=words, lines=tuple(lines))
 
 
 def check_frames(robot: Robot, frames: Sequence[Frame]) -> None:

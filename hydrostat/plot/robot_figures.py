@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing.palette import ERROR, LIGHT, winch_colours
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.drawing.palette import ERROR, INK, LIGHT, winch_colours
 from hydrostat.geometry.outline import Outline, Ring
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.attachments import Attachments
@@ -204,13 +204,25 @@ def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:
     sheet.curve(closed, color=ERROR, linewidth=1.2, linestyle=(0, (3.5, 2.0)), zorder=14.1)
 
 
-def draw_portrait(robot: Robot, nodes: Nodes, *, frame: Spread | None = None, width: float = WIDTH) -> Figure:
-    """The robot alone, without grid or words, its nodes at `nodes` [m]; the picture holds all points of `frame` [m]."""
+def draw_portrait(
+    robot: Robot,
+    nodes: Nodes,
+    *,
+    frame: Spread | None = None,
+    lines: Sequence[Points] = (),
+    width: float = WIDTH,
+) -> Figure:
+    """The robot alone, without grid or words, its nodes at `nodes` [m]; the picture holds all points of `frame` [m].
+
+    Lines [m] are drawn over it, such as those of a thing that it holds.
+    """
     carried = Attachments(robot)
     beside = [*carried.cables(nodes), carried.winches(nodes)] if nodes.shape[1] == 3 else []
     shapes, points = ([nodes], beside) if frame is None else ([], [frame])
     sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
     draw_hardware(sheet, panes[0], panes[0].draw_body(sheet, nodes), carried, nodes)
+    for line in lines:
+        sheet.curve(panes[0].places(line), color=INK, linewidth=1.4, clip_on=True, zorder=15)
     return sheet.figure
 
 

@@ -10,7 +10,7 @@ from hydrostat.robot.gravity import STANDARD_GRAVITY
 from hydrostat.robot.inflated import inflated_robot
 from hydrostat.robot.marker import Marker, Pose
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation, find_material
-from hydrostat.robot.obstacle_lines import obstacle_lines
+from hydrostat.robot.obstacle_lines import obstacle_lines, rims
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.read import load_robot
 from hydrostat.robot.risks import find_risks
@@ -53,6 +53,7 @@ __all__ = [
     "obstacle_lines",
     "outline_body",
     "replace_file",
+    "rims",
     "robot_hash",
     "robot_text",
     "save_robot",

@@ -13,9 +13,14 @@ ROUND = np.linspace(0.0, 2.0 * np.pi, 49)  # around a circle
 
 def obstacle_lines(robot: Robot) -> list[Points]:
     """Lines along the rims of all obstacles of a robot [m]; a plane is drawn as far as the body is large, about it."""
+    return [line for each in robot.obstacles for line in rims(each, robot)]
+
+
+def rims(obstacle: Obstacle, robot: Robot) -> list[Points]:
+    """Lines along the rims of one obstacle, which need not be among those of the robot [m]."""
     mesh = robot.body.mesh
     middle = 0.5 * (mesh.nodes.min(axis=0) + mesh.nodes.max(axis=0))
-    return [line for each in robot.obstacles for line in _LINES[ObstacleShape(each.shape)](each, middle, mesh.size)]
+    return _LINES[ObstacleShape(obstacle.shape)](obstacle, middle, mesh.size)
 
 
 def _plane(plane: Obstacle, middle: Vector, size: float) -> list[Points]:

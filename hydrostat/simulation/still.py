@@ -1,4 +1,4 @@
-"""What does not know all that obstacles do: `smooth_robot` has no friction on them, `check_still` asks that all stand."""
+"""What does not know all that obstacles do: `smooth_robot` has no friction there, `check_still` asks that all stand."""
 
 from dataclasses import replace
 

@@ -9,6 +9,8 @@ from builders import FOAM, box_mesh, mesh_body, strip_mesh
 
 import hydrostat as hs
 from hydrostat.errors import InputError
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.mechanics import WeightEnergy
 from hydrostat.mechanics.rigid import Carriage, GuideEnergy
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
 from hydrostat.simulation import (
@@ -109,6 +111,35 @@ def test_the_force_does_not_depend_on_the_steps() -> None:
         drag = Drag(pad(2, young=3e4))
         forces[steps] = [drag.to(way)[0] for way in np.linspace(0, 1.6e-3, 2 * steps + 1)[1:]][-1]
     assert forces[1] == pytest.approx(forces[8], rel=0.01)
+
+
+def test_a_belt_round_a_drum_is_the_capstan() -> None:
+    """A quarter turn of a thin belt, held at one end, loaded at the other: exp(mu angle), but for its own bending."""
+    friction, radius, thick, distance, angle = 0.3, 0.05, 0.4e-3, 0.2e-3, 0.5 * np.pi
+    flat = strip_mesh(80, 1, size=(angle, 1.0))
+    turn, out = flat.nodes.T
+    reach = radius + 1.05 * distance + thick * (0.5 + out)
+    nodes = np.column_stack([-reach * np.cos(turn), reach * np.sin(turn)])
+    mesh = Mesh(nodes, flat.elements)
+    held, loaded = nodes[np.isclose(turn, 0)], np.isclose(turn, angle)
+    box = (tuple(held.min(axis=0) - 1e-4), tuple(held.max(axis=0) + 1e-4))
+    belt = Robot(
+        name="belt",
+        body=mesh_body(mesh, thickness=0.03, material=replace(FOAM, young=1e6, poisson=0.0)),
+        pins=(Pin(box=box, stiffness=1e6),),
+        winches=(),
+        cables=(),
+        markers=(),
+        poses={},
+        contact=Contact(distance=distance),
+        obstacles=(Obstacle(name="drum", shape="sphere", at=(0.0, 0.0), radius=radius, friction=friction),),
+    )
+    forces = np.zeros_like(nodes)
+    forces[loaded, 0] = 1.0 / loaded.sum()
+    simulation = Simulation(belt, energies=[WeightEnergy(nodes, forces)])
+    pose, reaction = simulation.solve({}), np.zeros_like(nodes)
+    simulation.body.pins.add_gradient(pose.nodes, np.zeros(0), reaction)
+    assert 1.0 / np.linalg.norm(reaction.sum(axis=0)) == pytest.approx(np.exp(friction * angle), rel=0.02)
 
 
 @cache

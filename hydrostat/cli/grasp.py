@@ -1,0 +1,164 @@
+"""`hydrostat grasp`."""
+
+import csv
+import io
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.options import Contract, contractions, positive
+from hydrostat.cli.waiting import progress_bar, read_robot
+from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.arrays import Points, Vector
+    from hydrostat.grasp import PullCase, PullOut
+    from hydrostat.robot import Obstacle, Robot
+
+
+def grasp(
+    robot: RobotFolder,
+    out: OutFolder,
+    thing: Annotated[
+        str,
+        typer.Option("--object", metavar="SHAPE:SIZES", help="sphere:65mm, cylinder:40mm,120mm, box:40mm,40mm,60mm."),
+    ] = "sphere:65mm",
+    pose: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Pose that closes the robot; or use --contract.")
+    ] = None,
+    contract: Contract = None,
+    pull: Annotated[str, typer.Option(metavar="DIRECTION", help="Way of the pull, such as +z.")] = "+z",
+    at: Annotated[
+        str | None, typer.Option(metavar="X,Y,Z", help="Middle of the thing [mm]; found near the pose if left out.")
+    ] = None,
+    friction: Annotated[float, typer.Option(help="Coulomb's coefficient between robot and thing.")] = 0.5,
+    mass: Annotated[str, typer.Option(metavar="MASS", help="Of the thing.")] = "58 g",
+    step: Annotated[
+        str, typer.Option(metavar="LENGTH", help="Of the pull at a time; the answer hardly depends on it.")
+    ] = "2mm",
+    bands: Annotated[
+        bool, typer.Option("--bands", help="Also with other friction, stiffness, place: a dozen pulls more.")
+    ] = False,
+) -> None:
+    """Close a robot on a thing and pull it out again: the force against the way, and what it takes at most.
+
+    The thing is rigid and goes straight. The robot feels itself and the thing, with friction on the thing. Writes
+    pull.csv, pull.png and pull.gif; with --bands also bands.csv.
+
+    Example: hydrostat grasp examples/caging_gripper --pose close --object sphere:65mm --pull +z --out build/grasp
+    """
+    from hydrostat.grasp import PullOptions, pull_bands, pull_out, read_thing
+    from hydrostat.plot import draw_pull, pull_frames, save_gif, save_png
+    from hydrostat.robot import replace_file
+    from hydrostat.units import LENGTH, MASS
+
+    require_folder(out)
+    weight, stride = positive("--mass", mass, MASS), positive("--step", step, LENGTH)
+    loaded = _feeling(read_robot(robot))
+    held = read_thing(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
+    options = PullOptions(direction=_direction(pull, loaded.body.mesh.dim), step=stride)
+    with progress_bar() as tell:
+        closing, closed = _closed(loaded, pose, contractions(loaded, contract))
+        placed = _placed(loaded, held, at, closed)
+        found = pull_out(loaded, placed, closing, options, tell=tell)
+        cases = pull_bands(loaded, placed, closing, options, tell=tell) if bands else ()
+        out.mkdir(parents=True, exist_ok=True)
+        files = [replace_file(out / "pull.csv", _table(found).encode())]
+        files.append(save_png(draw_pull(loaded, found, cases), out / "pull.png"))
+        files.append(save_gif(loaded, pull_frames(loaded, found), out / "pull.gif", step=0.1, tell=tell))
+        if cases:
+            files.append(replace_file(out / "bands.csv", _bands(cases).encode()))
+    _print(found, placed, cases)
+    print("Wrote " + ", ".join(str(file) for file in files))
+
+
+def _feeling(robot: "Robot") -> "Robot":
+    """The robot, feeling itself."""
+    from dataclasses import replace
+
+    from hydrostat.robot import Contact
+
+    return robot if robot.contact is not None else replace(robot, contact=Contact())
+
+
+def _closed(robot: "Robot", name: str | None, given: dict[str, float]) -> "tuple[Vector, Points]":
+    """Contractions that close the robot [m], and where its markers then are without the thing [m]."""
+    import numpy as np
+
+    from hydrostat.ik import solve_ik
+    from hydrostat.simulation import Simulation
+
+    simulation = Simulation(robot)
+    if (name is None) == (not given):
+        poses = f"; poses are: {', '.join(robot.poses)}" if robot.poses else ""
+        raise InputError(f"say by --pose, or by --contract, how the robot closes{poses}")
+    found = simulation.solve(given) if name is None else solve_ik(simulation, robot.pose(name)).pose
+    targets = list(found.markers) if name is None else list(robot.pose(name).targets)
+    places = np.array([found.markers[marker] for marker in targets])
+    if not len(places):
+        raise InputError("the robot has no markers, so say by --at where the thing lies")
+    return found.contractions, places
+
+
+def _placed(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
+    """The thing where it shall lie."""
+    import numpy as np
+
+    from hydrostat.grasp import moved_thing, place_thing
+
+    if at is None:
+        return place_thing(robot, thing, closed)
+    try:
+        place = 1e-3 * np.array([float(part) for part in at.split(",")])
+    except ValueError:
+        raise InputError(f"--at {at}: write the coordinates of its middle in mm, such as 0,0,90") from None
+    if len(place) != robot.body.mesh.dim:
+        raise InputError(f"--at {at}: the body has {robot.body.mesh.dim} axes; give a coordinate for each")
+    return moved_thing(thing, place)
+
+
+def _direction(text: str, dim: int) -> tuple[float, ...]:
+    axes = "xyz"[:dim]
+    if len(text) != 2 or text[0] not in "+-" or text[1] not in axes:
+        raise InputError(f"--pull {text}: must be one of {', '.join(sign + axis for axis in axes for sign in '+-')}")
+    return tuple((1.0 if text[0] == "+" else -1.0) * (axis == text[1]) for axis in axes)
+
+
+def _table(pull: "PullOut") -> str:
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    axes = "xyz"[: pull.contact.shape[1]]
+    writer.writerow(["pulled_mm", "moved_mm", "force_N", *(f"contact_{axis}_N" for axis in axes)])
+    for pulled, moved, force, contact in zip(pull.pulled, pull.moved, pull.forces, pull.contact, strict=True):
+        writer.writerow(
+            [f"{1e3 * pulled:.4f}", f"{1e3 * moved:.4f}", f"{force:.6f}", *(f"{one:.6f}" for one in contact)]
+        )
+    return lines.getvalue()
+
+
+def _bands(cases: "tuple[PullCase, ...]") -> str:
+    lines = ["case,peak_N,work_mJ,how it ended"]
+    for case in cases:
+        if case.pull is None:
+            lines.append(f'{case.name},,,"{case.trouble}"')
+        else:
+            lines.append(f'{case.name},{case.pull.peak:.4f},{1e3 * case.pull.work:.4f},"{case.pull.reason}"')
+    return "\n".join(lines) + "\n"
+
+
+def _print(pull: "PullOut", thing: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
+    """Print the most that the pull took, and how it changes with what nobody knows well."""
+    place = ", ".join(f"{1e3 * value:.1f}" for value in thing.frame()[0])
+    print(f"the thing lies at ({place}) mm")
+    hardest = 1e3 * float(pull.moved[int(pull.forces.argmax())])
+    print(f"hardest pull {pull.peak:.3g} N, {hardest:.1f} mm on its way; {1e3 * pull.work:.3g} mJ; {pull.reason}")
+    for case in cases:
+        print(f"  {case.name:<14} " + (case.trouble if case.pull is None else f"{case.pull.peak:.3g} N"))
+    known = [case.pull for case in cases if case.pull is not None and case.name != "no friction"]
+    if known:
+        peaks = [pull.peak, *(each.peak for each in known)]
+        print(f"hardest pull from {min(peaks):.3g} to {max(peaks):.3g} N over these")
+    for case in cases:
+        if case.name == "no friction" and case.pull is not None:
+            print(f"without friction it takes {1e3 * case.pull.work:.3g} mJ to escape along this way")

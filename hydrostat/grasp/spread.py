@@ -1,0 +1,74 @@
+"""`pull_bands`: how the force of a pull-out changes with what nobody knows well."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.errors import HydrostatError
+from hydrostat.grasp.pull_out import PullOptions, PullOut, pull_out
+from hydrostat.grasp.thing import moved_thing
+from hydrostat.robot import Obstacle, Robot
+from hydrostat.simulation import Contractions
+
+FRICTIONS, MODULI, ASIDE = (0.3, 0.8), (0.7, 1.3), 5e-3
+"""What is tried: coefficients of friction, factors of Young's modulus, how far the thing lies beside its place [m]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PullCase:
+    """One pull with one thing changed.
+
+    Attributes:
+        name: what is other than usual, in words.
+        pull: what came out; None if that could not be simulated.
+        trouble: why not, in words.
+    """
+
+    name: str
+    pull: PullOut | None
+    trouble: str = ""
+
+
+def pull_bands(
+    robot: Robot,
+    thing: Obstacle,
+    contractions: Contractions,
+    options: PullOptions,
+    *,
+    tell: Callable[[str, int, int], None] | None = None,
+) -> tuple[PullCase, ...]:
+    """Pull with friction, stiffness and place changed, one at a time; and without friction, to see what cages.
+
+    Args:
+        robot: which.
+        thing: with its usual friction and place.
+        contractions: that close the robot [m].
+        options: of the pull.
+        tell: is told "cases", how many are done, and how many there are.
+    """
+    cases = list(_cases(robot, thing))
+    found = []
+    for number, (name, other, moved) in enumerate(cases):
+        try:
+            found.append(PullCase(name=name, pull=pull_out(other, moved, contractions, options)))
+        except HydrostatError as error:
+            found.append(PullCase(name=name, pull=None, trouble=str(error)))
+        if tell is not None:
+            tell("cases", number + 1, len(cases))
+    return tuple(found)
+
+
+def _cases(robot: Robot, thing: Obstacle) -> Iterator[tuple[str, Robot, Obstacle]]:
+    yield "no friction", robot, replace(thing, friction=0.0)
+    for friction in FRICTIONS:
+        yield f"friction {friction:g}", robot, replace(thing, friction=friction)
+    material = robot.body.material
+    for factor in MODULI:
+        body = replace(robot.body, material=replace(material, young=factor * material.young))
+        yield f"modulus {factor - 1:+.0%}", replace(robot, body=body), thing
+    place = thing.frame()[0]
+    for axis in range(len(place)):
+        for sign in (-1.0, 1.0):
+            aside = place + sign * ASIDE * np.eye(len(place))[axis]
+            yield f"{'xyz'[axis]} {1e3 * sign * ASIDE:+.0f} mm", robot, moved_thing(thing, aside)

@@ -1,0 +1,89 @@
+"""`read_thing`, `place_thing`: what is grasped, from words, and where it lies."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.geometry.anchors import locate
+from hydrostat.robot import Obstacle, Robot
+from hydrostat.units import LENGTH, parse_quantity
+
+FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,40mm,60mm")
+"""How things are written: a diameter, a diameter and a length along the last axis, or the sides."""
+
+
+def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
+    """Thing of a text as in `FORMS`, about the origin.
+
+    Args:
+        text: its shape and sizes.
+        dim: of the body that grasps it; a sphere is a disc in the plane.
+        mass: [kg].
+        friction: Coulomb's coefficient.
+
+    Raises:
+        InputError: no such shape, a wrong number of sizes, no length, or a size that is not above 0.
+    """
+    shape, _, rest = text.partition(":")
+    counts = {"sphere": 1, "cylinder": 2, "capsule": 2, "box": dim}
+    if shape not in counts:
+        raise InputError(f'there is no thing "{text}"; write one such as {", ".join(FORMS)}')
+    sizes = [parse_quantity(part.strip(), LENGTH) for part in rest.split(",")]
+    if len(sizes) != counts[shape]:
+        raise InputError(
+            f'"{text}": a {shape} has {counts[shape]} sizes, for example {FORMS[list(counts).index(shape)]}'
+        )
+    if min(sizes) <= 0:
+        raise InputError(f'"{text}": sizes must be above 0')
+    known = {"name": "thing", "shape": shape, "mass": mass, "friction": friction}
+    if shape == "sphere":
+        return Obstacle(**known, at=(0.0,) * dim, radius=0.5 * sizes[0])
+    if shape == "box":
+        return Obstacle(**known, at=tuple(-0.5 * size for size in sizes), to=tuple(0.5 * size for size in sizes))
+    long = sizes[1] - (sizes[0] if shape == "capsule" else 0.0)
+    if long <= 0:
+        raise InputError(f'"{text}": the length of a capsule, its ends included, must be more than its diameter')
+    end = 0.5 * long * np.eye(dim)[-1]
+    return Obstacle(**known, at=tuple(-end), to=tuple(end), radius=0.5 * sizes[0])
+
+
+def moved_thing(thing: Obstacle, place: Vector) -> Obstacle:
+    """The same thing with its middle at a place [m]."""
+    shift = np.asarray(place) - thing.frame()[0]
+    ends = (None if end is None else tuple((np.array(end) + shift).tolist()) for end in (thing.at, thing.to))
+    at, to = ends
+    return replace(thing, at=at or (), to=to)
+
+
+def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
+    """The thing in the midst of where markers are when the robot is closed, moved out of the body at rest.
+
+    Args:
+        robot: at rest it must be clear of the thing.
+        thing: anywhere.
+        closed: where the markers of the pose are [m].
+
+    Raises:
+        InputError: no place is found near by.
+    """
+    mesh, room = robot.body.mesh, 2.0 * robot.contact_distance
+    skin, place = mesh.nodes[np.unique(mesh.boundary)], closed.mean(axis=0)
+    for _ in range(_TRIALS):
+        tried = moved_thing(thing, place)
+        found = tried.field()(skin)
+        lacks = np.maximum(room - found.values, 0.0)
+        inside = locate(mesh, tried.spine()).inside.any()
+        if not lacks.any() and not inside:
+            return tried
+        way = -(lacks[:, None] * found.normals).sum(axis=0)
+        if inside or not way.any():
+            way = place - mesh.nodes.mean(axis=0)
+        place = place + (lacks.max() * _SOME + 0.1 * room) * way / max(float(np.linalg.norm(way)), 1e-12)
+    raise InputError("no place for the thing was found near the markers of the pose; say where by --at")
+
+
+_TRIALS = 400
+_SOME = 0.25
+"""Moves in search of a place, and how far each goes, as a share of what is needed."""

@@ -1,0 +1,115 @@
+"""A thing pulled out of a grasp. Oracles: balance of forces, other steps, more and less friction."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from builders import gallery_robot, strip_robot
+
+from hydrostat.errors import InputError
+from hydrostat.grasp import PullOptions, PullOut, moved_thing, place_thing, pull_bands, pull_out, read_thing
+from hydrostat.robot import Contact, Obstacle, Robot
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+PUCK = Obstacle(name="puck", shape="sphere", at=(0.14, 0.06), radius=0.025, mass=0.05, friction=0.4)
+CURLED = {"up": 0.035}
+
+
+def curler(**contact: float) -> Robot:
+    """A strip that curls up around what lies above it."""
+    return replace(strip_robot(columns=16, rows=3), contact=Contact(**contact))
+
+
+@cache
+def pulled(step: float = 2e-3, friction: float = 0.4) -> PullOut:
+    options = PullOptions(direction=(1.0, 0.0), step=step)
+    return pull_out(curler(distance=1e-3), replace(PUCK, friction=friction), CURLED, options)
+
+
+def test_the_thing_is_held_and_comes_free() -> None:
+    pull = pulled()
+    assert pull.peak > 0.05
+    assert pull.released
+    assert pull.reason == "the thing is free"
+    assert pull.forces[-1] == pytest.approx(0.0, abs=1e-3 * pull.peak)
+
+
+def test_forces_on_the_thing_balance() -> None:
+    """What pulls it and what the robot does to it, to a millionth of a newton; nothing else acts along the pull."""
+    pull = pulled()
+    assert np.abs(pull.forces + pull.contact[:, 0]).max() < 1e-6
+
+
+def test_the_curve_does_not_depend_on_the_steps() -> None:
+    coarse, fine = pulled(), pulled(step=1e-3)
+    assert coarse.peak == pytest.approx(fine.peak, rel=0.02)
+    shared = np.interp(coarse.pulled, fine.pulled, fine.forces)
+    assert np.abs(shared - coarse.forces).max() < 0.05 * fine.peak
+
+
+def test_more_friction_holds_better() -> None:
+    free, rough = pulled(friction=0.0), pulled(friction=0.8)
+    assert free.peak < pulled().peak < rough.peak
+    assert free.work < pulled().work
+
+
+@pytest.mark.slow
+def test_a_case_for_each_thing_that_nobody_knows_well() -> None:
+    options = PullOptions(direction=(1.0, 0.0), step=8e-3)
+    cases = pull_bands(curler(distance=1e-3), PUCK, CURLED, options)
+    assert [case.name for case in cases] == [
+        "no friction",
+        "friction 0.3",
+        "friction 0.8",
+        "modulus -30%",
+        "modulus +30%",
+        "x -5 mm",
+        "x +5 mm",
+        "y -5 mm",
+        "y +5 mm",
+    ]
+    peaks = {case.name: case.pull.peak for case in cases if case.pull is not None}
+    assert peaks["no friction"] < peaks["friction 0.3"] < peaks["friction 0.8"]
+    assert peaks["modulus -30%"] != peaks["modulus +30%"]
+
+
+@pytest.mark.parametrize(
+    ("thing", "words"),
+    [
+        (replace(PUCK, mass=None), "has no mass; give it one"),
+        (replace(PUCK, at=(0.1, 0.0)), "stands in the body|the body at rest stands in"),
+        (replace(PUCK, at=(0.0, 0.5)), "is touched by nothing when the robot has closed"),
+    ],
+)
+def test_what_cannot_be_pulled_is_told(thing: Obstacle, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        pull_out(curler(), thing, CURLED, PullOptions(direction=(1.0, 0.0)))
+
+
+@pytest.mark.parametrize("wrong", [{"direction": (0.0, 0.0)}, {"direction": (1.0, 0.0), "step": 0.0}])
+def test_a_wrong_pull_is_told(wrong: dict) -> None:
+    with pytest.raises(InputError, match="pull must"):
+        PullOptions(**wrong)
+
+
+def test_things_are_read_from_words() -> None:
+    known = {"mass": 0.058, "friction": 0.5}
+    assert read_thing("sphere:65mm", 3, **known).radius == pytest.approx(0.0325)
+    assert read_thing("box:4cm,40mm,60mm", 3, **known).to == pytest.approx((0.02, 0.02, 0.03))
+    rod = read_thing("capsule:40mm,120mm", 3, **known)
+    assert (rod.to, rod.radius) == (pytest.approx((0, 0, 0.04)), pytest.approx(0.02))
+    for wrong, words in (("cone:3mm", "there is no thing"), ("sphere:3mm,4mm", "has 1 sizes"), ("sphere:3", "no unit")):
+        with pytest.raises(InputError, match=words):
+            read_thing(wrong, 3, **known)
+
+
+def test_a_place_near_the_closed_markers_is_clear_of_the_body() -> None:
+    robot = gallery_robot("caging_gripper")
+    ball = read_thing("sphere:65mm", 3, mass=0.058, friction=0.5)
+    closed = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.02]])
+    placed = place_thing(robot, ball, closed)
+    skin = robot.body.mesh.nodes[np.unique(robot.body.mesh.boundary)]
+    assert placed.field()(skin).values.min() >= 2 * robot.contact_distance - 1e-12
+    assert moved_thing(placed, np.zeros(3)).at == pytest.approx((0.0, 0.0, 0.0))
