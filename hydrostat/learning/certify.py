@@ -16,20 +16,21 @@ from hydrostat.simulation import Simulation, SolvedPose
 def certify(simulation: Simulation, model: LearnedModel, answer: LearnedPose, *, steps: int = 0) -> LearnedPose:
     """A learned answer with the error that the simulator finds, if asked after exact Gauss-Newton steps from there.
 
-    The contractions are solved from rest; each step goes on from the pose before, and is taken back if it leads further
-    away. Where no equilibrium is found, `certified` is None and `reason` says why.
+    The contractions are solved from rest, unless the answer was certified before; each step goes on from the pose
+    before, and is taken back if it leads further away. Where no equilibrium is found, `certified` is None and `reason`
+    says why.
 
     Args:
         simulation: of the robot that the model was learned of.
         model: whose answer it is.
-        answer: what `LearnedModel.solve` gave.
+        answer: what `LearnedModel.solve` or this gave.
         steps: exact steps to take.
 
     Raises:
         InputError: a model of another robot.
     """
     model.check(simulation.robot)
-    pose = simulation.solve(answer.contractions, strict=False)
+    pose = answer.pose or simulation.solve(answer.contractions, strict=False)
     for _ in range(steps if pose.result.converged else 0):
         further = _step(simulation, model, answer, pose)
         if further is None:
@@ -78,9 +79,8 @@ def _step(simulation: Simulation, model: LearnedModel, answer: LearnedPose, pose
     anchors, names = simulation.marker_anchors, [marker.name for marker in simulation.robot.markers]
     asked = [names.index(name) for name in answer.target.targets]
     slopes = np.einsum("pc,pcdw->pdw", anchors.weights, moves[anchors.stencils])[asked].reshape(-1, len(model.low))
-    change = _bounded(
-        slopes, _residual(answer, pose).ravel(), model.low - pose.contractions, model.high - pose.contractions
-    )
+    begun = pose.contractions
+    change = bounded_step(slopes, _residual(answer, pose).ravel(), model.low - begun, model.high - begun)
     further = simulation.solve(pose.contractions + change, start=pose, strict=False)
     nearer = further.result.converged and np.linalg.norm(_residual(answer, further)) < np.linalg.norm(
         _residual(answer, pose)
@@ -88,17 +88,20 @@ def _step(simulation: Simulation, model: LearnedModel, answer: LearnedPose, pose
     return further if nearer else None
 
 
-def _bounded(slopes: np.ndarray, residual: Vector, low: Vector, high: Vector) -> Vector:
-    """The change within limits that best undoes what is missed; the shortest where several do."""
+def bounded_step(slopes: np.ndarray, residual: Vector, low: Vector, high: Vector) -> Vector:
+    """The change within limits that best undoes what is missed; the shortest where several do.
+
+    Args:
+        slopes: of what is missed, (rows, winches).
+        residual: what is missed [m].
+        low: least change of each winch [m].
+        high: largest [m].
+    """
+    low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
     some = _SHORT * np.sqrt(np.square(slopes).sum(axis=0).max(initial=0.0))
     rows = np.vstack([slopes, some * np.eye(len(low))])
-    above = np.maximum(high, low + _ROOM)
-    found = lsq_linear(
-        rows,
-        -np.r_[residual, np.zeros(len(low))],
-        bounds=(np.minimum(low, 0.0) - _ROOM, np.maximum(above, 0.0) + _ROOM),
-    )
-    return np.clip(found.x, np.minimum(low, 0.0), np.maximum(high, 0.0))
+    found = lsq_linear(rows, np.r_[-residual, np.zeros(len(low))], bounds=(low - _ROOM, high + _ROOM))
+    return np.clip(found.x, low, high)
 
 
 def _residual(answer: LearnedPose, pose: SolvedPose) -> np.ndarray:

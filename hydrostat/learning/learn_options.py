@@ -14,7 +14,7 @@ class LearnOptions:
         members: forward networks, each of which holds out other samples; their disagreement is the model's doubt.
         width: units in each hidden layer.
         depth: hidden layers.
-        steps: of training the forward networks.
+        steps: of training the forward networks; if left out 6,000, and 3 for each sample.
         inverse_steps: of training the inverse network.
         batch: samples in a step.
         rate: largest learning rate; it rises, then falls as a cosine.
@@ -30,7 +30,7 @@ class LearnOptions:
     members: int = 3
     width: int = 128
     depth: int = 3
-    steps: int = 6000
+    steps: int | None = None
     inverse_steps: int = 4000
     batch: int = 128
     rate: float = 1e-2
@@ -44,7 +44,7 @@ class LearnOptions:
 
     def __post_init__(self) -> None:
         for name in ("members", "width", "depth", "steps", "inverse_steps", "batch", "directions", "threads"):
-            if getattr(self, name) < 1:
+            if getattr(self, name) is not None and getattr(self, name) < 1:
                 raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
         for name in ("rate", "slopes", "tensions", "effort"):
             value = getattr(self, name)
@@ -54,3 +54,7 @@ class LearnOptions:
             raise InputError(f"held_out must be above 0 and at most 0.5, not {self.held_out:g}")
         if self.seed < 0:
             raise InputError(f"seed must be 0 or more, not {self.seed}")
+
+    def steps_for(self, samples: int) -> int:
+        """How long the forward networks learn from so many samples."""
+        return self.steps or 6000 + 3 * samples

@@ -59,7 +59,8 @@ def train_forward(lesson: Lesson, dim: int, options: LearnOptions, tell: Tell) -
         missed = (value - outputs[held])[..., :coordinates].unflatten(-1, (-1, dim))
         return missed.norm(dim=-1).mean((1, 2))
 
-    best, errors, stopped = _train(numbers, loss, error, options.steps, options.rate, lambda n: tell("forward", *n))
+    steps = options.steps_for(len(inputs))
+    best, errors, stopped = _train(numbers, loss, error, steps, options.rate, lambda n: tell("forward", *n))
     return Trained(networks=_perceptrons(sizes, best), error=float(errors.mean()), stopped=stopped)
 
 
