@@ -16,10 +16,11 @@ def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
     from hydrostat.robot import Contact
 
     model = load_model(path)
-    if model.facts["contact"] and robot.contact is None:
-        robot = replace(robot, contact=Contact())
-        print("note: the model knows contact, so the body feels itself here too")
+    silent = model.facts["contact"] and robot.contact is None
+    robot = replace(robot, contact=Contact()) if silent else robot
     model.check(robot)
+    if silent:
+        print("note: the model knows contact, so the body feels itself here too")
     return model, robot
 
 
