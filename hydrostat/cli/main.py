@@ -20,6 +20,7 @@ from hydrostat.cli.materials import materials
 from hydrostat.cli.new import new
 from hydrostat.cli.play import play
 from hydrostat.cli.pose import pose
+from hydrostat.cli.reproduce import reproduce
 from hydrostat.cli.sample import sample
 from hydrostat.cli.simulate import simulate
 from hydrostat.cli.studio import studio
@@ -70,6 +71,7 @@ for command in (
     grasp,
     sample,
     learn,
+    reproduce,
     studio,
     materials,
 ):

@@ -1,6 +1,7 @@
 """Learned inverse kinematics: samples of the simulator, networks trained on them, answers certified by it."""
 
 from hydrostat.learning.certify import certify, solve_exactly
+from hydrostat.learning.compare import METHODS, Compared, compare
 from hydrostat.learning.draw import Draw
 from hydrostat.learning.export import EXPORTS, export_samples
 from hydrostat.learning.learn_model import learn_model
@@ -17,6 +18,8 @@ from hydrostat.learning.samples import Samples, read_samples
 __all__ = [
     "BACKENDS",
     "EXPORTS",
+    "METHODS",
+    "Compared",
     "Draw",
     "LearnOptions",
     "LearnedModel",
@@ -26,6 +29,7 @@ __all__ = [
     "Samples",
     "Tier",
     "certify",
+    "compare",
     "export_samples",
     "learn_model",
     "load_model",

@@ -16,11 +16,13 @@ import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.ik import InverseReason
 from hydrostat.learning import (
+    METHODS,
     LearnedModel,
     LearnOptions,
     Samples,
     Tier,
     certify,
+    compare,
     learn_model,
     load_model,
     plan_samples,
@@ -29,6 +31,7 @@ from hydrostat.learning import (
     save_model,
     solve_exactly,
 )
+from hydrostat.learning.compare import targets_of
 from hydrostat.learning.lesson import linear_map
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.mechanics import Reason
@@ -87,10 +90,6 @@ def plain(robot: Robot) -> LearnedModel:
     )
 
 
-def targets_of(samples: Samples) -> list[dict[str, np.ndarray]]:
-    return [dict(zip(samples.facts["markers"], places, strict=True)) for places in samples.markers]
-
-
 @pytest.mark.slow
 def test_networks_expect_what_the_simulator_finds(model: LearnedModel, samples: Samples) -> None:
     """Oracle: samples that nothing was learned from; ridge regression of the others errs many times as much."""
@@ -112,7 +111,7 @@ def test_answers_rolled_out_in_the_simulator(model: LearnedModel, samples: Sampl
     linear = linear_map(known.markers.reshape(60, -1), known.contractions)
     errors: dict[str, list[float]] = {"ridge": [], "network": [], "search": [], "step": [], "exact": []}
     for target in targets_of(new):
-        place = target["tip"]
+        place = np.array(target["tip"])
         ridge = simulation.solve(np.clip(np.r_[place, 1.0] @ linear, model.low, model.high))
         errors["ridge"].append(float(np.linalg.norm(ridge.markers["tip"] - place)))
         fast, slow = model.solve(target, search=False), model.solve(target)
@@ -139,6 +138,26 @@ def test_answers_rolled_out_in_the_simulator(model: LearnedModel, samples: Sampl
     assert means["search"] < 0.2 * means["ridge"]
     assert means["step"] < 0.2 * means["search"]
     assert means["exact"] < 1e-6
+
+
+@pytest.mark.slow
+def test_ways_to_learn_side_by_side(samples: Samples, simulation: hs.Simulation, model: LearnedModel) -> None:
+    """Oracles: the samples themselves, whose nearest are rolled out to where they were; learning by hand."""
+    known, new = samples.first(60), samples.only(np.arange(60, 66))
+    rows = {found.method: found for found in compare(simulation, known, new, METHODS, options=OPTIONS)}
+    assert list(rows) == list(METHODS)
+    assert all(found.distances.shape == (6, 1) and found.lost == 0 for found in rows.values())
+    near = np.linalg.norm(known.markers[:, 0] - new.markers, axis=-1).min(axis=1)
+    assert rows["1-NN"].distances[:, 0] == pytest.approx(near, abs=1e-9)
+    means = {name: found.found.mean() for name, found in rows.items()}
+    assert means["1-NN"] < means["constant"]
+    assert means["1-NN, Jacobian"] < means["1-NN"]
+    assert means["search"] < min(means[name] for name in ("constant", "1-NN", "ridge", "thesis"))
+    assert means["search, step"] < means["search"]
+    answer = certify(simulation, model, model.solve(targets_of(new)[0]))
+    assert rows["search"].distances[0, 0] == pytest.approx(answer.error, rel=1e-6)
+    with pytest.raises(InputError, match="no way to learn called 'magic'"):
+        next(compare(simulation, known, new, ["magic"]))
 
 
 @pytest.mark.slow
