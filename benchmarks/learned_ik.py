@@ -48,8 +48,9 @@ def line(row: Row, size: float) -> str:
     if "microseconds" in row:
         text += f"  {row['microseconds']:.0f} us"
     if "expected" in row:
-        told = [1e3 * float(row[name]) for name in ("expected", "doubt")]
-        text += f", expects {told[0]:.3f}, doubts {told[1]:.3f}, within {row['within']:.0%}"
+        text += f", expects {1e3 * float(row['expected']):.3f}"
+    if "doubt" in row:
+        text += f", doubts {1e3 * float(row['doubt']):.3f}, within {row['within']:.0%}"
     return text
 
 
@@ -81,7 +82,7 @@ def main() -> None:
         known = [row for row in kept if row["samples"] == count]
         for row in sorted(known, key=lambda row: METHODS.index(str(row["method"]))):
             print(line(row, size))
-        asked = [name for name in given.methods.split(";") if name not in {row["method"] for row in known}]
+        asked = [name for name in given.methods.split(";") if name and name not in {row["method"] for row in known}]
         for found in compare(simulation, train.first(count), test, asked) if asked else ():
             print(line(row_of(found), size), flush=True)
             if given.keep:

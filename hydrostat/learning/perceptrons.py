@@ -59,7 +59,10 @@ class Perceptrons:
         return _descend(self.sizes, self.numbers, point, goal, weights, _LAST_ROUNDS)
 
 
-@njit(**INNER)
+FINE = {"contract"}  # what of floating point may be rearranged: a product and a sum are one
+
+
+@njit(fastmath=FINE, **INNER)
 @no_type_check
 def _answer(sizes, numbers, point, value, slopes):
     """One network at a point; slopes (inputs, outputs) too unless they have no rows."""
@@ -100,7 +103,7 @@ def _answer(sizes, numbers, point, value, slopes):
                 slopes[row, column] = moved[row, column] + numbers[at + row * outputs + column]
 
 
-@njit(**INNER)
+@njit(fastmath=FINE, **INNER)
 @no_type_check
 def _move(weights, moves, moved, rows, columns):
     """Rows of moves through a layer: moved = moves @ weights, four rows of weights at a time."""
