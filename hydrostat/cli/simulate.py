@@ -127,7 +127,7 @@ def _move(
     profile = _profile(simulation, contractions, ramp, play)
     seconds = asked("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--step", step, TIME)
-    start = simulation.still(simulation.solve(profile.at(0.0)))
+    start = simulation.still(simulation.solve(profile.at(0.0)) if simulation.robot.pins else None)
     began = time.process_time()
     with progress_bar() as tell:
         motions = _reported(simulation.play(profile, seconds, dt, start=start), seconds, tell)

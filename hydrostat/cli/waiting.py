@@ -37,12 +37,13 @@ def read_robot(path: Path) -> "Robot":
 
 
 def prepared(robot: "Robot") -> "Simulation":
-    """The physics of a robot, after one solve; the first time on a machine this compiles the kernels."""
+    """The physics of a robot, after one solve if pins hold it; the first time this compiles the kernels."""
     from hydrostat.simulation import Simulation
 
     with patiently("compiling, once for this machine: about 20 s ..."):
         simulation = Simulation(robot)
-        simulation.solve({}, strict=False)
+        if robot.pins:
+            simulation.solve({}, strict=False)
     return simulation
 
 

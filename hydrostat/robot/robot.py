@@ -14,7 +14,7 @@ from hydrostat.geometry.anchors import locate
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.checks import Point
-from hydrostat.robot.contact import DISTANCE, Contact, Obstacle
+from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.marker import Marker, Pose
@@ -34,7 +34,7 @@ class Robot:
     Attributes:
         name: of the robot.
         body: the soft part.
-        pins: where it is held; together they must leave it no rigid motion.
+        pins: where it is held; together they must leave it no rigid motion. None: it lies on the ground, an obstacle.
         winches: in the order of every array of contractions.
         cables: in the order of every array of tensions; those without a name get one.
         markers: tracked points.
@@ -187,8 +187,11 @@ class Robot:
 
     def _check_pins(self) -> None:
         if not self.pins:
+            if any(map(self._carries, self.obstacles)):
+                return
             raise InputError(
-                "there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one with at and radius"
+                "there is no [[pin]]: a robot must be held somewhere, or it has no rest; add one with at and radius, "
+                "or let it lie on the ground by gravity and an [[obstacle]] with shape = plane"
             )
         held = []
         for index, pin in enumerate(self.pins):
@@ -201,6 +204,11 @@ class Robot:
             raise InputError(
                 "pin[0]: the pins hold too few nodes, the body can still turn about them; widen a radius or add a pin"
             )
+
+    def _carries(self, obstacle: Obstacle) -> bool:
+        """Whether an obstacle is ground, on which the robot stays by its weight."""
+        ground = self.gravity is not None and obstacle.shape is ObstacleShape.PLANE
+        return ground and float(np.dot(obstacle.normal or (), self.gravity or ())) < 0
 
     def _check_markers_and_poses(self) -> None:
         names = [marker.name for marker in self.markers]

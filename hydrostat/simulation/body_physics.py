@@ -107,6 +107,18 @@ class BodyPhysics:
             heavy[carriage.rows[1:]] = 0.0
         return heavy
 
+    def check_held(self) -> None:
+        """Check that pins hold the body.
+
+        Raises:
+            InputError: none does, so it moves before friction on the ground can hold it.
+        """
+        if not self._given[1]:
+            raise InputError(
+                "no pin holds the robot: where it comes to rest on the ground depends on how it gets there, so let it "
+                "move (`hydrostat simulate --dynamic`, or `Simulation.play`), or pin it"
+            )
+
     def _met(self, robot: Robot, obstacle: Obstacle, carriage: Carriage | None) -> list[Energy]:
         """What keeps the body from passing through an obstacle; and the obstacle rigid, if it moves."""
         field = (obstacle if carriage is None else obstacle.centred()).field()
@@ -192,6 +204,11 @@ def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
 def _pins(robot: Robot) -> PinEnergy:
     """Pins, each at the points that it holds."""
     nodes = robot.body.mesh.nodes
+    if not robot.pins and not robot.body.mesh.parts.any():
+        none = np.zeros((0, 1))
+        return PinEnergy(
+            stencils=none.astype(np.int64), weights=none, targets=np.zeros((0, nodes.shape[1])), stiffness=none[:, 0]
+        )
     anchors = [pin.anchors(robot.body.mesh) for pin in robot.pins]
     parts = robot.body.mesh.parts
     loose = np.setdiff1d(parts, [parts[node] for held in anchors for node in held.stencils[:, 0]])

@@ -103,6 +103,7 @@ class InverseProblem:
         A robot without cables, or physics beside the cables that remember the way, is an InputError.
         """
         robot = simulation.robot
+        simulation.body.check_held()
         if not robot.cables:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"

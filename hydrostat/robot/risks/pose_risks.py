@@ -42,7 +42,7 @@ def marker_risks(robot: Robot) -> Iterator[str]:
     mesh = robot.body.mesh
     places = np.array([marker.at for marker in robot.markers], dtype=float)
     anchors = locate(mesh, places)
-    held = np.any([pin.holds(mesh) for pin in robot.pins], axis=0)
+    held = np.any([np.zeros(len(mesh.nodes), bool), *(pin.holds(mesh) for pin in robot.pins)], axis=0)
     stuck = (held[anchors.stencils] | (anchors.weights < 1e-6)).all(axis=1) & ~held.all()
     yield from told_together(
         Risk(f"marker[{index}] {robot.markers[index].name}", 0.0, "held by a pin, cannot move")
@@ -88,7 +88,7 @@ def _stretching(robot: Robot) -> Iterator[Risk]:
     At rest it is measured along edges, which makes it up to a tenth too long, never too short.
     """
     material, mesh = robot.body.material, robot.body.mesh
-    held = np.flatnonzero(np.any([pin.holds(mesh) for pin in robot.pins], axis=0))
+    held = np.flatnonzero(np.any([np.zeros(len(mesh.nodes), bool), *(pin.holds(mesh) for pin in robot.pins)], axis=0))
     if material.largest_stretch is None or not robot.poses or not len(held):
         return
     ways = _ways(mesh, np.array([marker.at for marker in robot.markers], dtype=float))[:, held]

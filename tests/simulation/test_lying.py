@@ -1,0 +1,76 @@
+"""Robots that no pin holds lie on the ground. Oracles: their weight, Coulomb's slope, Newton's second law."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import FOAM, mesh_body, strip_mesh
+
+import hydrostat as hs
+from hydrostat.errors import InputError
+from hydrostat.mechanics import ObstacleEnergy
+from hydrostat.robot import Contact, Obstacle, Robot
+from hydrostat.simulation import Motion, StepOptions
+
+FRICTION, G = 0.4, 9.81
+
+pytestmark = pytest.mark.usefixtures("unchecked")
+
+
+def slab(*, lean: float = 0.0) -> Robot:
+    """A slab of foam just above the ground; gravity leans by an angle [rad]."""
+    mesh = strip_mesh(8, 2, size=(0.16, 0.04))
+    ground = Obstacle(
+        name="ground", shape="plane", at=(0.0, mesh.nodes[:, 1].min() - 0.5e-3), normal=(0.0, 1.0), friction=FRICTION
+    )
+    return Robot(
+        name="slab",
+        body=mesh_body(mesh, material=replace(FOAM, viscosity=400.0)),
+        pins=(),
+        poses={},
+        contact=Contact(distance=1e-3),
+        obstacles=(ground,),
+        gravity=(G * float(np.sin(lean)), -G * float(np.cos(lean))),
+    )
+
+
+def moved(simulation: hs.Simulation, seconds: float, dt: float = 5e-3) -> Motion:
+    """Where it is after some time."""
+    motion = simulation.still()
+    for _ in range(round(seconds / dt)):
+        motion = simulation.step(motion, {}, dt, options=StepOptions(scheme="euler"))
+    return motion
+
+
+def test_the_ground_carries_its_weight_and_friction_holds_it_on_a_slope() -> None:
+    simulation = hs.Simulation(slab(lean=0.3))  # tan(0.3) = 0.31 < 0.4
+    motion = moved(simulation, 0.5)
+    ground = simulation.path.resumed(motion.pose).energies[simulation.body.obstacles[0]]
+    assert isinstance(ground, ObstacleEnergy)
+    push = ground.push(motion.nodes)
+    weight = simulation.body.masses.sum() * np.array(simulation.robot.gravity)
+    assert push == pytest.approx(weight, rel=1e-3)
+    later = simulation.step(motion, {}, 5e-3, options=StepOptions(scheme="euler"))
+    assert np.abs(later.nodes - motion.nodes).max() < 1e-7
+
+
+def test_on_a_steeper_slope_it_slides_as_newton_says() -> None:
+    simulation = hs.Simulation(slab(lean=0.6))
+    masses = simulation.body.masses
+    first = moved(simulation, 0.2)
+    last, seconds = first, 0.2
+    for _ in range(round(seconds / 5e-3)):
+        last = simulation.step(last, {}, 5e-3, options=StepOptions(scheme="euler"))
+    gained = masses @ (last.velocities - first.velocities)[:, 0] / masses.sum()
+    assert gained == pytest.approx(seconds * G * (np.sin(0.6) - FRICTION * np.cos(0.6)), rel=0.01)
+
+
+def test_what_needs_a_hold_says_so() -> None:
+    robot = slab()
+    with pytest.raises(InputError, match=r"no pin holds the robot: .* so let it move"):
+        hs.Simulation(robot).solve({})
+    with pytest.raises(InputError, match="no pin holds the robot"):
+        hs.Simulation(robot).solve_many([{}])
+    for other in ({"gravity": None}, {"gravity": "+y"}, {"obstacles": ()}):
+        with pytest.raises(InputError, match="or let it lie on the ground by gravity"):
+            replace(robot, **other)
