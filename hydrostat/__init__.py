@@ -62,9 +62,11 @@ if TYPE_CHECKING:
         Simulation,
         SolvedPose,
         StepOptions,
+        Touch,
         follow_branch,
         friction_band,
         path_dependence,
+        touches,
     )
 
 __version__ = "0.1.0"
@@ -111,6 +113,7 @@ __all__ = [
     "SolvedPose",
     "StepOptions",
     "Term",
+    "Touch",
     "Tracker",
     "Trajectory",
     "TrajectoryOptions",
@@ -131,6 +134,7 @@ __all__ = [
     "save_robot",
     "solve_ik",
     "solve_ik_trajectory",
+    "touches",
 ]
 
 _HOMES = {
@@ -173,6 +177,7 @@ _HOMES = {
     "SolvedPose": "simulation",
     "StepOptions": "simulation",
     "Term": "ik",
+    "Touch": "simulation",
     "Tracker": "ik",
     "Trajectory": "ik",
     "TrajectoryOptions": "ik",
@@ -194,6 +199,7 @@ _HOMES = {
     "save_robot": "robot",
     "solve_ik": "ik",
     "solve_ik_trajectory": "ik",
+    "touches": "simulation",
 }
 
 

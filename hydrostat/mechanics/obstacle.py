@@ -102,8 +102,13 @@ class ObstacleEnergy(Energy):
 
     def push(self, nodes: Nodes) -> Vector:
         """Force of the body on the obstacle [N]."""
-        total = self._forces(self.places(nodes)).sum(axis=0)
-        return total if self.carriage is None else total @ self.carriage.axes(nodes)
+        return self.pressed(nodes)[1].sum(axis=0)
+
+    def pressed(self, nodes: Nodes) -> tuple[Points, Points]:
+        """Where the samples are [m], and the force on the obstacle at each [N], in the world."""
+        forces = self._forces(self.places(nodes))
+        points = np.einsum("tc,tcd->td", self.shares, nodes[self._corners])
+        return points, forces if self.carriage is None else forces @ self.carriage.axes(nodes)
 
     def _forces(self, places: Points) -> Points:
         """Slope of the energy by the place of each sample in the frame [N]."""

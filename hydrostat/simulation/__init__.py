@@ -18,6 +18,7 @@ from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import Contractions, SolvedPose, largest_distance
 from hydrostat.simulation.still import check_still, smooth_robot
+from hydrostat.simulation.touches import Touch, touch_words, touches
 
 __all__ = [
     "BodyPhysics",
@@ -43,6 +44,7 @@ __all__ = [
     "Simulation",
     "SolvedPose",
     "StepOptions",
+    "Touch",
     "check_still",
     "filled_motion",
     "follow_branch",
@@ -57,6 +59,8 @@ __all__ = [
     "replacing",
     "rig_slopes",
     "smooth_robot",
+    "touch_words",
+    "touches",
     "write_motion",
     "write_pose",
     "write_profile",
