@@ -11,7 +11,7 @@ from hydrostat.geometry.boundary_tree import BoundaryTree, Pairs, facet_areas
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.pair_distances import admissible_share, squared_distances
 from hydrostat.mechanics.contact_pairs import barrier_energy, barrier_forces, barrier_hessian
-from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Pressed, Stencils
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -152,6 +152,18 @@ class ContactEnergy(Energy):
         if watch.pairs is self.pairs or self._felt(watch.pairs, nodes) == self._felt(self.pairs, nodes):
             return self if watch is self.watch else ContactEnergy(self.skin, self.pairs, watch)
         return ContactEnergy(self.skin, watch.pairs, watch)
+
+    def pressed(self, nodes: Nodes) -> Pressed:
+        """Where the body touches itself: half-way between both sides, with the normal force on the first of them."""
+        here = self.near(nodes)
+        blocks = -here.gradient(nodes, np.zeros(0))
+        felt = np.flatnonzero(blocks.any(axis=(1, 2)))
+        stencils, blocks, edges = here.pairs.stencils[felt], blocks[felt], here.pairs.edges[felt]
+        first = np.arange(stencils.shape[1]) < np.where(edges, 2, 1)[:, None]
+        weights = np.linalg.norm(blocks, axis=2)
+        weights /= np.where(first, (first * weights).sum(1)[:, None], (~first * weights).sum(1)[:, None])
+        places = 0.5 * np.einsum("pc,pcd->pd", weights, nodes[stencils])
+        return Pressed(places, np.einsum("pc,pcd->pd", first, blocks), stencils)
 
     @property
     def _reach(self) -> float:

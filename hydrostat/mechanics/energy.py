@@ -82,6 +82,20 @@ class Places(NamedTuple):
     data: np.ndarray
 
 
+class Pressed(NamedTuple):
+    """Where a body is pushed by what it touches.
+
+    Attributes:
+        places: [m].
+        forces: on the body [N]; where it touches itself on one of both sides, the other feels the opposite.
+        stencils: nodes of the body at each place, (places, corners).
+    """
+
+    places: Points
+    forces: Points
+    stencils: Stencils
+
+
 class Energy(ABC):
     """A sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
@@ -164,6 +178,10 @@ class Energy(ABC):
     def near(self, nodes: Nodes) -> "Energy":
         """Energy with the terms that count near `nodes`, where these come and go; itself where they never change."""
         return self
+
+    def pressed(self, nodes: Nodes) -> Pressed | None:
+        """Where what it stands for touches the body at `nodes`; None for what touches nothing, whatever the nodes."""
+        return None
 
     def with_load(self, share: float) -> "Energy":
         """Energy with this share of its dead load, for load steps; itself if it has none."""

@@ -17,6 +17,7 @@ from hydrostat.mechanics.energy import (
     Energy,
     HessianBlocks,
     Places,
+    Pressed,
     Response,
     Stencils,
     add_blocks,
@@ -102,13 +103,17 @@ class ObstacleEnergy(Energy):
 
     def push(self, nodes: Nodes) -> Vector:
         """Force of the body on the obstacle [N]."""
-        return self.pressed(nodes)[1].sum(axis=0)
+        return self._forces_in_world(nodes).sum(axis=0)
 
-    def pressed(self, nodes: Nodes) -> tuple[Points, Points]:
-        """Where the samples are [m], and the force on the obstacle at each [N], in the world."""
+    def pressed(self, nodes: Nodes) -> Pressed:
+        forces = -self._forces_in_world(nodes)
+        felt = np.flatnonzero(forces.any(axis=1))
+        places = np.einsum("tc,tcd->td", self.shares[felt], nodes[self._corners[felt]])
+        return Pressed(places, forces[felt], self._corners[felt])
+
+    def _forces_in_world(self, nodes: Nodes) -> Points:
         forces = self._forces(self.places(nodes))
-        points = np.einsum("tc,tcd->td", self.shares, nodes[self._corners])
-        return points, forces if self.carriage is None else forces @ self.carriage.axes(nodes)
+        return forces if self.carriage is None else forces @ self.carriage.axes(nodes)
 
     def _forces(self, places: Points) -> Points:
         """Slope of the energy by the place of each sample in the frame [N]."""

@@ -2,15 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics import ContactEnergy, Energy, ObstacleEnergy
-from hydrostat.mechanics.energy import Stencils
+from hydrostat.arrays import Vector
+from hydrostat.mechanics.energy import Pressed, Stencils
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
@@ -39,7 +37,7 @@ def touches(simulation: Simulation, pose: SolvedPose) -> tuple[Touch, ...]:
     """Find where a pose touches itself and obstacles, the hardest first; nothing where contact is off.
 
     Pairs and samples that have a node in common are one patch. Forces on the body by an obstacle add up to what it
-    feels, friction included (`Simulation.obstacle_forces` with the other sign); those of the body on itself are normal.
+    feels, friction included (`obstacle_forces` with the other sign); those of the body on itself are normal.
 
     Args:
         simulation: of the robot.
@@ -47,11 +45,12 @@ def touches(simulation: Simulation, pose: SolvedPose) -> tuple[Touch, ...]:
     """
     where = pose.unknowns
     assembly = simulation.path.resumed(pose) if simulation.assembly.has_history else simulation.assembly
-    met = [assembly.energies[slot] for slot in simulation.body.obstacles]
-    found = chain(
-        _own(assembly.energies, where),
-        *(_on(energy, where, each.name) for each, energy in zip(simulation.robot.obstacles, met, strict=True)),
-    )
+    names = dict(zip(simulation.body.obstacles, (each.name for each in simulation.robot.obstacles), strict=True))
+    found = []
+    for slot, energy in enumerate(assembly.energies):
+        pressed = energy.pressed(where)
+        if pressed is not None:
+            found += [_touch(pressed, patch, names.get(slot)) for patch in _patches(pressed.stencils, len(where))]
     return tuple(sorted(found, key=lambda touch: -touch.strength))
 
 
@@ -73,36 +72,6 @@ def _newtons(force: float) -> str:
     return f"{force:.2g} N" if force >= _LITTLE else f"less than {_LITTLE:g} N"
 
 
-def _own(energies: Sequence[Energy], where: Nodes) -> Iterator[Touch]:
-    """Where the body touches itself."""
-    for energy in energies:
-        if isinstance(energy, ContactEnergy):
-            here = energy.near(where)
-            blocks = -here.gradient(where, np.zeros(0))
-            felt = np.abs(blocks).max(axis=(1, 2), initial=0.0) > 0
-            stencils, blocks, lines = here.pairs.stencils[felt], blocks[felt], here.pairs.edges[felt]
-            first = np.arange(stencils.shape[1]) < np.where(lines, 2, 1)[:, None]
-            shares = np.linalg.norm(blocks, axis=2)
-            forces = np.einsum("pc,pcd->pd", first, blocks)
-            sides = [
-                np.einsum("pc,pcd->pd", side * shares, where[stencils]) / (side * shares).sum(axis=1)[:, None]
-                for side in (first, ~first)
-            ]
-            for patch in _patches(stencils, len(where)):
-                hardest = forces[patch][np.argmax(np.linalg.norm(forces[patch], axis=1))]
-                turned = np.where(forces[patch] @ hardest < 0, -1.0, 1.0)[:, None] * forces[patch]
-                yield _touch(0.5 * (sides[0] + sides[1])[patch], turned, None)
-
-
-def _on(energy: Energy, where: Nodes, name: str) -> Iterator[Touch]:
-    """Where the body touches an obstacle."""
-    assert isinstance(energy, ObstacleEnergy)
-    points, forces = energy.pressed(where)
-    felt = np.flatnonzero(forces.any(axis=1))
-    for patch in _patches(energy.stencils[felt, : where.shape[1]], len(where)):
-        yield _touch(points[felt[patch]], -forces[felt[patch]], name)
-
-
 def _patches(stencils: Stencils, count: int) -> Iterator[np.ndarray]:
     """Stencils that hang together by their nodes, of so many."""
     many = stencils.shape[1] - 1
@@ -113,9 +82,12 @@ def _patches(stencils: Stencils, count: int) -> Iterator[np.ndarray]:
         yield np.flatnonzero(labels == label)
 
 
-def _touch(points: Points, forces: Points, obstacle: str | None) -> Touch:
+def _touch(pressed: Pressed, patch: np.ndarray, obstacle: str | None) -> Touch:
+    forces = pressed.forces[patch]
     weights = np.linalg.norm(forces, axis=1)
-    return Touch(place=weights @ points / weights.sum(), force=forces.sum(axis=0), obstacle=obstacle)
+    if obstacle is None:  # which side of a pair is the first has no meaning
+        forces = np.where(forces @ forces[np.argmax(weights)] < 0, -1.0, 1.0)[:, None] * forces
+    return Touch(place=weights @ pressed.places[patch] / weights.sum(), force=forces.sum(axis=0), obstacle=obstacle)
 
 
 _LITTLE = 0.001
