@@ -6,11 +6,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.grasp.thing import moved_thing
 from hydrostat.mechanics.rigid import GuideEnergy
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.simulation import BodyPhysics, Contractions, Simulation, SolvedPose, obstacle_forces, replacing
+from hydrostat.simulation import (
+    BodyPhysics,
+    Contractions,
+    Simulation,
+    SolvedPose,
+    StepOptions,
+    obstacle_forces,
+    replacing,
+)
 
 Tell = Callable[[str, int, int], None]
 
@@ -140,7 +148,9 @@ def pull_out(
         pulling = replacing(closing, held, guide)
         found = pulling.solve(contractions, start=pose, strict=False)
         if not found.result.converged:
-            reason = f"no equilibrium found after {1e3 * pulled:.3g} mm: {found.result.reason}"
+            found = _settled(pulling, contractions, pose)
+        if found is None:
+            reason = f"no equilibrium found after {1e3 * pulled:.3g} mm"
             break
         pose = found
         push = obstacle_forces(pulling, pose)[-1]
@@ -167,6 +177,30 @@ def pull_out(
     )
 
 
+def _settled(simulation: Simulation, contractions: Contractions, pose: SolvedPose) -> SolvedPose | None:
+    """Where the robot comes to rest when it is let go as it is, in time; None if it does not.
+
+    Masses tell what a balance of forces alone leaves open: which way a thing slips that could slip either way.
+    """
+    motion = simulation.still(pose)
+    for _ in range(_STEPS):
+        try:
+            motion = simulation.step(motion, contractions, _STEP, options=StepOptions(scheme="euler"))
+        except NotConvergedError:
+            return None
+        fastest = float(np.abs(motion.velocities).max())
+        if motion.carried is not None:
+            fastest = max(fastest, float(np.abs(motion.carried[1]).max()))
+        if fastest < _SLOW:
+            still = simulation.solve(contractions, start=motion.pose, strict=False)
+            return still if still.result.converged else motion.pose
+    return None
+
+
 def _size(thing: Obstacle) -> float:
     """About how large a thing is [m]."""
     return float(np.sqrt(12 * thing.second_moments().max()))
+
+
+_STEP, _STEPS, _SLOW = 0.01, 150, 1e-3
+"""Steps in time [s] in search of rest, the most of them, and what counts as rest [m/s]."""
