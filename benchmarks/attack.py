@@ -176,7 +176,7 @@ def fault(simulation: hs.Simulation, pose: hs.SolvedPose) -> str:
         return "an element is inverted"
     residual = float(np.abs(simulation.forces(pose.nodes, pose.contractions)).max())
     allowed = max(
-        1e-8 * float(pose.tensions.max(initial=0.0)), 1.01 * simulation.allowed(pose.nodes, pose.contractions)
+        1e-8 * float(pose.tensions.max(initial=0.0)), 1.01 * simulation.solver.allowed(pose.nodes, pose.contractions)
     )
     return "" if residual <= allowed else f"residual {residual:.2g} N, allowed {allowed:.2g} N"
 

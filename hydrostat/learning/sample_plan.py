@@ -97,6 +97,7 @@ class SamplePlan:
             "robot": robot.name,
             "physics": physics_hash(robot),
             "contact": robot.contact is not None,
+            "contact_distance": None if robot.contact is None else robot.contact_distance,
             "count": self.count,
             "seed": self.seed,
             "draws": [str(draw) for draw in self.draws],
@@ -158,7 +159,8 @@ def plan_samples(
 def physics_hash(robot: Robot) -> str:
     """SHA-256 of all that the poses of a robot depend on, but contact: not of its name, nor of poses it shall take."""
     bare = replace(robot, name="robot", poses={}, contact=None)
-    return hashlib.sha256(robot_hash(bare).encode()).hexdigest()
+    made = b"" if robot.body.content else robot.body.mesh.nodes.tobytes() + robot.body.mesh.elements.tobytes()
+    return hashlib.sha256(robot_hash(bare).encode() + made).hexdigest()
 
 
 _LITTLE = 0.2

@@ -122,7 +122,7 @@ class Bordered:
                 return None
             pulled = assembly.control_derivative(nodes, controls) @ self._way
             back, ahead = stiffness.solve(np.column_stack([gradient, pulled])).T
-            arrived = float(np.abs(gradient).max()) <= self._simulation.allowed(nodes, controls)
+            arrived = float(np.abs(gradient).max()) <= self._simulation.solver.allowed(nodes, controls)
             missing = self._weight * (across.move @ (nodes - first_nodes).ravel()) + across.rate * (share - first_share)
             slope = across.rate - self._weight * (across.move @ ahead)
             change = -(missing - self._weight * (across.move @ back)) / slope
@@ -146,7 +146,7 @@ class Bordered:
     ) -> PathPoint | None:
         """An equilibrium with its forces; None if there is none."""
         controls = self.controls(share)
-        allowed = self._simulation.allowed(nodes, controls)
+        allowed = self._simulation.solver.allowed(nodes, controls)
         residual = float(np.abs(self._simulation.forces(nodes, controls)).max())
         if not residual <= allowed:
             return None

@@ -383,10 +383,6 @@ class Simulation:
         """Residual forces dE/dx [N], (nodes x dim,): what is left over on every degree of freedom, 0 at rest."""
         return self.assembly.near(nodes).gradient(nodes, contractions)
 
-    def allowed(self, nodes: Nodes, contractions: Vector) -> float:
-        """Nodal force left over [N] at which nodes count as at rest."""
-        return self.solver.allowed(nodes, contractions)
-
     def posed(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> SolvedPose:
         """Pose that Newton found, with all that the robot shows there."""
         positions, count = self.marker_anchors.positions(result.nodes), self.body.count

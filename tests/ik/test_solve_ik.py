@@ -260,7 +260,7 @@ def test_a_start_of_another_material_is_relaxed_first(unchecked: None) -> None:
     goals = {name: tuple(place.tolist()) for name, place in start.markers.items()}
     reached = solve_ik(simulation, goals, start=start)
     force = np.abs(simulation.assembly.gradient(reached.pose.nodes, reached.pose.contractions)).max()
-    assert force <= simulation.allowed(reached.pose.nodes, reached.pose.contractions)
+    assert force <= simulation.solver.allowed(reached.pose.nodes, reached.pose.contractions)
     with pytest.raises(InputError, match="pose of this robot"):
         solve_ik(simulation, goals, start=Simulation(strip_robot(columns=8)).solve(np.zeros(2)))
     with pytest.raises(InputError, match="a result's"):
@@ -286,6 +286,6 @@ def test_every_answer_rests_within_its_limits() -> None:
         goals = {"tip": tuple(draw.uniform(0.05, 0.2, 2).tolist())}
         reached = solve_ik(simulation, goals, options=InverseOptions(iterations=steps, restarts=0))
         force = np.abs(simulation.assembly.gradient(reached.pose.nodes, reached.pose.contractions)).max()
-        assert force <= simulation.allowed(reached.pose.nodes, reached.pose.contractions)
+        assert force <= simulation.solver.allowed(reached.pose.nodes, reached.pose.contractions)
         assert simulation.assembly.stiffness(reached.pose.nodes, reached.pose.contractions).definite
         assert kept(simulation, reached)
