@@ -139,7 +139,8 @@ class InverseProblem:
         was followed.
         """
         contractions = self.bounds.spread @ values
-        sharp = result.residual <= self.simulation.solver.allowed(result.nodes, contractions) if history is None else whole
+        allowed = self.simulation.solver.allowed(result.nodes, contractions) if history is None else np.inf
+        sharp = result.residual <= allowed if history is None else whole
         nodes = result.nodes if sharp or history is not None else self._resting(result, contractions)
         posture = posture_of(self.simulation, nodes, contractions, history)
         errors: dict[str, float] = {}
