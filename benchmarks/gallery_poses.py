@@ -1,10 +1,11 @@
 """How well the robots in space of the gallery reach their poses.
 
-    python benchmarks/gallery_poses.py [NAME ...] [--element-size 4.72]
+    python benchmarks/gallery_poses.py [NAME ...] [--element-size 4.72] [--contact]
 
 For every robot the size of its mesh, and for each pose how far its markers are from their targets (root of the mean
-square) at rest and after inverse kinematics. The targets are rounded to whole millimetres, so about 0.5 mm is left
-even where a pose can be reached. They are made for the element size of the robot's file; another one can be tried.
+square) at rest and after inverse kinematics, and whether the body then passes through itself. The targets are rounded
+to whole millimetres, so about 0.5 mm is left even where a pose can be reached. They are made for the element size of
+the robot's file; another one can be tried.
 """
 
 import argparse
@@ -18,6 +19,7 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.errors import InputError
+from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.tetrahedra.tetrahedralise import tetrahedralise
 from hydrostat.robot import Robot, gallery_folder, gallery_names
 
@@ -47,12 +49,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help="robots; all of the gallery if left out")
     parser.add_argument("--element-size", type=float, help="length of a mesh edge [mm] instead of each file's")
+    parser.add_argument("--contact", action="store_true", help="bodies that feel themselves")
     options = parser.parse_args(arguments)
     print(machine())
-    print("| robot | nodes | elements | pose | at rest mm | reached mm | largest tension N | CPU s |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| robot | nodes | elements | pose | at rest mm | reached mm | crosses itself | largest tension N | CPU s |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for kept in in_space(options.names or gallery_names()):
         robot = meshed(kept, 1e-3 * options.element_size) if options.element_size else kept
+        robot = replace(robot, contact=hs.Contact() if options.contact else None)
         simulation = hs.Simulation(robot)
         simulation.solve({})  # compiles
         size = f"{robot.name} | {len(robot.body.mesh.nodes)} | {len(robot.body.mesh.elements)}"
@@ -61,7 +65,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             reached = hs.solve_ik(simulation, pose)
             spent = time.process_time() - start
             errors = f"{1e3 * rest_error(robot, pose):.1f} | {1e3 * reached.rms_error:.2f}"
-            print(f"| {size} | {name} | {errors} | {reached.pose.tensions.max():.1f} | {spent:.1f} |")
+            crosses = "yes" if len(find_crossings(robot.body.mesh, reached.pose.nodes)) else "no"
+            print(f"| {size} | {name} | {errors} | {crosses} | {reached.pose.tensions.max():.1f} | {spent:.1f} |")
 
 
 if __name__ == "__main__":

@@ -31,14 +31,14 @@ def caging() -> Sheet:
         markers={name: finger.at(1.0) for name, finger in shape.limbs.items()},
         marker_words="the tips of the fingers.",
         plays={
-            "close": Play(words="All fingers close on what is in the cage.", contractions=dict.fromkeys(every, 7)),
+            "close": Play(words="All fingers close on what is in the cage.", contractions=dict.fromkeys(every, 5.5)),
             "twist": Play(
                 words="All fingers swing the same way round, as if to open a jar.",
                 contractions={name: 16 if name.endswith("a") else 0 for name in every},
             ),
             "pinch": Play(
                 words="Front and back finger meet.",
-                contractions={name: 13 for name in every if name.startswith(("front", "back"))},
+                contractions={name: 9 for name in every if name.startswith(("front", "back"))},
             ),
         },
     )

@@ -21,7 +21,6 @@ def cupping() -> Sheet:
     lines = [_thumb_flexor(shape), _thumb_extensor(shape)]
     for name in FINGERS:
         lines += [_flexor(shape, name), _extensor(shape, name)]
-    fingers = [f"{name} flexor" for name in FINGERS]
     return Sheet(
         name="cupping_hand",
         words=(
@@ -40,7 +39,13 @@ def cupping() -> Sheet:
         plays={
             "fist": Play(
                 words="All fingers close, the thumb lies in front of them.",
-                contractions={**dict.fromkeys(fingers, 35), "thumb flexor": 16},
+                contractions={
+                    "index flexor": 24,
+                    "middle flexor": 29,
+                    "ring flexor": 29,
+                    "little flexor": 34,
+                    "thumb flexor": 15,
+                },
             ),
             "open": Play(
                 words="All fingers stretch.",
@@ -48,7 +53,13 @@ def cupping() -> Sheet:
             ),
             "point": Play(
                 words="The index finger points, the others close.",
-                contractions={**dict.fromkeys(fingers[1:], 35), "thumb flexor": 18, "index extensor": 16},
+                contractions={
+                    "middle flexor": 29,
+                    "ring flexor": 30,
+                    "little flexor": 35,
+                    "thumb flexor": 18,
+                    "index extensor": 16,
+                },
             ),
             "pinch": Play(
                 words="Thumb and index finger close on something small, the others stretch a little.",
@@ -92,13 +103,13 @@ def extended() -> Sheet:
             ),
             "greet": Play(
                 words="Live long: index and middle finger together, ring and little finger together.",
-                contractions={"index side": 6, "middle side": 5, "ring side": 5, "little side": 7},
+                contractions={"index side": 4, "middle side": 5, "ring side": 5, "little side": 7},
             ),
             "point": Play(
                 words="The index finger points, the others bend.",
                 contractions={
-                    "middle flexor": 45,
-                    "ring flexor": 45,
+                    "middle flexor": 43,
+                    "ring flexor": 42,
                     "little flexor": 40,
                     "thumb opponens": 16,
                     "thumb flexor": 20,

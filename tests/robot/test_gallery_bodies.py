@@ -2,6 +2,7 @@
 
 import re
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import pytest
 from builders import gallery_robot
 
 import hydrostat as hs
-from hydrostat.robot import Mount, Robot, find_risks, gallery_folder
+from hydrostat.geometry.crossings import find_crossings
+from hydrostat.robot import Mount, Robot, find_risks, gallery_folder, gallery_names
 
 TOP = Path(__file__).parents[2]
 sys.path.append(str(TOP / "docs"))
@@ -90,6 +92,24 @@ def test_poses_are_reached(name: str, pose: str) -> None:
     reached = hs.solve_ik(hs.Simulation(robot(name)), robot(name).poses[pose])
     assert reached.pose.result.converged
     assert max(reached.errors.values()) < 3**0.5 / 2 * 1e-3
+
+
+@pytest.mark.parametrize("name", gallery.SHEETS)
+def test_no_pose_touches(name: str) -> None:
+    """What the winches of each pose lead to neither crosses nor feels itself: it is the same with contact."""
+    felt = hs.Simulation(replace(robot(name), contact=hs.Contact()))
+    for play in gallery.SHEETS[name]().plays.values():
+        pose = felt.solve({winch: 1e-3 * length for winch, length in play.contractions.items()})
+        assert hs.touches(felt, pose) == ()
+        assert not len(find_crossings(felt.robot.body.mesh, pose.nodes))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", gallery_names())
+def test_no_reached_pose_passes_through_itself(name: str) -> None:
+    simulation = hs.Simulation(robot(name))
+    for pose in simulation.robot.poses.values():
+        assert not len(find_crossings(simulation.robot.body.mesh, hs.solve_ik(simulation, pose).pose.nodes))
 
 
 @pytest.mark.parametrize("name", gallery.SHEETS)
