@@ -86,7 +86,11 @@ def compare(
         seconds = model.facts["seconds"]
         yield Compared(method="values", samples=len(train), distances=_rolled(simulation, test, rows), seconds=seconds)
     if set(methods) & set(OURS):
-        yield from (one for one in _ours(simulation, learn_model(train, options=chosen), test) if one.method in methods)
+        model = learn_model(train, options=chosen)
+        if "inverse" in methods and model.inverse is not None:
+            yield _inverse(simulation, model, test)
+        if {"search", "search, step"} & set(methods):
+            yield from (one for one in _searches(simulation, model, test) if one.method in methods)
 
 
 def targets_of(samples: Samples) -> list[dict[str, Point]]:
@@ -95,16 +99,19 @@ def targets_of(samples: Samples) -> list[dict[str, Point]]:
     return [dict(zip(names, (tuple(place) for place in places.tolist()), strict=True)) for places in samples.markers]
 
 
-def _ours(simulation: Simulation, model: LearnedModel, test: Samples) -> Iterator[Compared]:
-    """The inverse network; the search; one exact step from there."""
+def _inverse(simulation: Simulation, model: LearnedModel, test: Samples) -> Compared:
+    """The inverse network alone."""
+    model.inverted(test.markers[0].ravel())
+    began = time.process_time()
+    rows = np.array([model.inverted(places.ravel()) for places in test.markers])
+    facts = {"microseconds": 1e6 * (time.process_time() - began) / len(test)}
+    rolled, seconds = _rolled(simulation, test, rows), model.facts["seconds"]
+    return Compared(method="inverse", samples=model.facts["samples"], distances=rolled, seconds=seconds, facts=facts)
+
+
+def _searches(simulation: Simulation, model: LearnedModel, test: Samples) -> Iterator[Compared]:
+    """The search on the networks, and one exact step from there."""
     targets, seconds, count = targets_of(test), model.facts["seconds"], model.facts["samples"]
-    if model.inverse is not None:
-        model.inverted(test.markers[0].ravel())
-        began = time.process_time()
-        fast = np.array([model.inverted(places.ravel()) for places in test.markers])
-        each = 1e6 * (time.process_time() - began) / len(test)
-        rolled = _rolled(simulation, test, fast)
-        yield Compared(method="inverse", samples=count, distances=rolled, seconds=seconds, facts={"microseconds": each})
     model.solve(targets[0])
     began = time.process_time()
     answers = [model.solve(target) for target in targets]

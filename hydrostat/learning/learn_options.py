@@ -8,7 +8,7 @@ from hydrostat.errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class LearnOptions:
-    """How networks are trained. Defaults were measured on the cupping hand (docs/decisions/0035-learning.md).
+    """How networks are trained. What the defaults reach: docs/decisions/0035-learning.md.
 
     Attributes:
         members: forward networks, each of which holds out other samples; their disagreement is the model's doubt.

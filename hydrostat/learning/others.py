@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
+from scipy.optimize import lsq_linear
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.learning.certify import bounded_step
 from hydrostat.learning.lesson import linear_map
 from hydrostat.learning.samples import Samples
 
@@ -34,7 +34,7 @@ def nearest_with_slopes(train: Samples, goals: Goals) -> Answers:
     for goal, place in zip(goals, _nearest(train, goals), strict=True):
         begun, markers = train.contractions[place], train.markers[place].ravel()
         slopes = train.jacobians[place].reshape(len(goal), -1)
-        rows.append(begun + bounded_step(slopes, markers - goal, low - begun, high - begun))
+        rows.append(begun + _bounded(slopes, markers - goal, low - begun, high - begun))
     return np.array(rows)
 
 
@@ -86,6 +86,15 @@ def thesis_network(train: Samples, goals: Goals) -> Answers:
     return low + 0.5 * (found + 1) * (high - low)
 
 
+def _bounded(slopes: np.ndarray, residual: Vector, low: Vector, high: Vector) -> Vector:
+    """The change within limits that best undoes what is missed; the shortest where several do."""
+    low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
+    some = _SHORT * np.sqrt(np.square(slopes).sum(axis=0).max(initial=0.0))
+    rows = np.vstack([slopes, some * np.eye(len(low))])
+    found = lsq_linear(rows, np.r_[-residual, np.zeros(len(low))], bounds=(low - _ROOM, high + _ROOM))
+    return np.clip(found.x, low, high)
+
+
 def _limits(train: Samples) -> tuple[Vector, Vector]:
     """Least and largest contractions [m]."""
     return -np.array(train.facts["release"], dtype=float), np.array(train.facts["travel"], dtype=float)
@@ -104,3 +113,9 @@ OTHERS: Mapping[str, Method] = {
     "thesis": thesis_network,
 }
 """Ways from samples and goals to contractions, by their names in tables."""
+
+_SHORT = 1e-3
+"""How much a change counts beside what it undoes, as a share of the steepest slope."""
+
+_ROOM = 1e-12
+"""Bounds are moved apart by so much [m], as an empty range is refused."""
