@@ -49,6 +49,19 @@ def test_the_curve_does_not_depend_on_the_steps() -> None:
     assert np.abs(shared - coarse.forces).max() < 0.05 * fine.peak
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("springs", "distance", "within"), [(3.0, 1e-3, 0.01), (30.0, 1e-3, 0.01), (10.0, 5e-4, 0.03)])
+def test_neither_springs_nor_distance_matter(
+    monkeypatch: pytest.MonkeyPatch, springs: float, distance: float, within: float
+) -> None:
+    monkeypatch.setattr("hydrostat.mechanics.obstacle._STICKS", springs)
+    other = pull_out(curler(distance=distance), PUCK, CURLED, PullOptions(direction=(1.0, 0.0), step=2e-3))
+    assert other.peak == pytest.approx(pulled().peak, rel=within)
+    assert np.interp(0.01, other.moved, other.forces) == pytest.approx(
+        np.interp(0.01, pulled().moved, pulled().forces), rel=within
+    )
+
+
 def test_more_friction_holds_better() -> None:
     free, rough = pulled(friction=0.0), pulled(friction=0.8)
     assert free.peak < pulled().peak < rough.peak

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from builders import FOAM, box_mesh, mesh_body, strip_mesh
+from builders import FOAM, box_mesh, box_robot, mesh_body, strip_mesh, strip_robot
 
 import hydrostat as hs
 from hydrostat.errors import InputError
@@ -193,9 +193,29 @@ def test_it_flies_as_newton_says() -> None:
     assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-5)
 
 
-def test_inverse_kinematics_leaves_friction_out_and_follows_the_way() -> None:
-    from builders import strip_robot
+@pytest.mark.parametrize("dim", [2, 3])
+def test_slopes_with_an_obstacle_that_moves(dim: int) -> None:
+    """How the nodes move with the winches while a thing gives way. Oracle: central differences."""
+    if dim == 2:
+        robot, at = strip_robot(columns=12, rows=3), (0.14, 0.055)
+    else:
+        robot, at = box_robot(), (0.1, 0.02, 0.0612)
+    ball = Obstacle(name="ball", shape="sphere", at=at, radius=0.02, mass=0.05)
+    full = replace(robot, contact=Contact(distance=1e-3), obstacles=(ball,))
+    body = BodyPhysics(full)
+    place, axes = ball.frame()
+    guide = GuideEnergy(body.carriages[0], place=place, axes=axes, along=30.0 * np.eye(dim), turning=1.0)
+    simulation = Simulation(full, body=body, energies=[guide])
+    winch = robot.winches[0].name
+    pose = simulation.solve({winch: 0.03 if dim == 2 else 0.02})
+    assert np.abs(obstacle_forces(simulation, pose)).max() > 1e-2
+    step = 1e-7 * np.eye(2)[0]
+    sides = [simulation.solve(pose.contractions + sign * step, start=pose).nodes for sign in (1, -1)]
+    slopes = simulation.jacobian(pose)[..., 0]
+    assert np.abs((sides[0] - sides[1]) / 2e-7 - slopes).max() < 1e-4 * np.abs(slopes).max()
 
+
+def test_inverse_kinematics_leaves_friction_out_and_follows_the_way() -> None:
     robot = strip_robot(columns=12, rows=3)
     tip = robot.body.mesh.nodes.max(axis=0)
     floor = Obstacle(name="floor", shape="plane", at=(0.0, float(-tip[1]) - 2e-3), normal=(0.0, 1.0), friction=0.5)
@@ -210,8 +230,6 @@ def test_inverse_kinematics_leaves_friction_out_and_follows_the_way() -> None:
 
 
 def test_what_knows_no_obstacle_that_moves_says_so() -> None:
-    from builders import strip_robot
-
     ball = Obstacle(name="ball", shape="sphere", at=(0.1, 0.2), radius=0.02, mass=0.05)
     simulation = Simulation(replace(strip_robot(columns=8, rows=2), obstacles=(ball,)))
     with pytest.raises(InputError, match='inverse kinematics knows no obstacle that moves: "ball" has a mass'):
