@@ -18,6 +18,7 @@ from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing
+from hydrostat.studio.view.touching import touch_things
 
 
 class Driver(Stage):
@@ -39,7 +40,9 @@ class Driver(Stage):
     def things(self) -> Sequence[Thing]:
         """All parts of the robot, the winch that is pulled marked."""
         chosen = () if self._pull is None else (f"winch:{self._pull[0]}",)
-        return robot_things(self._document.robot, tensions=self.shape().tensions, scale=self.strongest, chosen=chosen)
+        robot, shape = self._document.robot, self.shape()
+        things = robot_things(robot, tensions=shape.tensions, scale=self.strongest, chosen=chosen)
+        return things + touch_things(shape, robot.body.mesh.size)
 
     @property
     def motors(self) -> Motors:

@@ -16,6 +16,7 @@ from hydrostat.simulation import Simulation, SolvedPose
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.view.things import RobotShape, rest_shape
+from hydrostat.studio.view.touching import with_touches
 
 TICK = 1 / 70  # motors are told and read once in this time [s], however often there is a step: about 60 times a second
 ROUGH = 3e-4  # how far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel
@@ -42,7 +43,9 @@ class Follower:
             self.failure = f"no shape was found there ({why}); the last one is shown: go back a little"
         if self._last is None:
             return rest_shape(simulation.robot)
-        return RobotShape(nodes=self._last.nodes, tensions=self._last.tensions, contractions=self._last.contractions)
+        last = self._last
+        shape = RobotShape(nodes=last.nodes, tensions=last.tensions, contractions=last.contractions)
+        return with_touches(simulation, last, shape, settled=not rough)
 
 
 class Machine:
@@ -68,6 +71,7 @@ class Machine:
         if posed is None or posed[0] is not robot:
             return rest_shape(robot)
         notes = ((self.notice,) if self.notice else ()) + _strained(robot, posed[1].tensions, self.strongest)
+        notes += posed[1].notes
         return replace(posed[1], notes=notes)
 
     @property

@@ -11,6 +11,7 @@ from hydrostat.simulation import Simulation, SolvedPose, friction_band
 from hydrostat.studio.posing.held import Anchored, Held
 from hydrostat.studio.posing.mover import Mover
 from hydrostat.studio.view.things import RobotShape
+from hydrostat.studio.view.touching import with_touches
 
 PATIENCE = 150  # so many updates are made towards targets that stay where they are
 CALM, CALMEST = 4.0, 0.3
@@ -96,7 +97,7 @@ class CableMover(Mover):
             notes = (*notes, str(reached.reason if stopped else InverseReason.OPTIMAL))
         if not more:
             notes = (*notes, *self._band())
-        return self._shape(dict(reached.errors), notes), more
+        return self._shape(dict(reached.errors), notes, settled=not more), more
 
     def _calm(self, held: Mapping[str, Held]) -> Closeness:
         """Wish that the rest of the body stays, the more the farther the targets are."""
@@ -128,12 +129,13 @@ class CableMover(Mover):
             options=InverseOptions(largest_step=STRIDE),
         )
 
-    def _shape(self, errors: dict[str, float], notes: tuple[str, ...]) -> RobotShape:
+    def _shape(self, errors: dict[str, float], notes: tuple[str, ...], *, settled: bool = True) -> RobotShape:
         pose = self._pose
-        return RobotShape(
+        shape = RobotShape(
             nodes=pose.nodes,
             tensions=pose.tensions,
             contractions=pose.contractions,
             errors=errors,
             notes=notes,
         )
+        return with_touches(self._simulation, pose, shape, settled=settled)

@@ -62,7 +62,11 @@ def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
         return False
     if (first.pins, first.gravity) != (second.pins, second.gravity):
         return False
-    return mode is Mode.MUSCLES or (first.winches, first.cables) == (second.winches, second.cables)
+    if mode is Mode.MUSCLES:
+        return True
+    return (first.winches, first.cables, first.contact, first.obstacles) == (
+        second.winches, second.cables, second.contact, second.obstacles
+    )  # fmt: skip
 
 
 def _resumed(simulation: Simulation, before: CableMover | None) -> SolvedPose | None:

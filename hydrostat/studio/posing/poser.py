@@ -24,6 +24,7 @@ from hydrostat.studio.records.work import fresh_name
 from hydrostat.studio.stage import Hit, Stage
 from hydrostat.studio.view.robot_things import MARKER, Bar, robot_things, target_things, winch_bars
 from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
+from hydrostat.studio.view.touching import touch_things
 
 READY = "getting ready ..."  # said while the physics of a robot is made
 NEAR = 0.02  # a plain point so near to one that is held is that one, in sizes of the body
@@ -109,6 +110,7 @@ class Poser(Stage):
             if name not in markers
         ]
         places = now.anchored.places(wish.held, shape.nodes)
+        found += touch_things(shape, robot.body.mesh.size)
         return found + target_things(
             {name: point.target for name, point in wish.held.items()},
             dict(zip(wish.held, (tuple(place.tolist()) for place in places), strict=True)),

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.robot import Point, Robot
+from hydrostat.simulation import Touch
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -18,6 +19,8 @@ class RobotShape:
     contractions: Vector  # of each winch [m]
     errors: dict[str, float] = field(default_factory=dict)  # distance of each held marker from its target [m]
     muscles: Vector | None = None  # how hard they pull around each node, 1 for the hardest; None where none move it
+    touches: tuple[Touch, ...] = ()  # where it touches itself and obstacles, the hardest first
+    crossing: Point | None = None  # a place where it passes through itself [m]
     notes: tuple[str, ...] = ()  # what to mind, a line each: limits that hold, why a solver stopped
 
 
@@ -39,6 +42,7 @@ class Look(StrEnum):
     STOPPER = "stopper"
     HANDLE = "handle"
     FLAG = "flag"
+    TOUCH = "touch"
 
 
 class Stroke(StrEnum):

@@ -9,6 +9,7 @@ from hydrostat.robot.gravity import DIRECTIONS, direction_of
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.findings import Findings
 from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.panels.contact_switch import contact_switch
 from hydrostat.studio.face.panels.edit_part import EditNumber
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
@@ -24,7 +25,7 @@ def body_card(page: WindowPage) -> None:
         _material(page)
         _lengths(page)
         _gravity(page)
-        _contact(page)
+        contact_switch(page, "edit-contact")
         _outline(page)
 
 
@@ -96,23 +97,6 @@ def _gravity(page: WindowPage) -> None:
         choice.set_options(words if now() in words else {own: own, **words}, value=now())
 
     choice.on_value_change(send)
-    page.on(Topic.ROBOT, show)
-
-
-def _contact(page: WindowPage) -> None:
-    """Whether the body feels itself; obstacles are written into robot.toml."""
-    editor, document = page.session.editor, page.session.document
-    switch = ui.switch("Parts touch, and do not pass through").mark("edit-contact")
-    switch.tooltip("Contact without friction. Poses take longer; obstacles are added in robot.toml.")
-
-    def send() -> None:
-        if switch.value != (document.robot.contact is not None):
-            page.act(editor.set_contact, switch.value)
-
-    def show() -> None:
-        switch.set_value(document.robot.contact is not None)
-
-    switch.on_value_change(send)
     page.on(Topic.ROBOT, show)
 
 

@@ -5,6 +5,7 @@ from nicegui import ui
 from hydrostat.drawing.palette import ERROR
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button
+from hydrostat.studio.face.panels.contact_switch import contact_switch
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.records.work import fresh_name
@@ -45,6 +46,7 @@ def pose_panel(page: WindowPage) -> None:
     page.on(Topic.THINGS, show)
     held_card(page)
     bars_card(page)
+    contact_switch(page, "pose-contact")
     muscles_card(page)
     poses_card(page)
     reach_card(page)

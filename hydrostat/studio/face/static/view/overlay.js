@@ -149,6 +149,8 @@ export class Overlay {
       pen.lineWidth = 3;
       pen.stroke();
       pen.fill();
+    } else if (look === "touch") {
+      this.disc(x, y, 4, dot.colour, "#ffffff", 1.5);
     } else if (look === "flag") {
       const radius = dot.chosen || told(view, dot) ? 19 : 16;
       this.ring(x, y, radius, view.theme.paper, 5);
@@ -212,7 +214,7 @@ export class Overlay {
   /** Labels beside their dots, where there is room; those of what is chosen or under the pointer always. */
   labels(view) {
     const { pen } = this;
-    const signs = view.dots.filter((dot) => dot.look !== "via" && dot.look !== "flag");
+    const signs = view.dots.filter((dot) => dot.look !== "via" && dot.look !== "flag" && dot.look !== "touch");
     const taken = signs.map((dot) => box(dot.x - 9, dot.y - 9, 18, 18, dot));
     pen.textBaseline = "middle";
     pen.textAlign = "left";

@@ -1,0 +1,54 @@
+"""`with_touches`, `touch_things`: where a body touches itself and obstacles, or passes through itself, as shown."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from hydrostat.drawing.palette import ERROR
+from hydrostat.geometry.crossings import find_crossings
+from hydrostat.simulation import Simulation, SolvedPose, touch_words, touches
+from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
+
+MOST = 8  # places that are shown, the hardest
+LONGEST = 0.08  # arrow at the hardest, in sizes of the body
+FAINTEST = 0.02  # what presses with less than this share of the hardest is not shown
+OFF = "contact is off: the body passes through itself here"
+TOUCH = "#8a2be2"
+
+
+def with_touches(simulation: Simulation, pose: SolvedPose, shape: RobotShape, *, settled: bool) -> RobotShape:
+    """A shape with the places where its pose touches, and in a note how hard; without contact where it crosses itself.
+
+    Crossings of a body in space take longer than a step of its pose: they are looked for once it has `settled`.
+    """
+    robot = simulation.robot
+    found = touches(simulation, pose)
+    notes = shape.notes + ((touch_words(found),) if found else ())
+    crossing = None
+    if robot.contact is None and (settled or robot.body.mesh.dim == 2):
+        places = find_crossings(robot.body.mesh, pose.nodes).places
+        if len(places):
+            crossing, notes = tuple(places[len(places) // 2].tolist()), (*notes, OFF.removesuffix(" here"))
+    return replace(shape, notes=notes, touches=found, crossing=crossing)
+
+
+def touch_things(shape: RobotShape, size: float) -> list[Thing]:
+    """A dot where it touches, with an arrow along the force, longer for more; a ring where it crosses itself.
+
+    Args:
+        shape: of the body.
+        size: of the body [m].
+    """
+    things: list[Thing] = []
+    hardest = max((touch.strength for touch in shape.touches), default=0.0)
+    for touch in shape.touches[:MOST]:
+        if touch.strength < FAINTEST * hardest:
+            continue
+        way = LONGEST * size * np.sqrt(touch.strength / hardest) * touch.force / touch.strength
+        ends = (touch.place - way, touch.place + way) if touch.obstacle is None else (touch.place, touch.place + way)
+        line = tuple(tuple(end.tolist()) for end in ends)
+        things.append(Strand(points=line, stroke=Stroke.RIM, colour=TOUCH, loose=-1))
+        things.append(Dot(at=tuple(touch.place.tolist()), look=Look.TOUCH, colour=TOUCH, stuck=False))
+    if shape.crossing is not None:
+        things.append(Dot(at=shape.crossing, look=Look.FLAG, colour=ERROR, label=OFF, stuck=False, chosen=True))
+    return things

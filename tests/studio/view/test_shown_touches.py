@@ -1,0 +1,59 @@
+"""What the studio shows of contact. Oracles: the library's touches, and crossings."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from touching import fork_robot
+
+from hydrostat.simulation import Simulation, touches
+from hydrostat.studio.posing.held import Mode
+from hydrostat.studio.posing.movers import same_physics
+from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand
+from hydrostat.studio.view.touching import OFF, touch_things, with_touches
+
+CLOSED = {"up": 0.02, "down": 0.016}
+
+
+def shown(dim: int, *, contact: bool, settled: bool = True) -> RobotShape:
+    simulation = Simulation(fork_robot(dim, contact=contact))
+    pose = simulation.solve(CLOSED)
+    shape = RobotShape(nodes=pose.nodes, tensions=pose.tensions, contractions=pose.contractions, notes=("before",))
+    found = with_touches(simulation, pose, shape, settled=settled)
+    assert [touch.strength for touch in found.touches] == [touch.strength for touch in touches(simulation, pose)]
+    return found
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_where_it_touches(dim: int) -> None:
+    shape = shown(dim, contact=True)
+    assert shape.crossing is None
+    assert shape.notes[0] == "before"
+    assert shape.notes[1].startswith("the body touches itself in ")
+    things = touch_things(shape, 0.12)
+    dots = [thing for thing in things if isinstance(thing, Dot)]
+    assert dots
+    assert all(dot.look is Look.TOUCH and not dot.stuck for dot in dots)
+    np.testing.assert_allclose(dots[0].at, shape.touches[0].place)
+    arrow = next(thing for thing in things if isinstance(thing, Strand))
+    way = np.subtract(arrow.points[1], arrow.points[0])
+    assert np.linalg.norm(np.cross(np.append(way, 0.0)[:3], np.append(shape.touches[0].force, 0.0)[:3])) < 1e-12
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_where_contact_is_off(dim: int) -> None:
+    """A ring with words where the body passes through itself; in space once it has settled."""
+    shape = shown(dim, contact=False)
+    assert shape.touches == ()
+    assert shape.notes[-1] == "contact is off: the body passes through itself"
+    (ring,) = touch_things(shape, 0.12)
+    assert isinstance(ring, Dot)
+    assert (ring.look, ring.label, ring.at) == (Look.FLAG, OFF, shape.crossing)
+    assert (shown(dim, contact=False, settled=False).crossing is None) == (dim == 3)
+
+
+def test_the_switch_makes_another_mover() -> None:
+    robot = fork_robot(2)
+    other = replace(robot, contact=None)
+    assert not same_physics(robot, other, Mode.CABLES)
+    assert same_physics(robot, other, Mode.MUSCLES)
