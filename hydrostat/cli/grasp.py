@@ -66,7 +66,7 @@ def grasp(
         out.mkdir(parents=True, exist_ok=True)
         files = [replace_file(out / "pull.csv", _table(found).encode())]
         files.append(save_png(draw_pull(loaded, found, cases), out / "pull.png"))
-        files.append(save_gif(loaded, pull_frames(loaded, found), out / "pull.gif", step=0.1, tell=tell))
+        files.append(save_gif(loaded, pull_frames(found), out / "pull.gif", step=0.1, tell=tell))
         if cases:
             files.append(replace_file(out / "bands.csv", _bands(cases).encode()))
     _print(found, placed, cases)

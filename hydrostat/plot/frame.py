@@ -6,9 +6,9 @@ from typing import Self
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import Obstacle, Pose, Robot
 from hydrostat.simulation import Motion, SolvedPose
 
 
@@ -21,15 +21,15 @@ class Frame:
     contractions: Vector | None = None  # cable taken in by each winch [m]; without, no winch is seen to turn
     target: Pose | None = None  # the pose that is approached, whose targets are shown
     words: str = ""  # what happens, in a line
-    lines: tuple[Points, ...] = ()  # of things beside the robot [m]
+    things: tuple[Obstacle, ...] = ()  # beside the robot, where they are
 
     @classmethod
     def of(
-        cls, found: SolvedPose | Motion, *, target: Pose | None = None, words: str = "", lines: Sequence[Points] = ()
+        cls, found: SolvedPose | Motion, *, target: Pose | None = None, words: str = "", things: Sequence[Obstacle] = ()
     ) -> Self:
-        """The frame that shows an equilibrium, or an instant of a motion, and lines of things beside the robot [m]."""
+        """The frame that shows an equilibrium, or an instant of a motion, and things beside the robot."""
         told = {"nodes": found.nodes, "tensions": found.tensions, "contractions": found.contractions}
-        return cls(**told, target=target, words=words, lines=tuple(lines))
+        return cls(**told, target=target, words=words, things=tuple(things))
 
 
 def check_frames(robot: Robot, frames: Sequence[Frame]) -> None:

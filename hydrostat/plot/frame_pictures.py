@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import UInt8
 from matplotlib.artist import Artist
 
-from hydrostat.drawing.palette import INK, PAPER
+from hydrostat.drawing.palette import PAPER
 from hydrostat.plot.attachments import Attachments
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.hardware import draw_hardware
@@ -19,7 +19,7 @@ from hydrostat.plot.sheet import Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Robot
+from hydrostat.robot import Robot, rims
 
 Picture = UInt8[np.ndarray, "_ _ 3"]  # red, green and blue of each pixel, the top row first
 INCHES = 6.4  # width of the drawing, whatever its pixels: words and lines keep their share of it
@@ -68,12 +68,10 @@ class FramePictures:
 
     def _draw(self, frame: Frame) -> None:
         sheet, pane, robot, carried = self._sheet, self._pane, self._robot, self._carried
-        surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True)
+        surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True, things=frame.things)
         colours = [self._scale.colour(float(tension)) for tension in frame.tensions]
         look = {"colours": colours, "width": 2.6, "contractions": frame.contractions}
         draw_hardware(sheet, pane, surface, carried, frame.nodes, **look)
-        for line in frame.lines:
-            sheet.curve(pane.places(line), color=INK, linewidth=1.4, zorder=15)
         names = [marker.name for marker in robot.markers]
         markers = dict(zip(names, carried.markers(frame.nodes), strict=True))
         draw_misses(sheet, [pane], markers, {} if frame.target is None else target_places(frame.target))
@@ -84,7 +82,7 @@ def _seen(robot: Robot, carried: Attachments, frames: Sequence[Frame]) -> Spread
     shapes = list({id(frame.nodes): frame.nodes for frame in frames}.values())
     parts = outer_points(robot.body, shapes)
     parts += [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
-    parts += [line for frame in frames for line in frame.lines]
+    parts += [line for frame in frames for thing in frame.things for line in rims(thing, robot)]
     parts += [target_points(frame.target) for frame in frames if frame.target is not None]
     return np.concatenate(parts)
 
@@ -96,8 +94,7 @@ def _alike(one: Frame, two: Frame) -> bool:
     return (
         one.words == two.words
         and one.target == two.target
-        and len(one.lines) == len(two.lines)
-        and all(map(np.array_equal, one.lines, two.lines))
+        and one.things == two.things
         and np.array_equal(one.nodes, two.nodes)
         and np.array_equal(one.tensions, two.tensions)
         and np.array_equal(_or_none(one.contractions), _or_none(two.contractions))

@@ -64,14 +64,14 @@ def draw_pull(
     return figure
 
 
-def pull_frames(robot: Robot, pull: PullOut, count: int = 30) -> list[Frame]:
+def pull_frames(pull: PullOut, count: int = 30) -> list[Frame]:
     """Frames of a film of the pull, evenly along it."""
     rows = np.unique(np.linspace(0, len(pull.poses) - 1, count).round().astype(int))
     return [
         Frame.of(
             pull.poses[row],
             words=f"{pull.forces[row]:.2f} N, moved {MILLIMETRES * pull.moved[row]:.0f} mm",
-            lines=rims(pull.thing_at(int(row)), robot),
+            things=[pull.thing_at(int(row))],
         )
         for row in rows
     ]
@@ -81,12 +81,13 @@ def _portraits(robot: Robot, pull: PullOut, rows: Sequence[int]) -> list[np.ndar
     """Pictures of some rows, all in one frame, without the border that is empty in all."""
     carried = Attachments(robot)
     shapes = [pull.poses[row].nodes for row in rows]
-    lines = [rims(pull.thing_at(row), robot) for row in rows]
+    things = [pull.thing_at(row) for row in rows]
+    lines = [rims(thing, robot) for thing in things]
     beside = [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
     frame = np.concatenate([*shapes, *beside, *(line for each in lines for line in each)])
     images = []
-    for nodes, rim in zip(shapes, lines, strict=True):
-        figure = draw_portrait(robot, nodes, frame=frame, lines=rim, width=PORTRAIT)
+    for nodes, thing in zip(shapes, things, strict=True):
+        figure = draw_portrait(robot, nodes, frame=frame, things=[thing], width=PORTRAIT)
         images.append(figure_pixels(figure, dpi=220))
     drawn = np.any([image[..., 3] > 0 for image in images], axis=0)
     up, across = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))

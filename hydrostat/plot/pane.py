@@ -1,7 +1,7 @@
 """Panes: a flat body of felt as it is, a body in space as a camera sees it. Figures draw on either alike."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,12 +9,13 @@ import shapely
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.drawing.camera import Camera, Spots
-from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, MESH, PAPER, SEAM, STITCH, mix
+from hydrostat.drawing.palette import DARK, FELT, FELT_LIGHT, GHOST, GHOST_FILL, INK, MESH, PAPER, SEAM, STITCH, mix
 from hydrostat.drawing.render import Render, render, silhouette
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, MILLIMETRES, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
-from hydrostat.robot import Robot
+from hydrostat.plot.things import thing_surface
+from hydrostat.robot import Obstacle, Robot, rims
 
 DPI = 200  # pixels of an image of a body to an inch
 MOST_PIXELS = 1.0e6  # pixels of a larger image grow, so that no image takes long
@@ -36,9 +37,27 @@ class Pane(ABC):
 
     @abstractmethod
     def draw_body(
-        self, sheet: PictureSheet, nodes: Nodes, *, pale: float = 0.0, mesh: bool = False, pins: bool = False
+        self,
+        sheet: PictureSheet,
+        nodes: Nodes,
+        *,
+        pale: float = 0.0,
+        mesh: bool = False,
+        pins: bool = False,
+        things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
-        """Draw the body with its nodes at `nodes` [m]; `pale`, 0 to 1, fades it, `mesh` and `pins` add these."""
+        """Draw the body with its nodes at `nodes` [m]; `pale`, 0 to 1, fades it, `mesh` and `pins` add these.
+
+        Things that have an end are drawn with it: their rims, and in space hatched solids.
+        """
+
+    def _with_rims(self, sheet: PictureSheet, body: DrawnBody, things: Sequence[Obstacle]) -> DrawnBody:
+        """Draw the rims of things where the body does not cover them; returns the body."""
+        for line in (line for thing in things for line in rims(thing, self.robot)):
+            for part, fade in body.cable(line).parts:
+                if fade == 0:
+                    sheet.curve(part, color=INK, linewidth=1.2, clip_on=True, zorder=3.3)
+        return body
 
     def named(self, points: Mapping[str, Vector]) -> dict[str, Place]:
         """Places on the sheet [mm] of named points [m]."""
@@ -63,7 +82,14 @@ class FlatPane(Pane):
         return [MILLIMETRES * ring for ring in self.skin.shape(nodes)]
 
     def draw_body(
-        self, sheet: PictureSheet, nodes: Nodes, *, pale: float = 0.0, mesh: bool = False, pins: bool = False
+        self,
+        sheet: PictureSheet,
+        nodes: Nodes,
+        *,
+        pale: float = 0.0,
+        mesh: bool = False,
+        pins: bool = False,
+        things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
         fill, light, seam = (mix(colour, PAPER, pale) for colour in (FELT, FELT_LIGHT, SEAM))
         rings, seams = self.outline(sheet, nodes), [MILLIMETRES * ring for ring in self.skin.seam(nodes)]
@@ -78,7 +104,7 @@ class FlatPane(Pane):
             sheet.segments(ends, color=MESH, linewidth=0.35, alpha=0.42, zorder=4)
         if pins:
             _draw_pins(sheet, self.robot, rings)
-        return DrawnBody(rings)
+        return self._with_rims(sheet, DrawnBody(rings), things)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,18 +124,31 @@ class SpacePane(Pane):
         return [ring + self.shift for ring in image.rings()]
 
     def draw_body(
-        self, sheet: PictureSheet, nodes: Nodes, *, pale: float = 0.0, mesh: bool = False, pins: bool = False
+        self,
+        sheet: PictureSheet,
+        nodes: Nodes,
+        *,
+        pale: float = 0.0,
+        mesh: bool = False,
+        pins: bool = False,
+        things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
-        body = self.robot.body.mesh
+        body, facets = self.robot.body.mesh, [self.robot.body.mesh.boundary]
         spots = self.camera.see(MILLIMETRES * nodes)
         held = np.any([np.zeros(len(nodes)), *(pin.holds(body) for pin in self.robot.pins)], axis=0)
+        held &= pins
+        for places, triangles in map(thing_surface, things):
+            facets.append(triangles + len(spots))
+            spots = np.concatenate([spots, self.camera.see(MILLIMETRES * places)])
+            held = np.append(held, np.ones(len(places), dtype=bool))
         image = render(
-            spots, body.boundary, pixel=self._pixel(sheet, spots), up=self.camera.sky, pale=0.6 * pale,
-            held=held.astype(float) if pins else None, lines=self._density(sheet) if mesh else 0.0, point=sheet.scale,
+            spots, np.concatenate(facets), pixel=self._pixel(sheet, spots), up=self.camera.sky, pale=0.6 * pale,
+            held=held.astype(float) if held.any() else None, lines=self._density(sheet) if mesh else 0.0,
+            point=sheet.scale,
         )  # fmt: skip
         rings = lay_image(sheet, image, self.shift, seam=mix(SEAM, PAPER, 0.6 * pale))
         thickness = MILLIMETRES * float(np.ptp(body.nodes, axis=0).min())
-        return DrawnBody(rings, (self.camera, self.shift, image, thickness))
+        return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), things)
 
     def _pixel(self, sheet: PictureSheet, spots: Spots) -> float:
         """Side of a pixel [mm] of an image of spots [mm]."""

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing.palette import ERROR, INK, LIGHT, winch_colours
+from hydrostat.arrays import Nodes, Vector
+from hydrostat.drawing.palette import ERROR, LIGHT, winch_colours
 from hydrostat.geometry.outline import Outline, Ring
 from hydrostat.ik import ReachedPose
 from hydrostat.plot.attachments import Attachments
@@ -27,7 +27,7 @@ from hydrostat.plot.targets import (
     target_points,
 )
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Pose, Robot
+from hydrostat.robot import Obstacle, Pose, Robot
 from hydrostat.simulation import SolvedPose
 from hydrostat.units import counted
 
@@ -209,20 +209,18 @@ def draw_portrait(
     nodes: Nodes,
     *,
     frame: Spread | None = None,
-    lines: Sequence[Points] = (),
+    things: Sequence[Obstacle] = (),
     width: float = WIDTH,
 ) -> Figure:
     """The robot alone, without grid or words, its nodes at `nodes` [m]; the picture holds all points of `frame` [m].
 
-    Lines [m] are drawn over it, such as those of a thing that it holds.
+    Things are drawn with it, such as what it holds.
     """
     carried = Attachments(robot)
     beside = [*carried.cables(nodes), carried.winches(nodes)] if nodes.shape[1] == 3 else []
     shapes, points = ([nodes], beside) if frame is None else ([], [frame])
     sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
-    draw_hardware(sheet, panes[0], panes[0].draw_body(sheet, nodes), carried, nodes)
-    for line in lines:
-        sheet.curve(panes[0].places(line), color=INK, linewidth=1.4, clip_on=True, zorder=15)
+    draw_hardware(sheet, panes[0], panes[0].draw_body(sheet, nodes, things=things), carried, nodes)
     return sheet.figure
 
 

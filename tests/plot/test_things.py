@@ -1,0 +1,49 @@
+"""Things drawn with the body that holds them. Oracles: their distance fields, their volumes, what hides what."""
+
+import numpy as np
+import pytest
+from builders import box_robot
+
+from hydrostat.plot import draw_portrait
+from hydrostat.plot.picture_file import figure_pixels
+from hydrostat.plot.things import thing_surface
+from hydrostat.robot import Obstacle, rims
+
+AT, TO = (0.01, 0.02, 0.03), (0.05, 0.08, 0.06)
+LONG = float(np.linalg.norm(np.subtract(TO, AT)))
+VOLUMES = {
+    "sphere": (Obstacle(name="a", shape="sphere", at=AT, radius=0.02), 4 / 3 * np.pi * 0.02**3),
+    "capsule": (
+        Obstacle(name="a", shape="capsule", at=AT, to=TO, radius=0.02),
+        np.pi * 0.02**2 * LONG + 4 / 3 * np.pi * 0.02**3,
+    ),
+    "cylinder": (Obstacle(name="a", shape="cylinder", at=AT, to=TO, radius=0.02), np.pi * 0.02**2 * LONG),
+    "box": (Obstacle(name="a", shape="box", at=AT, to=TO), 0.04 * 0.06 * 0.03),
+}
+
+
+@pytest.mark.parametrize("shape", VOLUMES)
+def test_a_surface_lies_on_the_thing_and_looks_outward(shape: str) -> None:
+    thing, volume = VOLUMES[shape]
+    places, triangles = thing_surface(thing)
+    used = places[np.unique(triangles)]
+    assert np.abs(thing.field()(used).values).max() < 1e-4  # a capsule has corners on both balls, some a hair inside
+    assert np.linalg.det(places[triangles]).sum() / 6 == pytest.approx(volume, rel=0.015)
+
+
+def test_what_lies_behind_the_body_is_hidden_by_it() -> None:
+    """A ball is seen whole in front of the body, in part or not at all behind it; by the pixels that it changes."""
+    robot = box_robot()
+    nodes = robot.body.mesh.nodes
+    middle, size = nodes.mean(axis=0), np.ptp(nodes, axis=0)
+    changed = []
+    frame = np.concatenate([middle + 3 * size.max() * np.eye(3), middle - 3 * size.max() * np.eye(3)])
+    bare = figure_pixels(draw_portrait(robot, nodes, frame=frame), dpi=80).astype(int)
+    for sign in (-1.0, 1.0):
+        at = middle + sign * np.array([0.0, 1.2 * size[1], 0.0])
+        ball = Obstacle(name="ball", shape="sphere", at=tuple(at), radius=0.3 * float(size.min()))
+        assert rims(ball, robot)
+        drawn = figure_pixels(draw_portrait(robot, nodes, frame=frame, things=[ball]), dpi=80).astype(int)
+        changed.append(int((np.abs(drawn - bare).max(axis=2) > 40).sum()))
+    assert changed[0] != changed[1]
+    assert max(changed) > 20
