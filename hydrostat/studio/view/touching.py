@@ -6,30 +6,28 @@ import numpy as np
 
 from hydrostat.drawing.palette import ERROR
 from hydrostat.geometry.crossings import find_crossings
-from hydrostat.simulation import Simulation, SolvedPose, touch_words, touches
+from hydrostat.simulation import Simulation, SolvedPose, touches
 from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
 
 MOST = 8  # places that are shown, the hardest
-LONGEST = 0.08  # arrow at the hardest, in sizes of the body
+LONGEST = 0.05  # arrow at the hardest, in sizes of the body
 FAINTEST = 0.02  # what presses with less than this share of the hardest is not shown
 OFF = "contact is off: the body passes through itself here"
 TOUCH = "#8a2be2"
 
 
 def with_touches(simulation: Simulation, pose: SolvedPose, shape: RobotShape, *, settled: bool) -> RobotShape:
-    """A shape with the places where its pose touches, and in a note how hard; without contact where it crosses itself.
+    """A shape with the places where its pose touches; without contact where it crosses itself, and a note that says so.
 
     Crossings of a body in space take longer than a step of its pose: they are looked for once it has `settled`.
     """
     robot = simulation.robot
-    found = touches(simulation, pose)
-    notes = shape.notes + ((touch_words(found),) if found else ())
-    crossing = None
+    notes, crossing = shape.notes, None
     if robot.contact is None and (settled or robot.body.mesh.dim == 2):
         places = find_crossings(robot.body.mesh, pose.nodes).places
         if len(places):
             crossing, notes = tuple(places[len(places) // 2].tolist()), (*notes, OFF.removesuffix(" here"))
-    return replace(shape, notes=notes, touches=found, crossing=crossing)
+    return replace(shape, notes=notes, touches=touches(simulation, pose), crossing=crossing)
 
 
 def touch_things(shape: RobotShape, size: float) -> list[Thing]:

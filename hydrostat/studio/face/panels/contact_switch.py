@@ -1,9 +1,13 @@
-"""`contact_switch`: whether the body feels itself."""
+"""`contact_switch`, `touch_label`: whether the body feels itself, and what it feels."""
+
+from collections.abc import Callable
 
 from nicegui import ui
 
+from hydrostat.simulation import touch_words
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.view.things import RobotShape
 
 
 def contact_switch(page: WindowPage, mark: str) -> None:
@@ -21,3 +25,15 @@ def contact_switch(page: WindowPage, mark: str) -> None:
 
     switch.on_value_change(send)
     page.on(Topic.ROBOT, show)
+
+
+def touch_label(page: WindowPage, shape: Callable[[], RobotShape], mark: str) -> None:
+    """Build the line that says what the body touches, and how hard; found under a mark."""
+    label = ui.label().classes("studio-hint").mark(mark)
+
+    def show() -> None:
+        words = touch_words(shape().touches)
+        label.set_text(f"{words[:1].upper()}{words[1:]}")
+        label.set_visibility(bool(words))
+
+    page.on((Topic.ROBOT, Topic.SHAPE), show)

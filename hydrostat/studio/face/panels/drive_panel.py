@@ -8,7 +8,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import Knob
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
-from hydrostat.studio.face.panels.contact_switch import contact_switch
+from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.drive_strip import drive_strip, unfocused
 from hydrostat.studio.stage import StageName
 
@@ -54,6 +54,7 @@ def drive_panel(page: WindowPage) -> None:
     page.on((Topic.ROBOT, Topic.DRIVE), show)
     _motors(page)
     contact_switch(page, "drive-contact")
+    touch_label(page, driver.shape, "drive-touches")
     with page.bottom:
         drive_strip(page)
 

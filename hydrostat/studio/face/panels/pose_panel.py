@@ -5,7 +5,7 @@ from nicegui import ui
 from hydrostat.drawing.palette import ERROR
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button
-from hydrostat.studio.face.panels.contact_switch import contact_switch
+from hydrostat.studio.face.panels.contact_switch import contact_switch, touch_label
 from hydrostat.studio.face.panels.pose_muscles import muscles_card
 from hydrostat.studio.posing.held import Mode
 from hydrostat.studio.records.work import fresh_name
@@ -47,6 +47,7 @@ def pose_panel(page: WindowPage) -> None:
     held_card(page)
     bars_card(page)
     contact_switch(page, "pose-contact")
+    touch_label(page, poser.shape, "pose-touches")
     muscles_card(page)
     poses_card(page)
     reach_card(page)
