@@ -1,13 +1,14 @@
 """`Shell`: the closed boundary of a body, asked how far away points are."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points
+from hydrostat.geometry.distance_field import DistanceField, Distances, box_field
 from hydrostat.geometry.outline import Outline
 
 Facets = Int[np.ndarray, "facets dim"]
@@ -37,6 +38,14 @@ class Shell:
     def __init__(self, nodes: Nodes, facets: Facets) -> None:
         """Facets, by the numbers of their nodes [m]."""
         self.nodes, self.facets = nodes, np.ascontiguousarray(facets)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is sent to other processes: not the tree, which is made again there."""
+        return {"nodes": self.nodes, "facets": self.facets}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """As `__init__`."""
+        self.__dict__.update(state)
 
     def moved(self, nodes: Nodes) -> "Shell":
         """The same facets between the nodes where these are now [m]."""
@@ -134,6 +143,43 @@ class Shell:
         tree.init(_in_space(self.nodes), self.facets)
         return tree
 
+
+def shell_field(shell: Shell) -> DistanceField:
+    """Distance from what a closed shell encloses [m]; far away, less than it by up to a quarter of the shell's size."""
+    return partial(_from_shell, Shell(shell.nodes, shell.facets))
+
+
+def _from_shell(shell: Shell, points: Points) -> Distances:
+    """Exact near the shell; elsewhere the distance from a box about it, which is never more."""
+    low, high = shell.nodes.min(axis=0), shell.nodes.max(axis=0)
+    room = _ROOM * float(np.linalg.norm(high - low))
+    values, normals, curvatures = box_field(low, high)(points)
+    near = np.flatnonzero(values < room)
+    if len(near):
+        found = shell.nearest(points[near])
+        values[near], normals[near] = found.distances, found.directions
+        curvatures[near] = _curvatures(shell, found)
+    return Distances(values, normals, curvatures)
+
+
+def _curvatures(shell: Shell, found: Nearest) -> Float[np.ndarray, "points dim dim"]:
+    """Second derivatives of distances: none over a face, round an edge or a corner those of its distance."""
+    dim = found.directions.shape[1]
+    round_ = np.eye(dim) - found.directions[:, :, None] * found.directions[:, None, :]
+    if dim == 3:
+        corners = shell.nodes[found.stencils]
+        edge = (found.shares == 0).sum(axis=1) == 1
+        missing = found.shares[edge].argmin(axis=1)
+        rows = np.arange(len(missing))
+        along = corners[edge][rows, (missing + 1) % 3] - corners[edge][rows, (missing + 2) % 3]
+        along = along / _or_one(np.linalg.norm(along, axis=1))[:, None]
+        round_[edge] -= along[:, :, None] * along[:, None, :]
+    beside = (found.shares == 0).any(axis=1) & (found.distances > 0)
+    return np.where(beside, 1.0 / np.where(beside, found.distances, 1.0), 0.0)[:, None, None] * round_
+
+
+_ROOM = 0.25
+"""Distances below this share of the diagonal of the box about a shell are exact."""
 
 _TOUCHING = 1e-12
 """A point this near, as a fraction of the coordinates, has no direction to its nearest place but the normal there."""

@@ -1,17 +1,19 @@
 """`read_thing`, `place_thing`: what is grasped, from words, and where it lies."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry.anchors import locate
-from hydrostat.robot import Obstacle, Robot
+from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES
+from hydrostat.robot import Obstacle, Robot, closed_mesh
 from hydrostat.units import LENGTH, parse_quantity
 
-FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,40mm,60mm")
-"""How things are written: a diameter, a diameter and a length along the last axis, or the sides."""
+FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,40mm,60mm", "mug.stl")
+"""How things are written: a diameter, a diameter and a length along the last axis, the sides, or a surface in mm."""
 
 
 def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
@@ -26,6 +28,8 @@ def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
     Raises:
         InputError: no such shape, a wrong number of sizes, no length, or a size that is not above 0.
     """
+    if text.lower().endswith(SURFACE_SUFFIXES):
+        return _from_file(text, dim, mass=mass, friction=friction)
     shape, _, rest = text.partition(":")
     counts = {"sphere": 1, "cylinder": 2, "capsule": 2, "box": dim}
     if shape not in counts:
@@ -47,6 +51,18 @@ def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
         raise InputError(f'"{text}": the length of a capsule, its ends included, must be more than its diameter')
     end = 0.5 * long * np.eye(dim)[-1]
     return Obstacle(**known, at=tuple(-end), to=tuple(end), radius=0.5 * sizes[0])
+
+
+def _from_file(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
+    """Thing of a surface file in millimetres, with its middle at the origin."""
+    if dim == 2:
+        raise InputError(f"{text}: a flat body meets no mesh; use a sphere, which is a disc in the plane, or a box")
+    try:
+        content = Path(text).read_bytes()
+    except OSError as error:
+        raise InputError(f"{text}: cannot be read ({error.strerror})") from None
+    mesh = closed_mesh(content, Path(text).name)
+    return Obstacle(name="thing", shape="mesh", at=tuple(-mesh.masses()[1]), mesh=mesh, mass=mass, friction=friction)
 
 
 def moved_thing(thing: Obstacle, place: Vector) -> Obstacle:

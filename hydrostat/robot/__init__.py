@@ -3,6 +3,7 @@
 from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point
+from hydrostat.robot.closed_mesh import ClosedMesh, closed_mesh
 from hydrostat.robot.contact import Contact, Obstacle, ObstacleShape
 from hydrostat.robot.face import Face
 from hydrostat.robot.gallery import gallery_folder, gallery_names
@@ -26,6 +27,7 @@ __all__ = [
     "STANDARD_GRAVITY",
     "Body",
     "Cable",
+    "ClosedMesh",
     "Contact",
     "Face",
     "Marker",
@@ -42,6 +44,7 @@ __all__ = [
     "SurfaceSketch",
     "Volume",
     "Winch",
+    "closed_mesh",
     "face_words",
     "find_material",
     "find_risks",

@@ -16,7 +16,9 @@ from hydrostat.geometry.distance_field import (
     plane_field,
     sphere_field,
 )
+from hydrostat.geometry.shell import shell_field
 from hydrostat.robot.checks import Point, check_name, check_point, check_positive
+from hydrostat.robot.closed_mesh import ClosedMesh
 
 DISTANCE = 0.005
 """Parts begin to feel one another at this share of the size of the body, where nothing else is said."""
@@ -57,6 +59,7 @@ class ObstacleShape(StrEnum):
     CAPSULE = "capsule"  # all within `radius` of the way from `at` to `to`
     CYLINDER = "cylinder"  # the same with flat ends; in space only
     BOX = "box"  # with `at` and `to` as opposite corners
+    MESH = "mesh"  # what a closed surface from a file encloses, moved by `at`; in space only
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,6 +74,7 @@ class Obstacle:
         radius: of a sphere, capsule or cylinder [m].
         normal: out of a plane, of any length.
         friction: Coulomb's coefficient; None: that of the contact of the body.
+        mesh: closed surface, moved by `at`.
         mass: of a thing that moves as it is pushed and pulled [kg], spread evenly; None: it stands still.
 
     Raises:
@@ -85,6 +89,7 @@ class Obstacle:
     normal: Point | None = None
     friction: float | None = None
     mass: float | None = None
+    mesh: ClosedMesh | None = None
 
     def __post_init__(self) -> None:
         check_name(self.name)
@@ -93,7 +98,7 @@ class Obstacle:
             raise InputError(f'there is no shape "{self.shape}"; there are: {", ".join(kinds)}')
         object.__setattr__(self, "shape", ObstacleShape(self.shape))
         needed = _NEEDED[ObstacleShape(self.shape)]
-        for key in ("to", "radius", "normal"):
+        for key in ("to", "radius", "normal", "mesh"):
             given = getattr(self, key) is not None
             if given != (key in needed):
                 raise InputError(f"a {self.shape} {'has no' if given else 'needs a'} {key}")
@@ -112,8 +117,8 @@ class Obstacle:
             self.at == self.to or (self.shape is ObstacleShape.BOX and 0 in np.subtract(self.at, self.to))
         ):
             raise InputError("at and to leave nothing between them; move one of them")
-        if self.shape is ObstacleShape.CYLINDER and len(self.at) == 2:
-            raise InputError("a flat body meets no cylinder; use a sphere, which is a disc in the plane, or a box")
+        if self.shape in (ObstacleShape.CYLINDER, ObstacleShape.MESH) and len(self.at) == 2:
+            raise InputError(f"a flat body meets no {self.shape}; use a sphere, which is a disc in the plane, or a box")
 
     def _check_motion(self) -> None:
         if self.friction is not None:
@@ -128,6 +133,9 @@ class Obstacle:
         at = np.array(self.at)
         if self.shape == ObstacleShape.PLANE:
             return np.zeros((0, len(at)))
+        if self.mesh is not None:
+            corners = self.mesh.surface.vertices
+            return at + corners[:: max(1, len(corners) // _SPINE)]
         return at + np.linspace(0, 1, _SPINE)[:, None] * ((self.to or self.at) - at)
 
     def field(self) -> DistanceField:
@@ -137,6 +145,10 @@ class Obstacle:
     def frame(self) -> tuple[Vector, Points]:
         """Where its middle is [m], and its axes, a row for each: the first along it, if it is long."""
         at, dim = np.array(self.at), len(self.at)
+        if self.mesh is not None:
+            _, middle, products = self.mesh.masses()
+            axes = np.linalg.eigh(products)[1].T[::-1]
+            return at + middle, axes * np.sign(np.linalg.det(axes))
         if self.to is None:
             return at, np.eye(dim)
         span = np.array(self.to) - at
@@ -152,6 +164,9 @@ class Obstacle:
         at, to = (
             None if end is None else tuple((axes @ (np.array(end) - place)).tolist()) for end in (self.at, self.to)
         )
+        if self.mesh is not None:
+            shift = axes @ (np.array(self.at) - place)
+            return replace(self, at=(0.0,) * len(self.at), mesh=self.mesh.moved(axes, shift))
         return replace(self, at=at or (), to=to)
 
     def second_moments(self) -> Vector:
@@ -168,6 +183,7 @@ _NEEDED = {
     ObstacleShape.CAPSULE: ("to", "radius"),
     ObstacleShape.CYLINDER: ("to", "radius"),
     ObstacleShape.BOX: ("to",),
+    ObstacleShape.MESH: ("mesh",),
 }
 _FIELDS: dict[ObstacleShape, Callable[[Obstacle], DistanceField]] = {
     ObstacleShape.PLANE: lambda one: plane_field(np.array(one.at), np.array(one.normal)),
@@ -175,7 +191,18 @@ _FIELDS: dict[ObstacleShape, Callable[[Obstacle], DistanceField]] = {
     ObstacleShape.CAPSULE: lambda one: capsule_field(np.array(one.at), np.array(one.to), one.radius or 0.0),
     ObstacleShape.CYLINDER: lambda one: cylinder_field(np.array(one.at), np.array(one.to), one.radius or 0.0),
     ObstacleShape.BOX: lambda one: box_field(np.array(one.at), np.array(one.to)),
+    ObstacleShape.MESH: lambda one: shell_field(_mesh_at(one).shell),
 }
+
+
+def _mesh_at(one: Obstacle) -> ClosedMesh:
+    assert one.mesh is not None
+    return one.mesh.moved(np.eye(3), np.array(one.at))
+
+
+def _mesh_moments(one: Obstacle) -> Vector:
+    assert one.mesh is not None
+    return np.linalg.eigvalsh(one.mesh.masses()[2])[::-1]
 
 
 def _box_moments(box: Obstacle) -> Vector:
@@ -206,6 +233,7 @@ _MOMENTS: dict[ObstacleShape, Callable[[Obstacle], Vector]] = {
     ObstacleShape.CAPSULE: _rod_moments,
     ObstacleShape.CYLINDER: _rod_moments,
     ObstacleShape.BOX: _box_moments,
+    ObstacleShape.MESH: _mesh_moments,
 }
 
 _MOST_FRICTION = 3.0

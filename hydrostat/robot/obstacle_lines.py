@@ -72,6 +72,23 @@ def _box(box: Obstacle, _: Vector, __: float) -> list[Points]:
     return [at + corners[list(pair)] * (to - at) for pair in pairs]
 
 
+def _mesh(thing: Obstacle, _: Vector, __: float) -> list[Points]:
+    """Cuts by three planes through its middle."""
+    assert thing.mesh is not None
+    corners = (thing.mesh.surface.vertices + np.array(thing.at))[thing.mesh.surface.triangles]
+    middle, lines = thing.frame()[0], []
+    for axis in range(3):
+        heights = corners[:, :, axis] - middle[axis]
+        cut = (heights.min(axis=1) < 0) & (heights.max(axis=1) >= 0)
+        for triangle, height in zip(corners[cut], heights[cut], strict=True):
+            ends = []
+            for a, b in ((0, 1), (1, 2), (2, 0)):
+                if (height[a] < 0) != (height[b] < 0):
+                    ends.append(triangle[a] + height[a] / (height[a] - height[b]) * (triangle[b] - triangle[a]))
+            lines.append(np.array(ends))
+    return lines
+
+
 def _across(normal: Vector) -> Points:
     """Unit vectors across a direction, (dim - 1, dim)."""
     unit = normal / np.linalg.norm(normal)
@@ -88,4 +105,5 @@ _LINES: dict[ObstacleShape, Callable[[Obstacle, Vector, float], list[Points]]] =
     ObstacleShape.CAPSULE: _rod,
     ObstacleShape.CYLINDER: _rod,
     ObstacleShape.BOX: _box,
+    ObstacleShape.MESH: _mesh,
 }

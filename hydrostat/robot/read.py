@@ -11,6 +11,7 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.closed_mesh import closed_mesh
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.marker import Marker, Pose
@@ -98,6 +99,10 @@ class RobotReader(TablesFile):
         if entry.friction is not None:
             given["friction"] = float(entry.friction)
         given |= _given(entry, "mass")
+        if entry.file is not None:
+            file = self._file("obstacle.file", entry.file)
+            content = read_bytes(file, file.name, LARGEST_FILE)
+            given["mesh"] = closed_mesh(content, file.name, unit=units.scale_up(Decimal(1), self.unit, units.LENGTH))
         return Obstacle(name=entry.name, shape=entry.shape, at=self.point(entry.at), **given)
 
     def _winch(self, entry: Any) -> Winch:

@@ -230,6 +230,7 @@ class ObstacleTable(TomlTable):
     normal: Coordinates | None = None
     friction: Number | None = None
     mass: Mass | None = None
+    file: Text | None = None
 
 
 class RobotTable(TomlTable):

@@ -42,7 +42,8 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder}: cannot be made a folder ({error.strerror})") from None
-    replace_file(folder / robot.body.file, robot.body.content)
+    for file, content in _files(robot).items():
+        replace_file(folder / file, content)
     return replace_file(folder / "robot.toml", (text or robot_text(robot)).encode())
 
 
@@ -71,7 +72,13 @@ def replace_file(path: Path, content: bytes) -> Path:
 
 def robot_hash(robot: Robot) -> str:
     """SHA-256 of all that defines the robot, its body's file included."""
-    return hashlib.sha256(robot_text(robot).encode() + b"\0" + robot.body.content).hexdigest()
+    return hashlib.sha256(b"\0".join([robot_text(robot).encode(), *_files(robot).values()])).hexdigest()
+
+
+def _files(robot: Robot) -> dict[str, bytes]:
+    """What lies beside robot.toml: the file of the body, then those of obstacles."""
+    files = {robot.body.file: robot.body.content}
+    return files | {each.mesh.file: each.mesh.content for each in robot.obstacles if each.mesh is not None}
 
 
 def robot_text(robot: Robot) -> str:
@@ -188,6 +195,8 @@ class _Writer:
             entry["normal"] = self._array(
                 self._toml.value(units.plain(Decimal(repr(value)))) for value in obstacle.normal
             )
+        if obstacle.mesh is not None:
+            entry["file"] = obstacle.mesh.file
         if obstacle.friction is not None:
             entry["friction"] = obstacle.friction
         if obstacle.mass is not None:

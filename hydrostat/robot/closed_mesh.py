@@ -1,0 +1,71 @@
+"""`ClosedMesh`: a rigid thing of any shape, from a file."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from hydrostat.arrays import Points, Vector
+from hydrostat.errors import InputError
+from hydrostat.geometry.files.surface_file import read_surface
+from hydrostat.geometry.shell import Shell
+from hydrostat.geometry.surface import Surface
+
+MOST_TRIANGLES = 20_000
+"""No thing may have more."""
+
+
+@dataclass(frozen=True)
+class ClosedMesh:
+    """A closed surface in space and the file that it came from.
+
+    Attributes:
+        file: its name.
+        content: of the file.
+        surface: as read; things with equal files are equal.
+    """
+
+    file: str
+    content: bytes = field(repr=False)
+    surface: Surface = field(repr=False, compare=False)
+
+    @cached_property
+    def shell(self) -> Shell:
+        """The surface, asked how far away points are."""
+        return Shell(self.surface.vertices, self.surface.triangles)
+
+    def moved(self, turn: Points, shift: Vector) -> "ClosedMesh":
+        """The same thing with every point x at turn x + shift [m]."""
+        surface = Surface(self.surface.vertices @ turn.T + shift, self.surface.triangles)
+        return replace(self, surface=surface)
+
+    def masses(self) -> tuple[float, Vector, Points]:
+        """Volume [m^3], middle [m], and mean products of the coordinates of what it encloses about its middle [m^2]."""
+        middle = self.surface.box.mean(axis=0)
+        corners = self.surface.vertices[self.surface.triangles] - middle
+        volumes = np.linalg.det(corners) / 6
+        sums = corners.sum(axis=1)
+        volume = float(volumes.sum())
+        centre = volumes @ sums / (4 * volume)
+        products = np.einsum("t,tci,tcj->ij", volumes, corners, corners) + np.einsum("t,ti,tj->ij", volumes, sums, sums)
+        return volume, middle + centre, products / (20 * volume) - np.outer(centre, centre)
+
+
+def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
+    """Read a thing from a surface file; a coordinate counts `unit` metres.
+
+    Raises:
+        InputError: no surface, an open one, one that is inside out, or one with too many triangles.
+    """
+    surface = read_surface(content, name=file, unit=unit)
+    if len(surface.triangles) > MOST_TRIANGLES:
+        count = len(surface.triangles)
+        raise InputError(f"{file}: has {count} triangles, an obstacle at most {MOST_TRIANGLES}; simplify the surface")
+    merged, numbers = np.unique(surface.vertices, axis=0, return_inverse=True)
+    triangles = numbers.reshape(-1)[surface.triangles]
+    whole = Surface(merged, triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)])
+    if not Shell(whole.vertices, whole.triangles).closed:
+        raise InputError(f"{file}: is not closed, or its triangles do not all turn the same way; mend it first")
+    if whole.volume <= 0:
+        raise InputError(f"{file}: is inside out; turn its triangles round")
+    return ClosedMesh(file=file, content=content, surface=whole)
