@@ -67,13 +67,15 @@ class Assembly:
 
         The pattern is analysed anew only when a pair of nodes meets that never met before.
         """
-        energies = [energy.near(nodes) for energy in self.energies]
+        return self.with_terms([energy.near(nodes) for energy in self.energies])
+
+    def with_terms(self, energies: Sequence[Energy]) -> "Assembly":
+        """Sum of other energies, some with other stencils, as those of contact have; itself if all are the same."""
         if all(new is old for new, old in zip(energies, self.energies, strict=True)):
             return self
         stencils = [energy.stencils for energy in energies]
         same = all(new is old for new, old in zip(stencils, self.pattern.stencils, strict=True))
-        pattern = self.pattern if same else self.pattern.changed(stencils)
-        return self._like(energies, pattern)
+        return self.with_energies(energies) if same else self._like(energies, self.pattern.changed(stencils))
 
     def with_load(self, share: float) -> "Assembly":
         """Sum with this share of all dead loads."""
@@ -111,7 +113,7 @@ class Assembly:
         """Sum of energies that remember `history`, at equilibrium in a given state."""
         ends = np.cumsum([len(energy.history) for energy in self.energies])
         parts = zip(self.energies, np.split(history, ends[:-1]), strict=True)
-        return self.with_energies([energy.resumed(part, nodes, controls) for energy, part in parts])
+        return self.with_terms([energy.resumed(part, nodes, controls) for energy, part in parts])
 
     def imbalance(self, nodes: Nodes, controls: Vector) -> float:
         """Largest force [N] by which what is held fixed while minimising is off."""
@@ -126,11 +128,11 @@ class Assembly:
             energies.append(
                 energy.corrected(nodes, controls, compliance, None if stiffness is None else stiffness.solve)
             )
-        return self.with_energies(energies)
+        return self.with_terms(energies)
 
     def after(self, nodes: Nodes, controls: Vector) -> "Assembly":
         """Sum of what follows a state on the loading path."""
-        return self.with_energies([energy.after(nodes, controls) for energy in self.energies])
+        return self.with_terms([energy.after(nodes, controls) for energy in self.energies])
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Total energy [J]; infinite where one of the energies is not defined."""

@@ -216,7 +216,7 @@ class Dynamics:
         step: float,
     ) -> tuple[Assembly, NewtonResult]:
         """One stage, from whichever guess has the least energy; and the energies in balance with it."""
-        assembly = self._assembly.with_energies(energies)
+        assembly = self._assembly.with_terms(energies)
         flown = base.nodes + step * base.velocities
         guesses = [flown + step**2 * acceleration, flown, before]
         near = assembly.near(before)

@@ -1,0 +1,169 @@
+"""`RubbingEnergy`: a body does not pass through itself, and its parts rub on one another."""
+
+from dataclasses import replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.geometry.boundary_tree import Pairs
+from hydrostat.geometry.mesh import Mesh
+from hydrostat.mechanics.contact import ContactEnergy
+from hydrostat.mechanics.energy import Blocks, Compliance, Energy, HessianBlocks, Response
+from hydrostat.mechanics.grip import Grip
+from hydrostat.mechanics.hold import Hold, HoldingSkin
+
+
+class RubbingEnergy(Energy):
+    """Contact of a body with itself with Coulomb friction.
+
+    Each node that other parts push has a spring to a point of the part opposite (`Hold`), against half of the friction
+    that belongs to its force: the nodes on the other side bear the other half. Forces along the surface pull at both
+    sides alike. Its history is what each node of the boundary sticks to.
+    """
+
+    convex: ClassVar[bool] = False
+    lifts_early: ClassVar[bool] = True
+    has_history = True
+
+    def __init__(self, contact: ContactEnergy, hold: Hold) -> None:
+        """Barriers, and what sticks to what."""
+        self.contact, self.hold = contact, hold
+        self.stencils = np.concatenate([contact.stencils, hold.stencils])
+
+    @classmethod
+    def of(cls, mesh: Mesh, contact: ContactEnergy, friction: float) -> "RubbingEnergy":
+        """Contact of a body at rest with friction; nothing touches yet.
+
+        Args:
+            mesh: of the body.
+            contact: of the body with itself.
+            friction: Coulomb's coefficient mu.
+        """
+        skin = HoldingSkin.of(mesh, contact.skin.distance)
+        springs = _STICKS * contact.skin.stiffness / contact.skin.distance * contact.skin.areas[skin.own]
+        none = np.zeros((len(skin.own), mesh.dim))
+        hold = Hold(
+            skin=skin,
+            facets=np.full(len(skin.own), -1),
+            weights=none,
+            grip=Grip.at_rest(0.5 * friction, springs, none),
+            before=contact.skin.rest,
+        )
+        return cls(contact, hold)
+
+    def value(self, nodes: Nodes, controls: Vector) -> float:
+        return self.contact.value(nodes, controls) + self.hold.grip.energy(self.hold.places(nodes))
+
+    def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
+        hold = self.hold
+        forces = hold.grip.forces(hold.places(nodes))[hold.held]
+        return np.concatenate(
+            [self.contact.gradient(nodes, controls), hold.shares[:, :, None] * forces[:, None, :]]
+        )
+
+    def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
+        return self.projected_hessian(nodes, controls, 0.0)
+
+    def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+        hold, size = self.hold, self.stencils.shape[1] * nodes.shape[1]
+        inner = hold.grip.only(hold.held).stiffness(hold.places(nodes)[hold.held])
+        blocks = np.einsum("ta,tb,tij->taibj", hold.shares, hold.shares, inner).reshape(-1, size, size)
+        return np.concatenate([self.contact.projected_hessian(nodes, controls, share), blocks])
+
+    def largest_step(self, nodes: Nodes, move: Nodes) -> float:
+        return self.contact.largest_step(nodes, move)
+
+    def near(self, nodes: Nodes) -> "RubbingEnergy":
+        contact = self.contact.near(nodes)
+        return self if contact is self.contact else RubbingEnergy(contact, self.hold)
+
+    @property
+    def history(self) -> Vector:
+        """Number of the facet that each node of the boundary sticks to, -1 for none, and weights at its corners."""
+        return np.concatenate([self.hold.facets[:, None], self.hold.weights], axis=1).ravel()
+
+    def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
+        rows = history.reshape(len(self.hold.facets), -1)
+        hold = replace(self.hold, facets=np.rint(rows[:, 0]).astype(int), weights=rows[:, 1:], before=nodes)
+        return RubbingEnergy(self.contact.near(nodes), hold)._asked(nodes)
+
+    def imbalance(self, nodes: Nodes, controls: Vector) -> float:
+        pushes, normals = self._pushes(nodes)
+        hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
+        places = hold.places(nodes)
+        missed = np.abs(hold.grip.asked(pushes, normals).forces(places) - hold.grip.forces(places))
+        return max(float(missed.max(initial=0.0)), float(self.hold.went_far(nodes).max(initial=0.0)))
+
+    def corrected(
+        self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
+    ) -> "RubbingEnergy":
+        pushes, normals = self._pushes(nodes)
+        hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
+        places, grip = hold.places(nodes), hold.grip.judged(self.imbalance(nodes, controls))
+        slips = np.flatnonzero(grip.slipping(places))
+        if response is None or not len(slips):
+            return RubbingEnergy(self.contact, hold.with_grip(grip.corrected(pushes, normals)))
+        rises = self._rises(nodes, slips, normals[slips])
+        moves = -grip.friction * (rises.T @ response(_drags(hold, nodes, slips, grip.only(slips).directions(places[slips]))))
+        return RubbingEnergy(self.contact, hold.with_grip(grip.stepped(pushes, normals, slips, moves)))
+
+    def after(self, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
+        asked = self._asked(nodes)
+        return RubbingEnergy(self.contact, asked.hold.slipped(nodes, self._felt(nodes)))
+
+    def _asked(self, nodes: Nodes) -> "RubbingEnergy":
+        """The same with the limits that a shape asks for."""
+        pushes, normals = self._pushes(nodes)
+        hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
+        return RubbingEnergy(self.contact, hold.with_grip(hold.grip.asked(pushes, normals)))
+
+    def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
+        """Force of other parts on each node of the boundary [N], and its direction."""
+        forces = np.zeros_like(nodes)
+        self.contact.add_gradient(nodes, np.zeros(0), forces)
+        forces = -forces[self.hold.skin.own]
+        pushes = np.linalg.norm(forces, axis=1)
+        pushes[pushes < _FAINT * self.hold.grip.springs * self.contact.skin.distance] = 0.0
+        return pushes, np.where(pushes > 0, 1.0 / np.where(pushes > 0, pushes, 1.0), 0.0)[:, None] * forces
+
+    def _felt(self, nodes: Nodes) -> Pairs:
+        """Pairs that are felt."""
+        skin, pairs = self.contact.skin, self.contact.pairs
+        return pairs.only(skin.squared(nodes, pairs) < skin.begins(pairs))
+
+    def _rises(self, nodes: Nodes, some: Int[np.ndarray, " some"], normals: Points) -> Float[np.ndarray, "dofs some"]:
+        """Slopes of the forces on some nodes of the boundary along their normals by all degrees of freedom [N/m]."""
+        contact, dim = ContactEnergy(self.contact.skin, self._felt(nodes)), nodes.shape[1]
+        numbers = np.full(len(nodes), -1)
+        numbers[self.hold.skin.own[some]] = np.arange(len(some))
+        blocks, columns = contact.hessian(nodes, np.zeros(0)), np.zeros((*nodes.shape, len(some)))
+        for corner in range(contact.stencils.shape[1]):
+            whose = numbers[contact.stencils[:, corner]]
+            own = np.flatnonzero(whose >= 0)
+            rows = blocks[own][:, :, corner * dim : (corner + 1) * dim] @ normals[whose[own]][:, :, None]
+            for other in range(contact.stencils.shape[1]):
+                part = rows[:, other * dim : (other + 1) * dim, 0]
+                np.subtract.at(columns, (contact.stencils[own, other], slice(None), whose[own]), part)
+        return columns.reshape(nodes.size, len(some))
+
+
+def _drags(
+    hold: Hold, nodes: Nodes, some: Int[np.ndarray, " some"], ways: Points
+) -> Float[np.ndarray, "dofs some"]:
+    """Slopes of the way of some nodes from their points, along directions, by all degrees of freedom."""
+    columns = np.zeros((*nodes.shape, len(some)))
+    rows = np.searchsorted(hold.held, some)
+    blocks = hold.shares[rows][:, :, None] * ways[:, None, :]
+    for corner in range(hold.stencils.shape[1]):
+        np.add.at(columns, (hold.stencils[rows, corner], slice(None), np.arange(len(some))), blocks[:, corner])
+    return columns.reshape(nodes.size, len(some))
+
+
+_STICKS = 5.0
+"""Stiffness of each side along the surface per area, in units of Young's modulus / distance."""
+
+_FAINT = 1e-10
+"""Forces below this share of the modulus x area are none."""
