@@ -14,6 +14,7 @@ from hydrostat.mechanics.newton_options import NewtonOptions, Reason, RoundOff
 from hydrostat.mechanics.newton_result import NewtonResult
 from hydrostat.mechanics.obstacle import ObstacleEnergy
 from hydrostat.mechanics.pin import PinEnergy
+from hydrostat.mechanics.rubbing import RubbingEnergy
 from hydrostat.mechanics.stiffness import Stiffness
 from hydrostat.mechanics.tension_law import TensionLaw
 from hydrostat.mechanics.turns import Turns
@@ -41,6 +42,7 @@ __all__ = [
     "PinEnergy",
     "Reason",
     "RoundOff",
+    "RubbingEnergy",
     "Stiffness",
     "TensionLaw",
     "Turns",

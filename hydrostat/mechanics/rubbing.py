@@ -1,7 +1,6 @@
 """`RubbingEnergy`: a body does not pass through itself, and its parts rub on one another."""
 
 from dataclasses import replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -78,7 +77,7 @@ class RubbingEnergy(Energy):
 
     def near(self, nodes: Nodes) -> "RubbingEnergy":
         contact = self.contact.near(nodes)
-        return self if contact is self.contact else RubbingEnergy(contact, self.hold)
+        return self if contact is self.contact else self._with(contact, self.hold)
 
     @property
     def history(self) -> Vector:
@@ -88,7 +87,7 @@ class RubbingEnergy(Energy):
     def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
         rows = history.reshape(len(self.hold.facets), -1)
         hold = replace(self.hold, facets=np.rint(rows[:, 0]).astype(int), weights=rows[:, 1:], before=nodes)
-        return RubbingEnergy(self.contact.near(nodes), hold)._asked(nodes)
+        return self._with(self.contact.near(nodes), hold)._asked(nodes)
 
     def imbalance(self, nodes: Nodes, controls: Vector) -> float:
         pushes, normals = self._pushes(nodes)
@@ -105,20 +104,28 @@ class RubbingEnergy(Energy):
         places, grip = hold.places(nodes), hold.grip.judged(self.imbalance(nodes, controls))
         slips = np.flatnonzero(grip.slipping(places))
         if response is None or not len(slips):
-            return RubbingEnergy(self.contact, hold.with_grip(grip.corrected(pushes, normals)))
+            return self._with(self.contact, hold.with_grip(grip.corrected(pushes, normals)))
         rises = self._rises(nodes, slips, normals[slips])
-        moves = -grip.friction * (rises.T @ response(_drags(hold, nodes, slips, grip.only(slips).directions(places[slips]))))
-        return RubbingEnergy(self.contact, hold.with_grip(grip.stepped(pushes, normals, slips, moves)))
+        drags = _drags(hold, nodes, slips, grip.only(slips).directions(places[slips]))
+        moves = -grip.friction * (rises.T @ response(drags))
+        return self._with(self.contact, hold.with_grip(grip.stepped(pushes, normals, slips, moves)))
 
     def after(self, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
         asked = self._asked(nodes)
-        return RubbingEnergy(self.contact, asked.hold.slipped(nodes, self._felt(nodes)))
+        return self._with(self.contact, asked.hold.slipped(nodes, self._felt(nodes)))
+
+    def _with(self, contact: ContactEnergy, hold: Hold) -> "RubbingEnergy":
+        """Another state; the pattern of its Hessian is known where its stencils are the same."""
+        other = RubbingEnergy(contact, hold)
+        if np.array_equal(other.stencils, self.stencils):
+            other.stencils = self.stencils
+        return other
 
     def _asked(self, nodes: Nodes) -> "RubbingEnergy":
         """The same with the limits that a shape asks for."""
         pushes, normals = self._pushes(nodes)
         hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
-        return RubbingEnergy(self.contact, hold.with_grip(hold.grip.asked(pushes, normals)))
+        return self._with(self.contact, hold.with_grip(hold.grip.asked(pushes, normals)))
 
     def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
         """Force of other parts on each node of the boundary [N], and its direction."""

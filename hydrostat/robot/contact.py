@@ -30,7 +30,7 @@ class Contact:
 
     Attributes:
         distance: at which parts begin to push one another off [m]; None: 1/200 of the size of the body.
-        friction: Coulomb's coefficient between the body and obstacles that state none.
+        friction: Coulomb's coefficient between parts of the body, and between it and obstacles that state none.
 
     Raises:
         InputError: a distance or a friction that cannot be.

@@ -16,6 +16,7 @@ from hydrostat.mechanics import (
     ObstacleEnergy,
     PinEnergy,
     RoundOff,
+    RubbingEnergy,
     Warp,
     WeightEnergy,
 )
@@ -73,7 +74,9 @@ class BodyPhysics:
             energies.append(WeightEnergy(self.begin, self._heavy[:, None] * np.array(robot.gravity)))
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
-            energies.append(ContactEnergy.of(mesh, **_felt(robot), rest=self.begin))
+            own = ContactEnergy.of(mesh, **_felt(robot), rest=self.begin)
+            rubs = robot.contact.friction
+            energies.append(RubbingEnergy.of(mesh, own, rubs) if rubs else own)
         self.obstacles = []
         for index, obstacle in enumerate(robot.obstacles):
             self.obstacles.append(len(energies))

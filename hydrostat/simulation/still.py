@@ -1,4 +1,4 @@
-"""What does not know all that obstacles do: `smooth_robot` has no friction there, `check_still` asks that all stand."""
+"""What does not know all of contact: `smooth_robot` has no friction of it, `check_still` asks that obstacles stand."""
 
 from dataclasses import replace
 
@@ -7,8 +7,9 @@ from hydrostat.robot import Robot
 
 
 def smooth_robot(robot: Robot) -> Robot:
-    """The same robot without friction on obstacles; itself where there is none."""
-    if not any(map(robot.friction_of, robot.obstacles)):
+    """The same robot without friction of contact; itself where there is none."""
+    rubs = robot.contact is not None and robot.contact.friction > 0
+    if not rubs and not any(map(robot.friction_of, robot.obstacles)):
         return robot
     contact = None if robot.contact is None else replace(robot.contact, friction=0.0)
     obstacles = tuple(replace(obstacle, friction=None) for obstacle in robot.obstacles)
