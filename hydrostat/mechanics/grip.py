@@ -79,6 +79,8 @@ class Grip:
         secants = self._secants(lengths)
         across = np.eye(places.shape[1]) - self.normals[:, :, None] * self.normals[:, None, :]
         slips = self.springs * lengths > self.limits
+        if places.shape[1] == 2:
+            return np.where(slips, 0.0, secants)[:, None, None] * across
         units = spans / np.where(slips, lengths, 1.0)[:, None]
         along = np.where(slips, secants, 0.0)[:, None, None] * (units[:, :, None] * units[:, None, :])
         return secants[:, None, None] * across - along

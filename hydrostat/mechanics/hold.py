@@ -2,17 +2,19 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry.boundary_tree import Pairs
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.grip import Grip
 
 Whole = Int[np.ndarray, " some"]
+Ways = Float[np.ndarray, "some dim"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,54 +68,101 @@ class HoldingSkin:
         return who[apart], facets[apart]
 
 
+class FacetPoints(NamedTuple):
+    """FacetPoints of facets, one for each node of a boundary.
+
+    Attributes:
+        facets: number of the facet; -1 where there is no point.
+        weights: of the point at the corners of the facet; it may lie beyond its edges.
+    """
+
+    facets: Int[np.ndarray, " own"]
+    weights: Float[np.ndarray, "own dim"]
+
+    def changed(self, some: Bool[np.ndarray, " own"], others: "FacetPoints") -> "FacetPoints":
+        """The same, some replaced."""
+        return FacetPoints(
+            np.where(some, others.facets, self.facets), np.where(some[:, None], others.weights, self.weights)
+        )
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Hold:
-    """Each node of a boundary that another part pushes sticks to a point of the facet there, by a spring of a `Grip`.
+    """Each node of a boundary that another part pushes sticks to a point of a facet there, by a spring of a `Grip`.
 
-    The point is told by its weights at the corners of the facet, which may lie beyond its edges: so it goes along with
-    the body. What the `Grip` is told as the place of a node is the way from the point to the node.
+    The point goes along with the body. What the `Grip` is told as the place of a node is the way from the point to the
+    node. The spring pulls at the node and at what is beside it, which while energy is minimised is a certain point of
+    the part opposite; `seated` brings it where it belongs.
 
     Attributes:
         skin: what all states share.
-        facets: that each node of the boundary sticks to; -1 where none.
-        weights: of the point at the corners of the facet.
+        anchors: what each node of the boundary sticks to.
+        beside: what each that is pushed is beside.
+        offsets: from the anchor to what is beside [m].
         grip: springs of all nodes of the boundary.
         before: nodes where this increment of the loading path began [m].
     """
 
     skin: HoldingSkin
-    facets: Int[np.ndarray, " own"]
-    weights: Float[np.ndarray, "own dim"]
+    anchors: FacetPoints
+    beside: FacetPoints
+    offsets: Float[np.ndarray, "own dim"]
     grip: Grip
     before: Nodes
 
+    @classmethod
+    def at_rest(cls, skin: HoldingSkin, rest: Nodes, friction: float, springs: Vector) -> "Hold":
+        """Nothing pushes yet.
+
+        Args:
+            skin: of the body.
+            rest: nodes [m].
+            friction: mu of each side.
+            springs: stiffness of each node [N/m].
+        """
+        still = np.zeros((len(skin.own), skin.facets.shape[1]))
+        none = FacetPoints(np.full(len(skin.own), -1), still)
+        grip = Grip.at_rest(friction, springs, still)
+        return cls(skin=skin, anchors=none, beside=none, offsets=still, grip=grip, before=rest)
+
     @cached_property
     def held(self) -> Whole:
-        """Nodes that stick to something, by their numbers among those of the boundary."""
-        return np.flatnonzero(self.facets >= 0)
+        """Nodes that are beside something, by their numbers among those of the boundary."""
+        return np.flatnonzero(self.beside.facets >= 0)
 
     @cached_property
     def stencils(self) -> Stencils:
-        """A row for each: the node, then the corners of the facet."""
-        return np.concatenate([self.skin.own[self.held, None], self.skin.facets[self.facets[self.held]]], axis=1)
+        """A row for each: the node, then the corners of the facet that it is beside."""
+        facets = self.skin.facets[self.beside.facets[self.held]]
+        return np.concatenate([self.skin.own[self.held, None], facets], axis=1)
 
     @cached_property
     def shares(self) -> Float[np.ndarray, "held corners"]:
-        """Their shares in the way from the point to the node."""
-        return np.concatenate([np.ones((len(self.held), 1)), -self.weights[self.held]], axis=1)
+        """Their shares in the way from the anchor to the node."""
+        return np.concatenate([np.ones((len(self.held), 1)), -self.beside.weights[self.held]], axis=1)
 
-    def places(self, nodes: Nodes) -> Points:
-        """Way from the point that each node of the boundary sticks to [m]; 0 where there is none."""
-        places = np.zeros((len(self.facets), nodes.shape[1]))
-        places[self.held] = np.einsum("tc,tcd->td", self.shares, nodes[self.stencils])
+    def places(self, nodes: Nodes) -> Ways:
+        """Way from the anchor to each node of the boundary [m]; 0 where there is none."""
+        places = np.zeros_like(self.offsets)
+        places[self.held] = np.einsum("tc,tcd->td", self.shares, nodes[self.stencils]) + self.offsets[self.held]
         return places
+
+    def blocks(self, nodes: Nodes) -> Float[np.ndarray, "held corners dim"]:
+        """Slope of the energy by the nodes of each row of the stencils [N]."""
+        return self.shares[:, :, None] * self.grip.forces(self.places(nodes))[self.held, None, :]
+
+    def forces(self, nodes: Nodes) -> Nodes:
+        """Slope of the energy by all nodes [N]."""
+        total = np.zeros_like(nodes)
+        np.add.at(total, self.stencils, self.blocks(nodes))
+        return total
 
     def with_grip(self, grip: Grip) -> "Hold":
         """The same with other springs."""
         return replace(self, grip=grip)
 
-    def seated(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Points) -> "Hold":
-        """The same at a shape: with points for nodes that are pushed now, and near points for those that went far.
+    def seated(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> "Hold":
+        """The same at a shape, where springs pull at what the nodes are beside there.
 
         A node that was not pushed before sticks to the point that was beside it where the increment began, or now if
         that is far from the facet.
@@ -124,37 +173,40 @@ class Hold:
             pushes: normal force on each node of the boundary [N].
             normals: its direction.
         """
-        new = (pushes > 0) & (self.facets < 0)
-        spans, lengths = replace(self.grip, normals=normals).ways(self.places(nodes))
-        far = (self.facets >= 0) & (lengths > self.skin.distance)
-        if not (new | far).any():
-            return self
-        spans[far] *= (0.5 * self.skin.distance / lengths[far])[:, None]
-        other = self._reseated(nodes, pairs, new | far, spans, normals)
-        found = np.flatnonzero(new & (other.facets >= 0))
-        earlier = _beside(self.before[self.skin.facets[other.facets[found]]], self.before[self.skin.own[found]])
-        near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1)
-        other.weights[found[near]] = earlier[near]
-        return other
-
-    def went_far(self, nodes: Nodes) -> Vector:
-        """Limits of the nodes that are farther from their points than parts feel one another [N]."""
-        return self.grip.limits[self.grip.ways(self.places(nodes))[1] > self.skin.distance]
+        beside = self._nearest(nodes, pairs, pushes > 0, np.zeros_like(normals), normals)
+        new = np.flatnonzero((self.anchors.facets < 0) & (beside.facets >= 0))
+        facets = self.skin.facets[beside.facets[new]]
+        earlier = _beside(self.before[facets], self.before[self.skin.own[new]])
+        near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1)[:, None]
+        anchors = FacetPoints(self.anchors.facets.copy(), self.anchors.weights.copy())
+        anchors.facets[new], anchors.weights[new] = beside.facets[new], np.where(near, earlier, beside.weights[new])
+        return self._at(nodes, anchors, beside)
 
     def slipped(self, nodes: Nodes, pairs: Pairs) -> "Hold":
-        """What follows a shape: points were dragged along; nodes that nothing pushes stick to nothing."""
-        places = self.places(nodes)
-        ways, lengths = self.grip.ways(places)
+        """What follows a shape: anchors were dragged along; nodes that nothing pushes stick to nothing."""
+        places, held = self.places(nodes), self.grip.limits > 0
+        lengths = self.grip.ways(places)[1]
         left = places - self.grip.slipped(places).anchors
-        held = self.grip.limits > 0
         drags = held & (np.linalg.norm(left, axis=1) < (1.0 - _ROUNDING) * lengths)
-        free = replace(self, facets=np.where(held, self.facets, -1), before=nodes)
-        return free._reseated(nodes, pairs, drags, np.where(drags[:, None], left, ways), self.grip.normals)
+        dragged = self._nearest(nodes, pairs, drags, left, self.grip.normals)
+        anchors = self.anchors.changed(drags & (dragged.facets >= 0), dragged)
+        anchors = anchors.changed(~held, FacetPoints(np.full(len(held), -1), np.zeros_like(anchors.weights)))
+        return replace(self._at(nodes, anchors, self.beside), before=nodes)
 
-    def _reseated(
-        self, nodes: Nodes, pairs: Pairs, some: Bool[np.ndarray, " own"], spans: Points, normals: Points
-    ) -> "Hold":
-        """The same where some nodes stick to points that they are so far from along the surface [m]."""
+    def _at(self, nodes: Nodes, anchors: FacetPoints, beside: FacetPoints) -> "Hold":
+        """The same with other points."""
+        both = ((anchors.facets >= 0) & (beside.facets >= 0))[:, None]
+        ends = [
+            np.einsum("tc,tcd->td", points.weights, nodes[self.skin.facets[points.facets]])
+            for points in (anchors, beside)
+        ]
+        offsets = np.where(both, ends[1] - ends[0], 0.0)
+        return replace(self, anchors=anchors, beside=beside, offsets=offsets)
+
+    def _nearest(
+        self, nodes: Nodes, pairs: Pairs, some: Bool[np.ndarray, " own"], spans: Ways, normals: Ways
+    ) -> FacetPoints:
+        """FacetPoints that some nodes are so far from along the surface [m]; of the facet of the anchor if it is as near."""
         who, facets = self.skin.choices(pairs, some)
         corners, dim = nodes[self.skin.facets[facets]], nodes.shape[1]
         frames = np.concatenate([corners[:, 1:] - corners[:, :1], normals[who][:, None]], axis=1).swapaxes(1, 2)
@@ -165,15 +217,15 @@ class Hold:
         found = np.linalg.solve(frames[sound], goals)[:, :, 0]
         weights = np.concatenate([1.0 - found[:, :-1].sum(axis=1, keepdims=True), found[:, :-1]], axis=1)
         beyond = np.maximum(-weights.min(axis=1, initial=0.0), 0.0) * sizes + np.abs(found[:, -1])
+        beyond -= _STAYS * sizes * (facets == self.anchors.facets[who])
         order = np.lexsort((facets, beyond, who))
-        _, firsts = np.unique(who[order], return_index=True)
-        best = order[firsts]
-        other = replace(self, facets=self.facets.copy(), weights=self.weights.copy())
-        other.facets[who[best]], other.weights[who[best]] = facets[best], weights[best]
-        return other
+        best = order[np.unique(who[order], return_index=True)[1]]
+        points = FacetPoints(np.full(len(self.offsets), -1), np.zeros_like(self.offsets))
+        points.facets[who[best]], points.weights[who[best]] = facets[best], weights[best]
+        return points
 
 
-def _beside(corners: Float[np.ndarray, "some dim dim"], points: Points) -> Float[np.ndarray, "some dim"]:
+def _beside(corners: Float[np.ndarray, "some dim dim"], points: Ways) -> Float[np.ndarray, "some dim"]:
     """Weights at the corners of facets of what is nearest a point each in their planes."""
     spans = corners[:, 1:] - corners[:, :1]
     squares = np.einsum("tak,tbk->tab", spans, spans)
@@ -187,6 +239,9 @@ _BEYOND = 1.5
 
 _STEEP = 0.1
 """A facet more nearly along the normal than this sine is none to stick to."""
+
+_STAYS = 0.1
+"""The facet of the anchor serves a node that is beyond it by this share of its size."""
 
 _ROUNDING = 1e-9
 """A spring that loses less than this share of its length does not slip."""

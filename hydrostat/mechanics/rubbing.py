@@ -11,8 +11,7 @@ from hydrostat.geometry.boundary_tree import Pairs
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics.contact import ContactEnergy
 from hydrostat.mechanics.energy import Blocks, Compliance, Energy, HessianBlocks, Response
-from hydrostat.mechanics.grip import Grip
-from hydrostat.mechanics.hold import Hold, HoldingSkin
+from hydrostat.mechanics.hold import FacetPoints, Hold, HoldingSkin
 
 
 class RubbingEnergy(Energy):
@@ -43,25 +42,13 @@ class RubbingEnergy(Energy):
         """
         skin = HoldingSkin.of(mesh, contact.skin.distance)
         springs = _STICKS * contact.skin.stiffness / contact.skin.distance * contact.skin.areas[skin.own]
-        none = np.zeros((len(skin.own), mesh.dim))
-        hold = Hold(
-            skin=skin,
-            facets=np.full(len(skin.own), -1),
-            weights=none,
-            grip=Grip.at_rest(0.5 * friction, springs, none),
-            before=contact.skin.rest,
-        )
-        return cls(contact, hold)
+        return cls(contact, Hold.at_rest(skin, contact.skin.rest, 0.5 * friction, springs))
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         return self.contact.value(nodes, controls) + self.hold.grip.energy(self.hold.places(nodes))
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        hold = self.hold
-        forces = hold.grip.forces(hold.places(nodes))[hold.held]
-        return np.concatenate(
-            [self.contact.gradient(nodes, controls), hold.shares[:, :, None] * forces[:, None, :]]
-        )
+        return np.concatenate([self.contact.gradient(nodes, controls), self.hold.blocks(nodes)])
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.projected_hessian(nodes, controls, 0.0)
@@ -82,19 +69,17 @@ class RubbingEnergy(Energy):
     @property
     def history(self) -> Vector:
         """Number of the facet that each node of the boundary sticks to, -1 for none, and weights at its corners."""
-        return np.concatenate([self.hold.facets[:, None], self.hold.weights], axis=1).ravel()
+        anchors = self.hold.anchors
+        return np.concatenate([anchors.facets[:, None], anchors.weights], axis=1).ravel()
 
     def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
-        rows = history.reshape(len(self.hold.facets), -1)
-        hold = replace(self.hold, facets=np.rint(rows[:, 0]).astype(int), weights=rows[:, 1:], before=nodes)
+        rows = history.reshape(len(self.hold.offsets), -1)
+        anchors = FacetPoints(np.rint(rows[:, 0]).astype(int), rows[:, 1:])
+        hold = replace(self.hold, anchors=anchors, before=nodes)
         return self._with(self.contact.near(nodes), hold)._asked(nodes)
 
     def imbalance(self, nodes: Nodes, controls: Vector) -> float:
-        pushes, normals = self._pushes(nodes)
-        hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
-        places = hold.places(nodes)
-        missed = np.abs(hold.grip.asked(pushes, normals).forces(places) - hold.grip.forces(places))
-        return max(float(missed.max(initial=0.0)), float(self.hold.went_far(nodes).max(initial=0.0)))
+        return float(np.abs(self._asked(nodes).hold.forces(nodes) - self.hold.forces(nodes)).max(initial=0.0))
 
     def corrected(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
