@@ -97,7 +97,7 @@ class Hold:
     Attributes:
         skin: what all states share.
         anchors: what each node of the boundary sticks to.
-        beside: what each that is pushed is beside.
+        beside: what each that is pushed is beside: the anchor, or where that will be dragged to.
         offsets: from the anchor to what is beside [m].
         grip: springs of all nodes of the boundary.
         before: nodes where this increment of the loading path began [m].
@@ -173,35 +173,45 @@ class Hold:
             pushes: normal force on each node of the boundary [N].
             normals: its direction.
         """
-        beside = self._nearest(nodes, pairs, pushes > 0, np.zeros_like(normals), normals)
-        new = np.flatnonzero((self.anchors.facets < 0) & (beside.facets >= 0))
-        facets = self.skin.facets[beside.facets[new]]
-        earlier = _beside(self.before[facets], self.before[self.skin.own[new]])
-        near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1)[:, None]
-        anchors = FacetPoints(self.anchors.facets.copy(), self.anchors.weights.copy())
-        anchors.facets[new], anchors.weights[new] = beside.facets[new], np.where(near, earlier, beside.weights[new])
-        return self._at(nodes, anchors, beside)
-
-    def slipped(self, nodes: Nodes, pairs: Pairs) -> "Hold":
-        """What follows a shape: anchors were dragged along; nodes that nothing pushes stick to nothing."""
-        places, held = self.places(nodes), self.grip.limits > 0
-        lengths = self.grip.ways(places)[1]
-        left = places - self.grip.slipped(places).anchors
-        drags = held & (np.linalg.norm(left, axis=1) < (1.0 - _ROUNDING) * lengths)
-        dragged = self._nearest(nodes, pairs, drags, left, self.grip.normals)
-        anchors = self.anchors.changed(drags & (dragged.facets >= 0), dragged)
-        anchors = anchors.changed(~held, FacetPoints(np.full(len(held), -1), np.zeros_like(anchors.weights)))
-        return replace(self._at(nodes, anchors, self.beside), before=nodes)
-
-    def _at(self, nodes: Nodes, anchors: FacetPoints, beside: FacetPoints) -> "Hold":
-        """The same with other points."""
-        both = ((anchors.facets >= 0) & (beside.facets >= 0))[:, None]
-        ends = [
-            np.einsum("tc,tcd->td", points.weights, nodes[self.skin.facets[points.facets]])
-            for points in (anchors, beside)
-        ]
-        offsets = np.where(both, ends[1] - ends[0], 0.0)
+        anchors, grip = self._anchored(nodes, pairs, pushes, normals), self.grip.asked(pushes, normals)
+        held = (pushes > 0) & (anchors.facets >= 0)
+        points = self._positions(nodes, anchors)
+        places = np.where(held[:, None], nodes[self.skin.own] - points, 0.0)
+        left = places - grip.slipped(places).anchors
+        drags = held & (np.linalg.norm(left, axis=1) < (1.0 - _ROUNDING) * grip.ways(places)[1])
+        dragged = self._nearest(nodes, pairs, drags, left, normals)
+        beside = anchors.changed(drags & (dragged.facets >= 0), dragged).changed(~held, self._none)
+        offsets = np.where(held[:, None], self._positions(nodes, beside) - points, 0.0)
         return replace(self, anchors=anchors, beside=beside, offsets=offsets)
+
+    def slipped(self, nodes: Nodes) -> "Hold":
+        """What follows a shape: anchors were dragged along; nodes that nothing pushes stick to nothing.
+
+        Args:
+            nodes: the shape [m], at which this is seated.
+        """
+        return replace(self, anchors=self.beside, offsets=np.zeros_like(self.offsets), before=nodes)
+
+    @property
+    def _none(self) -> FacetPoints:
+        """No points."""
+        return FacetPoints(np.full(len(self.offsets), -1), np.zeros_like(self.offsets))
+
+    def _positions(self, nodes: Nodes, points: FacetPoints) -> Ways:
+        """Where points are [m]; anywhere where there is none."""
+        return np.einsum("tc,tcd->td", points.weights, nodes[self.skin.facets[points.facets]])
+
+    def _anchored(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> FacetPoints:
+        """Anchors, also of nodes that were not pushed before."""
+        fresh = (self.anchors.facets < 0) & (pushes > 0)
+        if not fresh.any():
+            return self.anchors
+        beside = self._nearest(nodes, pairs, fresh, np.zeros_like(normals), normals)
+        new = np.flatnonzero(beside.facets >= 0)
+        earlier = _beside(self.before[self.skin.facets[beside.facets[new]]], self.before[self.skin.own[new]])
+        near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1)[:, None]
+        beside.weights[new] = np.where(near, earlier, beside.weights[new])
+        return self.anchors.changed(beside.facets >= 0, beside)
 
     def _nearest(
         self, nodes: Nodes, pairs: Pairs, some: Bool[np.ndarray, " own"], spans: Ways, normals: Ways
@@ -220,7 +230,7 @@ class Hold:
         beyond -= _STAYS * sizes * (facets == self.anchors.facets[who])
         order = np.lexsort((facets, beyond, who))
         best = order[np.unique(who[order], return_index=True)[1]]
-        points = FacetPoints(np.full(len(self.offsets), -1), np.zeros_like(self.offsets))
+        points = self._none
         points.facets[who[best]], points.weights[who[best]] = facets[best], weights[best]
         return points
 

@@ -87,7 +87,7 @@ class RubbingEnergy(Energy):
         pushes, normals = self._pushes(nodes)
         hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
         places, grip = hold.places(nodes), hold.grip.judged(self.imbalance(nodes, controls))
-        slips = np.flatnonzero(grip.slipping(places))
+        slips = np.flatnonzero(grip.slipping(places) | grip.asked(pushes, normals).slipping(places))
         if response is None or not len(slips):
             return self._with(self.contact, hold.with_grip(grip.corrected(pushes, normals)))
         rises = self._rises(nodes, slips, normals[slips])
@@ -96,8 +96,7 @@ class RubbingEnergy(Energy):
         return self._with(self.contact, hold.with_grip(grip.stepped(pushes, normals, slips, moves)))
 
     def after(self, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
-        asked = self._asked(nodes)
-        return self._with(self.contact, asked.hold.slipped(nodes, self._felt(nodes)))
+        return self._with(self.contact, self._asked(nodes).hold.slipped(nodes))
 
     def _with(self, contact: ContactEnergy, hold: Hold) -> "RubbingEnergy":
         """Another state; the pattern of its Hessian is known where its stencils are the same."""
