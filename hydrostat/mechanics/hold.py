@@ -218,6 +218,8 @@ class Hold:
     ) -> FacetPoints:
         """FacetPoints that some nodes are so far from along the surface [m]; of the facet of the anchor if it is as near."""
         who, facets = self.skin.choices(pairs, some)
+        known = np.flatnonzero(some & (self.anchors.facets >= 0))
+        who, facets = np.append(who, known), np.append(facets, self.anchors.facets[known])
         corners, dim = nodes[self.skin.facets[facets]], nodes.shape[1]
         frames = np.concatenate([corners[:, 1:] - corners[:, :1], normals[who][:, None]], axis=1).swapaxes(1, 2)
         sizes = np.linalg.norm(frames, axis=1)[:, : dim - 1].max(axis=1, initial=0.0)
