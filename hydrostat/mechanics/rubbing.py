@@ -9,15 +9,15 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry.boundary_tree import Pairs
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.mechanics.clasp import Clasp, ClaspingSkin, FacetPoints
 from hydrostat.mechanics.contact import ContactEnergy
 from hydrostat.mechanics.energy import Blocks, Compliance, Energy, HessianBlocks, Response
-from hydrostat.mechanics.hold import FacetPoints, Hold, HoldingSkin
 
 
 class RubbingEnergy(Energy):
     """Contact of a body with itself with Coulomb friction.
 
-    Each node that other parts push has a spring to a point of the part opposite (`Hold`), against half of the friction
+    Each node that other parts push has a spring to a point of the part opposite (`Clasp`), against half of the friction
     that belongs to its force: the nodes on the other side bear the other half. Forces along the surface pull at both
     sides alike. Its history is what each node of the boundary sticks to.
     """
@@ -26,10 +26,10 @@ class RubbingEnergy(Energy):
     lifts_early: ClassVar[bool] = True
     has_history = True
 
-    def __init__(self, contact: ContactEnergy, hold: Hold) -> None:
+    def __init__(self, contact: ContactEnergy, clasp: Clasp) -> None:
         """Barriers, and what sticks to what."""
-        self.contact, self.hold = contact, hold
-        self.stencils = np.concatenate([contact.stencils, hold.stencils])
+        self.contact, self.clasp = contact, clasp
+        self.stencils = np.concatenate([contact.stencils, clasp.stencils])
 
     @classmethod
     def of(cls, mesh: Mesh, contact: ContactEnergy, friction: float) -> "RubbingEnergy":
@@ -40,23 +40,23 @@ class RubbingEnergy(Energy):
             contact: of the body with itself.
             friction: Coulomb's coefficient mu.
         """
-        skin = HoldingSkin.of(mesh, contact.skin.distance)
+        skin = ClaspingSkin.of(mesh, contact.skin.distance)
         springs = _STICKS * contact.skin.stiffness / contact.skin.distance * contact.skin.areas[skin.own]
-        return cls(contact, Hold.at_rest(skin, contact.skin.rest, 0.5 * friction, springs))
+        return cls(contact, Clasp.at_rest(skin, contact.skin.rest, 0.5 * friction, springs))
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        return self.contact.value(nodes, controls) + self.hold.grip.energy(self.hold.places(nodes))
+        return self.contact.value(nodes, controls) + self.clasp.grip.energy(self.clasp.places(nodes))
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        return np.concatenate([self.contact.gradient(nodes, controls), self.hold.blocks(nodes)])
+        return np.concatenate([self.contact.gradient(nodes, controls), self.clasp.blocks(nodes)])
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.projected_hessian(nodes, controls, 0.0)
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        hold, size = self.hold, self.stencils.shape[1] * nodes.shape[1]
-        inner = hold.grip.only(hold.held).stiffness(hold.places(nodes)[hold.held])
-        blocks = np.einsum("ta,tb,tij->taibj", hold.shares, hold.shares, inner).reshape(-1, size, size)
+        clasp, size = self.clasp, self.stencils.shape[1] * nodes.shape[1]
+        inner = clasp.grip.only(clasp.held).stiffness(clasp.places(nodes)[clasp.held])
+        blocks = np.einsum("ta,tb,tij->taibj", clasp.shares, clasp.shares, inner).reshape(-1, size, size)
         return np.concatenate([self.contact.projected_hessian(nodes, controls, share), blocks])
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
@@ -64,43 +64,43 @@ class RubbingEnergy(Energy):
 
     def near(self, nodes: Nodes) -> "RubbingEnergy":
         contact = self.contact.near(nodes)
-        return self if contact is self.contact else self._with(contact, self.hold)
+        return self if contact is self.contact else self._with(contact, self.clasp)
 
     @property
     def history(self) -> Vector:
         """Number of the facet that each node of the boundary sticks to, -1 for none, and weights at its corners."""
-        anchors = self.hold.anchors
+        anchors = self.clasp.anchors
         return np.concatenate([anchors.facets[:, None], anchors.weights], axis=1).ravel()
 
     def resumed(self, history: Vector, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
-        rows = history.reshape(len(self.hold.offsets), -1)
+        rows = history.reshape(len(self.clasp.offsets), -1)
         anchors = FacetPoints(np.rint(rows[:, 0]).astype(int), rows[:, 1:])
-        hold = replace(self.hold, anchors=anchors, before=nodes)
-        return self._with(self.contact.near(nodes), hold)._asked(nodes)
+        clasp = replace(self.clasp, anchors=anchors, before=nodes)
+        return self._with(self.contact.near(nodes), clasp)._asked(nodes)
 
     def imbalance(self, nodes: Nodes, controls: Vector) -> float:
-        return float(np.abs(self._asked(nodes).hold.forces(nodes) - self.hold.forces(nodes)).max(initial=0.0))
+        return float(np.abs(self._asked(nodes).clasp.forces(nodes) - self.clasp.forces(nodes)).max(initial=0.0))
 
     def corrected(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
     ) -> "RubbingEnergy":
         pushes, normals = self._pushes(nodes)
-        hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
-        places, grip = hold.places(nodes), hold.grip.judged(self.imbalance(nodes, controls))
+        clasp = self.clasp.seated(nodes, self._felt(nodes), pushes, normals)
+        places, grip = clasp.places(nodes), clasp.grip.judged(self.imbalance(nodes, controls))
         slips = np.flatnonzero(grip.slipping(places) | grip.asked(pushes, normals).slipping(places))
         if response is None or not len(slips):
-            return self._with(self.contact, hold.with_grip(grip.corrected(pushes, normals)))
+            return self._with(self.contact, clasp.with_grip(grip.corrected(pushes, normals)))
         rises = self._rises(nodes, slips, normals[slips])
-        drags = _drags(hold, nodes, slips, grip.only(slips).directions(places[slips]))
+        drags = _drags(clasp, nodes, slips, grip.only(slips).directions(places[slips]))
         moves = -grip.friction * (rises.T @ response(drags))
-        return self._with(self.contact, hold.with_grip(grip.stepped(pushes, normals, slips, moves)))
+        return self._with(self.contact, clasp.with_grip(grip.stepped(pushes, normals, slips, moves)))
 
     def after(self, nodes: Nodes, controls: Vector) -> "RubbingEnergy":
-        return self._with(self.contact, self._asked(nodes).hold.slipped(nodes))
+        return self._with(self.contact, self._asked(nodes).clasp.slipped(nodes))
 
-    def _with(self, contact: ContactEnergy, hold: Hold) -> "RubbingEnergy":
+    def _with(self, contact: ContactEnergy, clasp: Clasp) -> "RubbingEnergy":
         """Another state; the pattern of its Hessian is known where its stencils are the same."""
-        other = RubbingEnergy(contact, hold)
+        other = RubbingEnergy(contact, clasp)
         if np.array_equal(other.stencils, self.stencils):
             other.stencils = self.stencils
         return other
@@ -108,16 +108,16 @@ class RubbingEnergy(Energy):
     def _asked(self, nodes: Nodes) -> "RubbingEnergy":
         """The same with the limits that a shape asks for."""
         pushes, normals = self._pushes(nodes)
-        hold = self.hold.seated(nodes, self._felt(nodes), pushes, normals)
-        return self._with(self.contact, hold.with_grip(hold.grip.asked(pushes, normals)))
+        clasp = self.clasp.seated(nodes, self._felt(nodes), pushes, normals)
+        return self._with(self.contact, clasp.with_grip(clasp.grip.asked(pushes, normals)))
 
     def _pushes(self, nodes: Nodes) -> tuple[Vector, Points]:
         """Force of other parts on each node of the boundary [N], and its direction."""
         forces = np.zeros_like(nodes)
         self.contact.add_gradient(nodes, np.zeros(0), forces)
-        forces = -forces[self.hold.skin.own]
+        forces = -forces[self.clasp.skin.own]
         pushes = np.linalg.norm(forces, axis=1)
-        pushes[pushes < _FAINT * self.hold.grip.springs * self.contact.skin.distance] = 0.0
+        pushes[pushes < _FAINT * self.clasp.grip.springs * self.contact.skin.distance] = 0.0
         return pushes, np.where(pushes > 0, 1.0 / np.where(pushes > 0, pushes, 1.0), 0.0)[:, None] * forces
 
     def _felt(self, nodes: Nodes) -> Pairs:
@@ -129,27 +129,25 @@ class RubbingEnergy(Energy):
         """Slopes of the forces on some nodes of the boundary along their normals by all degrees of freedom [N/m]."""
         contact, dim = ContactEnergy(self.contact.skin, self._felt(nodes)), nodes.shape[1]
         numbers = np.full(len(nodes), -1)
-        numbers[self.hold.skin.own[some]] = np.arange(len(some))
-        blocks, columns = contact.hessian(nodes, np.zeros(0)), np.zeros((*nodes.shape, len(some)))
+        numbers[self.clasp.skin.own[some]] = np.arange(len(some))
+        blocks, columns = contact.hessian(nodes, np.zeros(0)), np.zeros((len(nodes) * len(some), dim))
         for corner in range(contact.stencils.shape[1]):
             whose = numbers[contact.stencils[:, corner]]
             own = np.flatnonzero(whose >= 0)
             rows = blocks[own][:, :, corner * dim : (corner + 1) * dim] @ normals[whose[own]][:, :, None]
             for other in range(contact.stencils.shape[1]):
                 part = rows[:, other * dim : (other + 1) * dim, 0]
-                np.subtract.at(columns, (contact.stencils[own, other], slice(None), whose[own]), part)
-        return columns.reshape(nodes.size, len(some))
+                np.subtract.at(columns, contact.stencils[own, other] * len(some) + whose[own], part)
+        return columns.reshape(len(nodes), len(some), dim).swapaxes(1, 2).reshape(nodes.size, len(some))
 
 
-def _drags(
-    hold: Hold, nodes: Nodes, some: Int[np.ndarray, " some"], ways: Points
-) -> Float[np.ndarray, "dofs some"]:
+def _drags(clasp: Clasp, nodes: Nodes, some: Int[np.ndarray, " some"], ways: Points) -> Float[np.ndarray, "dofs some"]:
     """Slopes of the way of some nodes from their points, along directions, by all degrees of freedom."""
     columns = np.zeros((*nodes.shape, len(some)))
-    rows = np.searchsorted(hold.held, some)
-    blocks = hold.shares[rows][:, :, None] * ways[:, None, :]
-    for corner in range(hold.stencils.shape[1]):
-        np.add.at(columns, (hold.stencils[rows, corner], slice(None), np.arange(len(some))), blocks[:, corner])
+    rows = np.searchsorted(clasp.held, some)
+    blocks = clasp.shares[rows][:, :, None] * ways[:, None, :]
+    for corner in range(clasp.stencils.shape[1]):
+        columns[clasp.stencils[rows, corner], :, np.arange(len(some))] += blocks[:, corner]
     return columns.reshape(nodes.size, len(some))
 
 

@@ -1,4 +1,4 @@
-"""`Hold`: where the nodes of a boundary stick to parts of the same boundary that they touch."""
+"""`Clasp`: where the nodes of a boundary stick to parts of the same boundary that they touch."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,8 +18,8 @@ Ways = Float[np.ndarray, "some dim"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class HoldingSkin:
-    """What all states of a hold share.
+class ClaspingSkin:
+    """What all states of a clasp share.
 
     Attributes:
         own: nodes of the boundary.
@@ -34,7 +34,7 @@ class HoldingSkin:
     distance: float
 
     @classmethod
-    def of(cls, mesh: Mesh, distance: float) -> "HoldingSkin":
+    def of(cls, mesh: Mesh, distance: float) -> "ClaspingSkin":
         """The skin of a body whose parts feel one another at a distance [m]."""
         facets = np.asarray(mesh.boundary, dtype=np.int64)
         owners, numbers = facets.ravel(), np.repeat(np.arange(len(facets)), facets.shape[1])
@@ -87,7 +87,7 @@ class FacetPoints(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Hold:
+class Clasp:
     """Each node of a boundary that another part pushes sticks to a point of a facet there, by a spring of a `Grip`.
 
     The point goes along with the body. What the `Grip` is told as the place of a node is the way from the point to the
@@ -103,7 +103,7 @@ class Hold:
         before: nodes where this increment of the loading path began [m].
     """
 
-    skin: HoldingSkin
+    skin: ClaspingSkin
     anchors: FacetPoints
     beside: FacetPoints
     offsets: Float[np.ndarray, "own dim"]
@@ -111,7 +111,7 @@ class Hold:
     before: Nodes
 
     @classmethod
-    def at_rest(cls, skin: HoldingSkin, rest: Nodes, friction: float, springs: Vector) -> "Hold":
+    def at_rest(cls, skin: ClaspingSkin, rest: Nodes, friction: float, springs: Vector) -> "Clasp":
         """Nothing pushes yet.
 
         Args:
@@ -157,11 +157,11 @@ class Hold:
         np.add.at(total, self.stencils, self.blocks(nodes))
         return total
 
-    def with_grip(self, grip: Grip) -> "Hold":
+    def with_grip(self, grip: Grip) -> "Clasp":
         """The same with other springs."""
         return replace(self, grip=grip)
 
-    def seated(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> "Hold":
+    def seated(self, nodes: Nodes, pairs: Pairs, pushes: Vector, normals: Ways) -> "Clasp":
         """The same at a shape, where springs pull at what the nodes are beside there.
 
         A node that was not pushed before sticks to the point that was beside it where the increment began, or now if
@@ -184,7 +184,7 @@ class Hold:
         offsets = np.where(held[:, None], self._positions(nodes, beside) - points, 0.0)
         return replace(self, anchors=anchors, beside=beside, offsets=offsets)
 
-    def slipped(self, nodes: Nodes) -> "Hold":
+    def slipped(self, nodes: Nodes) -> "Clasp":
         """What follows a shape: anchors were dragged along; nodes that nothing pushes stick to nothing.
 
         Args:
@@ -209,14 +209,14 @@ class Hold:
         beside = self._nearest(nodes, pairs, fresh, np.zeros_like(normals), normals)
         new = np.flatnonzero(beside.facets >= 0)
         earlier = _beside(self.before[self.skin.facets[beside.facets[new]]], self.before[self.skin.own[new]])
-        near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1)[:, None]
+        near = (np.abs(earlier - 0.5) < _BEYOND).all(axis=1, keepdims=True)
         beside.weights[new] = np.where(near, earlier, beside.weights[new])
         return self.anchors.changed(beside.facets >= 0, beside)
 
     def _nearest(
         self, nodes: Nodes, pairs: Pairs, some: Bool[np.ndarray, " own"], spans: Ways, normals: Ways
     ) -> FacetPoints:
-        """FacetPoints that some nodes are so far from along the surface [m]; of the facet of the anchor if it is as near."""
+        """Points that some nodes are so far from along the surface [m]; on the facet of the anchor if it is as near."""
         who, facets = self.skin.choices(pairs, some)
         known = np.flatnonzero(some & (self.anchors.facets >= 0))
         who, facets = np.append(who, known), np.append(facets, self.anchors.facets[known])
