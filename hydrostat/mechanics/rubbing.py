@@ -11,7 +11,7 @@ from hydrostat.geometry.boundary_tree import Pairs
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.mechanics.clasp import Clasp, ClaspingSkin, FacetPoints
 from hydrostat.mechanics.contact import ContactEnergy
-from hydrostat.mechanics.energy import Blocks, Compliance, Energy, HessianBlocks, Response
+from hydrostat.mechanics.energy import Blocks, Compliance, Energy, HessianBlocks, Pressed, Response
 
 
 class RubbingEnergy(Energy):
@@ -61,6 +61,9 @@ class RubbingEnergy(Energy):
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
         return self.contact.largest_step(nodes, move)
+
+    def pressed(self, nodes: Nodes) -> Pressed:
+        return self.contact.pressed(nodes)
 
     def near(self, nodes: Nodes) -> "RubbingEnergy":
         contact = self.contact.near(nodes)

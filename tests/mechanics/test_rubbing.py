@@ -24,7 +24,7 @@ from hydrostat.mechanics import (
     minimise,
 )
 from hydrostat.robot import Contact
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, touches
 from hydrostat.simulation.balanced import balanced
 from hydrostat.testing import check_energy
 
@@ -193,6 +193,7 @@ def test_robots(dim: int) -> None:
     pulled = {"up": 0.012, "down": 0.01}
     ends = [simulation.solve(pulled) for simulation in (smooth, rough)]
     assert np.linalg.norm(ends[0].markers["tip"] - ends[1].markers["tip"]) > 1e-3
+    assert touches(rough, ends[1])
     motion = rough.still(ends[1])
     for _ in range(3):
         motion = rough.step(motion, pulled, 0.01)
