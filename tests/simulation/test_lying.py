@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import FOAM, mesh_body, strip_mesh
+from builders import FOAM, box_mesh, mesh_body, strip_mesh
 
 import hydrostat as hs
 from hydrostat.errors import InputError
@@ -17,12 +17,13 @@ FRICTION, G = 0.4, 9.81
 pytestmark = pytest.mark.usefixtures("unchecked")
 
 
-def slab(*, lean: float = 0.0) -> Robot:
+def slab(*, lean: float = 0.0, dim: int = 2) -> Robot:
     """A slab of foam just above the ground; gravity leans by an angle [rad]."""
-    mesh = strip_mesh(8, 2, size=(0.16, 0.04))
-    ground = Obstacle(
-        name="ground", shape="plane", at=(0.0, mesh.nodes[:, 1].min() - 0.5e-3), normal=(0.0, 1.0), friction=FRICTION
-    )
+    flat = dim == 2
+    mesh = strip_mesh(8, 2, size=(0.16, 0.04)) if flat else box_mesh((4, 3, 2), size=(0.08, 0.06, 0.04))
+    up = np.eye(dim)[-1]
+    at = (mesh.nodes[:, -1].min() - 0.5e-3) * up
+    ground = Obstacle(name="ground", shape="plane", at=tuple(at), normal=tuple(up), friction=FRICTION)
     return Robot(
         name="slab",
         body=mesh_body(mesh, material=replace(FOAM, viscosity=400.0)),
@@ -30,7 +31,7 @@ def slab(*, lean: float = 0.0) -> Robot:
         poses={},
         contact=Contact(distance=1e-3),
         obstacles=(ground,),
-        gravity=(G * float(np.sin(lean)), -G * float(np.cos(lean))),
+        gravity=tuple(G * (np.sin(lean) * np.eye(dim)[0] - np.cos(lean) * up)),
     )
 
 
@@ -42,14 +43,15 @@ def moved(simulation: hs.Simulation, seconds: float, dt: float = 5e-3) -> Motion
     return motion
 
 
-def test_the_ground_carries_its_weight_and_friction_holds_it_on_a_slope() -> None:
-    simulation = hs.Simulation(slab(lean=0.3))  # tan(0.3) = 0.31 < 0.4
+@pytest.mark.parametrize("dim", [2, 3])
+def test_the_ground_carries_its_weight_and_friction_holds_it_on_a_slope(dim: int) -> None:
+    simulation = hs.Simulation(slab(lean=0.3, dim=dim))  # tan(0.3) = 0.31 < 0.4
     motion = moved(simulation, 0.5)
     ground = simulation.path.resumed(motion.pose).energies[simulation.body.obstacles[0]]
     assert isinstance(ground, ObstacleEnergy)
     push = ground.push(motion.nodes)
     weight = simulation.body.masses.sum() * np.array(simulation.robot.gravity)
-    assert push == pytest.approx(weight, rel=1e-3)
+    assert push == pytest.approx(weight, rel=1e-3, abs=1e-6)
     later = simulation.step(motion, {}, 5e-3, options=StepOptions(scheme="euler"))
     assert np.abs(later.nodes - motion.nodes).max() < 1e-7
 
