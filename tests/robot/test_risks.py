@@ -11,6 +11,7 @@ from builders import gallery_robot, strip_robot
 from robot_files import GOOD, SVG, edit, load
 from shapely import LineString, Point
 from test_risks_in_space import solid_robot
+from touching import fork_mesh, fork_robot
 
 from hydrostat.geometry import Mesh
 from hydrostat.robot import (
@@ -321,3 +322,18 @@ def shortest_cut(robot: Robot, place: tuple[float, float]) -> float:
         line = LineString([place - along, place + along]).intersection(robot.body.outline.polygon)
         cuts.append(min(shapely.get_parts(line), key=Point(place).distance).length)
     return min(cuts)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_body_that_touches_itself_at_rest_is_told_with_a_place(dim: int) -> None:
+    """The two prongs of a fork, one of them bent until a corner lies on the other. Oracle: where it was put."""
+    mesh = fork_mesh(dim)
+    nodes = mesh.nodes.copy()
+    tip = np.isclose(nodes[:, 0], 0.12) & np.isclose(nodes[:, 1], 0.04 / 6)
+    robot = fork_robot(dim)
+    assert not [risk for risk in find_risks(robot) if "touches itself" in risk]
+    nodes[np.flatnonzero(tip)[0], 1] = -0.04 / 6
+    nodes[np.flatnonzero(tip)[0], 0] = 0.113
+    bent = replace(robot, body=replace(robot.body, mesh=Mesh(nodes, mesh.elements)))
+    (told,) = [risk for risk in find_risks(bent) if "touches itself" in risk]
+    assert re.search(r"at \[?\(?113, -6\.?6?7?", told), told

@@ -4,8 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hydrostat.arrays import Points
+from hydrostat.geometry.boundary_tree import BoundaryTree
 from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh, dihedral_angles, smallest_angle
+from hydrostat.geometry.pair_distances import squared_distances
 from hydrostat.geometry.surface import Solid
 from hydrostat.geometry.tetrahedra.manifold import euler
 from hydrostat.geometry.tetrahedra.tetrahedralise import CLOSE, fit
@@ -28,6 +31,9 @@ LOCKING = {
 
 LEAST_ACROSS = {2: 2.0, 3: 3.0}
 """A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
+
+_TOUCHES = 1e-6
+"""Parts that are nearer than this share of the size of the body touch."""
 
 GOOD_ACROSS = 4
 """Elements across a limb that are enough: 14 % too stiff in the plane, 5 to 27 % in space, by the mesh's pattern."""
@@ -57,6 +63,22 @@ def _crossing(mesh: Mesh) -> Iterator[str]:
     if len(found):
         where = place(found.places[0])
         yield f"body: at rest it passes through itself, for instance at {where}; contact does not mend that"
+        return
+    near = _touching(mesh)
+    if len(near):
+        yield (
+            f"body: at rest it touches itself, for instance at {place(near[0])}; contact counts what touches at rest as "
+            f"grown together: leave a gap there, or join the parts"
+        )
+
+
+def _touching(mesh: Mesh) -> Points:
+    """Places at which parts of the boundary that have no node in common lie on one another [m]."""
+    reach = _TOUCHES * mesh.size
+    pairs = BoundaryTree(mesh).pairs(mesh.nodes, reach)
+    squared = np.empty(len(pairs.edges))
+    squared_distances(mesh.nodes, *pairs, 0.0, squared)
+    return mesh.nodes[pairs.stencils[squared < reach**2, 0]]
 
 
 def _slivers(mesh: Mesh) -> Iterator[str]:
