@@ -332,8 +332,8 @@ def test_a_body_that_touches_itself_at_rest_is_told_with_a_place(dim: int) -> No
     tip = np.isclose(nodes[:, 0], 0.12) & np.isclose(nodes[:, 1], 0.04 / 6)
     robot = fork_robot(dim)
     assert not [risk for risk in find_risks(robot) if "touches itself" in risk]
-    nodes[np.flatnonzero(tip)[0], 1] = -0.04 / 6
+    nodes[np.flatnonzero(tip)[0], 1] = -0.04 / 6 + 1e-8
     nodes[np.flatnonzero(tip)[0], 0] = 0.113
     bent = replace(robot, body=replace(robot.body, mesh=Mesh(nodes, mesh.elements)))
     (told,) = [risk for risk in find_risks(bent) if "touches itself" in risk]
-    assert re.search(r"at \[?\(?113, -6\.?6?7?", told), told
+    assert "for instance at [113, -7" in told

@@ -67,8 +67,8 @@ def _crossing(mesh: Mesh) -> Iterator[str]:
     near = _touching(mesh)
     if len(near):
         yield (
-            f"body: at rest it touches itself, for instance at {place(near[0])}; contact counts what touches at rest as "
-            f"grown together: leave a gap there, or join the parts"
+            f"body: at rest it touches itself, for instance at {place(near[0])}; contact counts what touches at rest "
+            f"as grown together: leave a gap there, or join the parts"
         )
 
 
