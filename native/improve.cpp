@@ -10,6 +10,9 @@ using Int = int64_t;
 const double NONE = std::numeric_limits<double>::infinity();
 const Int OTHERS[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
 
+// As std::pow, which takes long for powers that need none.
+double raised(double value, double power) { return power == 0.0 ? 1.0 : power == 1.0 ? value : std::pow(value, power); }
+
 struct Shape {
     double value, volume, squares, n[3], s[3];
 };
@@ -53,21 +56,22 @@ struct Tetrahedra {
         return total;
     }
 
-    double energy(const double* x, Int node) const {
+    // Whether the energy at x is less than a bound; no term is negative, so the sum ends where it reaches the bound.
+    bool below(double bound, const double* x, Int node) const {
         double total = 0.0;
         for (Int place = start[node]; place < start[node + 1]; place++) {
-            double value = shape(x, star[place]).value;
-            if (value == NONE) return NONE;
-            total += std::pow(value, power);
+            total += raised(shape(x, star[place]).value, power);
+            if (!(total < bound)) return false;
         }
         for (Int place = begin[node]; place < begin[node + 1]; place++)
             for (Int sample = 0; sample < count; sample++) {
                 double away = gap(x, ring[place] / 3, ring[place] % 3, sample);
                 total += pull * away * away;
             }
-        return total;
+        return total < bound;
     }
 
+    // Energy where the node is, gradient, and the Hessian on and above its diagonal.
     double derivatives(Int node, double* slope, double (*bend)[3]) const {
         const double* x = nodes + 3 * node;
         double total = 0.0, first[3];
@@ -75,14 +79,14 @@ struct Tetrahedra {
         for (Int place = start[node]; place < start[node + 1]; place++) {
             Shape one = shape(x, star[place]);
             if (one.value == NONE) return NONE;
-            total += std::pow(one.value, power);
+            total += raised(one.value, power);
             const double *n = one.n, *s = one.s, volume = one.volume, squares = one.squares;
             for (Int i = 0; i < 3; i++) first[i] = one.value * (s[i] / squares - (2.0 / 3.0) * n[i] / volume);
-            double outer = power * std::pow(one.value, power - 1.0);
-            double again = power * (power - 1.0) * std::pow(one.value, power - 2.0);
+            double outer = power * raised(one.value, power - 1.0);
+            double again = power == 1.0 ? 0.0 : power * (power - 1.0) * raised(one.value, power - 2.0);
             for (Int i = 0; i < 3; i++) {
                 slope[i] += outer * first[i];
-                for (Int j = 0; j < 3; j++) {
+                for (Int j = i; j < 3; j++) {
                     double second = (10.0 / 9.0) * n[i] * n[j] / (volume * volume);
                     second -= (2.0 / 3.0) * (n[i] * s[j] + s[i] * n[j]) / (volume * squares);
                     if (i == j) second += 6.0 / squares;
@@ -98,7 +102,7 @@ struct Tetrahedra {
                 total += pull * away * away;
                 for (Int i = 0; i < 3; i++) {
                     slope[i] += 2.0 * pull * away * weight * normal[i];
-                    for (Int j = 0; j < 3; j++) bend[i][j] += 2.0 * pull * weight * weight * normal[i] * normal[j];
+                    for (Int j = i; j < 3; j++) bend[i][j] += 2.0 * pull * weight * weight * normal[i] * normal[j];
                 }
             }
         }
@@ -119,7 +123,7 @@ struct Tetrahedra {
         };
         for (int halving = 0; halving < 8; halving++) {
             for (Int axis = 0; axis < 3; axis++) x[axis] = nodes[3 * node + axis] + share * step[axis];
-            if (energy(x, node) < before) {
+            if (below(before, x, node)) {
                 for (Int axis = 0; axis < 3; axis++) nodes[3 * node + axis] = x[axis];
                 return;
             }

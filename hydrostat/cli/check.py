@@ -63,13 +63,17 @@ FINDINGS = {"refused": "cannot be built", "limit": "not as a design would", "min
 
 
 def _print_reach(robot: "Robot") -> None:
-    """What each marker can be brought to; poses are few for large bodies, so that it is soon told."""
+    """What each marker can be brought to: by few poses for large bodies, not at all for the largest; soon told."""
     from hydrostat.design import Constraints
     from hydrostat.errors import NotConvergedError
     from hydrostat.ik import find_reach
     from hydrostat.simulation import Simulation
 
-    tension, count = Constraints().tension_limit, int(min(max(_SOLVED / len(robot.body.mesh.nodes), _LEAST), _MOST))
+    nodes = len(robot.body.mesh.nodes)
+    if nodes > _LARGE:
+        print(f"reach of markers: not looked for, as {nodes} nodes take long; with larger elements it is told")
+        return
+    tension, count = Constraints().tension_limit, int(min(max(_SOLVED / nodes, _LEAST), _MOST))
     try:
         reaches = find_reach(Simulation(robot), tension=tension, count=count)
     except (InputError, NotConvergedError) as error:
@@ -81,6 +85,7 @@ def _print_reach(robot: "Robot") -> None:
 
 
 _SOLVED, _LEAST, _MOST = 30_000, 9, 64  # nodes of all poses that are tried for the reach; fewest and most poses
+_LARGE = 5000  # nodes of a body from which on even the fewest poses take long
 
 
 def _print_out_of_plane(robot: "Robot") -> None:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.spatial import KDTree
 from shapely import STRtree, linestrings
 
 from hydrostat.arrays import Nodes
@@ -64,6 +63,8 @@ def _flat(mesh: Mesh, nodes: Nodes) -> Crossings:
 
 
 def _solid(mesh: Mesh, nodes: Nodes) -> Crossings:
+    from scipy.spatial import KDTree  # Imported here: it takes long, and not every command needs it.
+
     facets = mesh.boundary
     every = np.sort(np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]]), axis=1)
     edges, firsts = np.unique(every, axis=0, return_index=True)

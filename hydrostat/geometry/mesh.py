@@ -7,7 +7,6 @@ from itertools import combinations, product
 import numpy as np
 from jaxtyping import Float, Int
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from hydrostat.arrays import Elements, Nodes, Points
 from hydrostat.errors import InputError
@@ -15,6 +14,8 @@ from hydrostat.errors import InputError
 
 def joined_groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarray, " count"]:
     """Number of the group to which each of `count` things belongs that are joined in pairs."""
+    from scipy.sparse.csgraph import connected_components  # Imported here: it takes long, as in `crossings.py`.
+
     return connected_components(coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count)), directed=False)[1]
 
 

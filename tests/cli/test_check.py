@@ -106,3 +106,11 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(check: Check,
     assert found["on both faces, in pairs"] < 1
     fine = replace(robot, face=Face.PAIRS, body=replace(robot.body, element_size=1e-4))
     assert not quickly_filled(fine, len(fine.poses))
+
+
+def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nine poses of 22,000 nodes take minutes; a limit below the starfish's nodes makes it such a body."""
+    nodes = len(load_robot(gallery_folder("starfish")).body.mesh.nodes)
+    monkeypatch.setattr("hydrostat.cli.check._LARGE", nodes - 1)
+    lines = [line for line in check(gallery_folder("starfish")) if line.startswith("reach of markers")]
+    assert lines == [f"reach of markers: not looked for, as {nodes} nodes take long; with larger elements it is told"]

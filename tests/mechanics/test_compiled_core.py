@@ -220,10 +220,10 @@ def test_kernels(twice: set[str]) -> None:
     Analysis(pattern.indptr, pattern.indices, dim=3, points=None).factorise(data)
     NeoHookean(box.nodes, box.elements, mu=1.0, lame=1.0).least_volume(moved(box, 0.2))
     solid = Solid(Surface(box.nodes, box.boundary))
-    stage = ImproveStage(rounds=2, sweeps=2, power=3.0, pull=10.0)
+    stages = tuple(ImproveStage(rounds=2, sweeps=2, power=power, pull=10.0) for power in (1.0, 2.0, 3.0))
     touching = Simulation(fork_robot(3))
     touching.solve({"up": 0.002}, start=touching.solve({"up": 0.012, "down": 0.01}))
-    improve(Mesh(moved(box, 0.1), box.elements), solid, element_size=0.02, stages=(stage,))
+    improve(Mesh(moved(box, 0.1), box.elements), solid, element_size=0.02, stages=stages)
     assert twice == kernels().keys()
 
 
