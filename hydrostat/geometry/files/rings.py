@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy.spatial import KDTree
 from shapely import Polygon
 
 from hydrostat.errors import OutlineError
@@ -216,6 +215,8 @@ def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
 
 def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
     """A number for each end of each line, the same for those that meet."""
+    from scipy.spatial import KDTree  # Imported here: not every command needs it.
+
     flat = points.reshape(-1, 2)
     cells = np.concatenate(
         [np.floor(flat / (2.0 * _SAME * extent) + shift) for shift in ((0, 0), (0, 0.5), (0.5, 0), (0.5, 0.5))]

@@ -2,7 +2,6 @@
 
 import numpy as np
 from jaxtyping import Int
-from scipy.spatial import KDTree
 
 from hydrostat.arrays import Elements, Nodes, Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
@@ -34,6 +33,8 @@ def euler(triangles: Elements) -> int:
 
 
 def _breaks(nodes: Nodes, elements: Elements, part: Numbers) -> Points:
+    from scipy.spatial import KDTree  # Imported here: not every command needs it.
+
     places = [np.empty((0, 3))]
     for number in np.setdiff1d(part, _largest(part)):
         own, others = (nodes[np.unique(elements[chosen])] for chosen in (part == number, part != number))

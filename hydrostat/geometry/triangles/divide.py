@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial import KDTree
 from shapely import Polygon, STRtree, contains_xy, linestrings
 
 from hydrostat.arrays import Points, Vector
@@ -74,6 +73,8 @@ def widths_at(samples: CurveSamples, curves: tuple[Curve, ...], polygon: Polygon
     Two samples span a width if they face each other through the body and the way between them along the outline is
     long compared with it, which it is not across a tip or a corner.
     """
+    from scipy.spatial import KDTree  # Imported here: not every command needs it.
+
     width, neck = np.ones(len(samples.places)), np.ones(len(samples.places))
     pairs = KDTree(samples.places).query_pairs(1.0, output_type="ndarray")
     first, second = pairs[:, 0], pairs[:, 1]

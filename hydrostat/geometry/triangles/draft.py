@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.spatial import Delaunay
 from shapely import Polygon, contains_xy
 
 from hydrostat.arrays import Elements, Points
@@ -19,6 +18,8 @@ def triangles_inside(points: Points, edges: Edges, polygon: Polygon) -> tuple[El
 
     Returns positively oriented triangles, and the sides that could not be had (split these).
     """
+    from scipy.spatial import Delaunay  # Imported here: not every command needs it.
+
     triangles = Delaunay(points).simplices.astype(np.int64)
     for start, end in missing(triangles, edges):
         triangles = _with_edge(points, triangles, int(start), int(end))
