@@ -121,13 +121,13 @@ def _move(
     """Move a robot from where it rests at first, print how it ended, and write all files; returns their paths."""
     from hydrostat import __version__
     from hydrostat.plot import draw_motion, draw_pose, save_png
-    from hydrostat.simulation import write_motion, write_pose
+    from hydrostat.simulation import rests_at_first, write_motion, write_pose
     from hydrostat.units import TIME
 
     profile = _profile(simulation, contractions, ramp, play)
     seconds = asked("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--step", step, TIME)
-    start = simulation.still(simulation.solve(profile.at(0.0)) if simulation.robot.pins else None)
+    start = simulation.still(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
     with progress_bar() as tell:
         motions = _reported(simulation.play(profile, seconds, dt, start=start), seconds, tell)

@@ -38,11 +38,11 @@ def read_robot(path: Path) -> "Robot":
 
 def prepared(robot: "Robot") -> "Simulation":
     """The physics of a robot, after one solve if pins hold it; the first time this compiles the kernels."""
-    from hydrostat.simulation import Simulation
+    from hydrostat.simulation import Simulation, rests_at_first
 
     with patiently("compiling, once for this machine: about 20 s ..."):
         simulation = Simulation(robot)
-        if robot.pins:
+        if rests_at_first(robot):
             simulation.solve({}, strict=False)
     return simulation
 

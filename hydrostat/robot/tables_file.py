@@ -59,6 +59,8 @@ class TablesFile(ABC):
             return make()
         except InputError as error:
             message = str(error)
+            if message.startswith((f"{self.file},", f"{self.file}:")):  # its place is told already
+                raise
             place = _PLACE.match(message)
             if place and place[1] in allowed_keys(key, self.form()):
                 self.fail(f"{key}.{place[0]}".removeprefix("."), message[place.end() :])

@@ -17,7 +17,7 @@ from hydrostat.simulation.profile import Profile, ProfileTable, profile_text, re
 from hydrostat.simulation.rig_slopes import RigSlopes, rig_slopes
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import Contractions, SolvedPose, largest_distance
-from hydrostat.simulation.still import check_still, smooth_robot
+from hydrostat.simulation.still import check_still, rests_at_first, smooth_robot
 from hydrostat.simulation.touches import Touch, touch_words, touches
 
 __all__ = [
@@ -57,6 +57,7 @@ __all__ = [
     "quickly_filled",
     "read_profile",
     "replacing",
+    "rests_at_first",
     "rig_slopes",
     "smooth_robot",
     "touch_words",

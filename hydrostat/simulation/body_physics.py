@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
 from hydrostat.mechanics import (
     Assembly,
@@ -110,12 +111,24 @@ class BodyPhysics:
             heavy[carriage.rows[1:]] = 0.0
         return heavy
 
-    def check_held(self) -> None:
-        """Check that pins hold the body.
+    def check_held(self, start: Nodes | None = None, *, guided: bool = False) -> None:
+        """Check that pins hold the body, and that something holds obstacles that move.
+
+        Args:
+            start: all unknowns where a solve begins [m]; at rest if left out.
+            guided: whether other energies may hold the obstacles.
 
         Raises:
-            InputError: none does, so it moves before friction on the ground can hold it.
+            InputError: no pin, so it moves before friction on the ground can hold it; or an obstacle floats.
         """
+        where, (_, _, _, _, obstacles) = self.begin if start is None else start, self._given
+        for index in () if guided else self.carriages:
+            met = self.assembly.energies[self.obstacles[index]]
+            if not met.push(where).any():  # type: ignore[attr-defined]
+                raise InputError(
+                    f'nothing holds "{obstacles[index].name}", which has a mass: let it move in time (`hydrostat '
+                    f"simulate --dynamic`), grasp it (`hydrostat grasp`), or remove its mass and it stands still"
+                )
         if not self._given[1]:
             raise InputError(
                 "no pin holds the robot: where it comes to rest on the ground depends on how it gets there, so let it "

@@ -112,7 +112,7 @@ class Simulation:
             NotConvergedError: the solver stopped early; its text says why, and what stands in the way.
         """
         goal = self.contractions(contractions)
-        self.body.check_held()
+        self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
         self.check_start(start)
         history, solver = np.zeros(0), self.solver.within(seconds).roughly(accuracy)
         if self.assembly.has_history:
@@ -157,7 +157,7 @@ class Simulation:
         if not isinstance(contractions, Iterable):
             raise InputError(f"contractions must be a row for each pose, not {contractions!r}")
         given = [self.contractions(each) for each in contractions]
-        self.body.check_held()
+        self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
         goals = np.array(given).reshape(len(given), len(self.robot.winches))
         self.check_start(start)
         _ = self.solver.within(seconds), self.rest_stiffness  # checked and made before threads ask for them

@@ -30,3 +30,8 @@ def check_still(robot: Robot, what: str) -> None:
         if obstacle.mass is not None:
             name = obstacle.name
             raise InputError(f'{what} knows no obstacle that moves: "{name}" has a mass; without it, it stands still')
+
+
+def rests_at_first(robot: Robot) -> bool:
+    """Tell whether statics can say where a robot is at first: pins hold it, and no obstacle is free to move."""
+    return bool(robot.pins) and all(obstacle.mass is None for obstacle in robot.obstacles)

@@ -234,3 +234,16 @@ def test_what_knows_no_obstacle_that_moves_says_so() -> None:
     simulation = Simulation(replace(strip_robot(columns=8, rows=2), obstacles=(ball,)))
     with pytest.raises(InputError, match='inverse kinematics knows no obstacle that moves: "ball" has a mass'):
         hs.solve_ik(simulation, {simulation.robot.markers[0].name: (0.1, 0.0)})
+
+
+def test_a_thing_that_nothing_holds_is_told_and_falls_in_time() -> None:
+    """Oracle: free fall."""
+    ball = Obstacle(name="ball", shape="sphere", at=(0.1, 0.2), radius=0.02, mass=0.05)
+    simulation = Simulation(replace(strip_robot(columns=8, rows=2), obstacles=(ball,), gravity=(0.0, -9.81)))
+    with pytest.raises(InputError, match='nothing holds "ball", which has a mass'):
+        simulation.solve({})
+    motion = simulation.still()
+    for _ in range(20):
+        motion = simulation.step(motion, {}, 1e-3)
+    assert motion.carried is not None
+    assert motion.carried[0][0] == pytest.approx((0.1, 0.2 - 0.5 * 9.81 * 0.02**2), abs=1e-9)
