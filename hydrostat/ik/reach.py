@@ -12,7 +12,7 @@ from scipy.spatial import ConvexHull, QhullError
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, smooth_robot
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,7 +55,7 @@ def find_reach(
     loading path where cables rub. Each stands for a share of the contractions; exact slopes tell, to first order, what
     part that is of the places that a marker reaches, and the union of these parts is measured. With more than three
     winches the shares do not cover all contractions, and what is told is rather too little. Poses that are not stable
-    or ask a cable for more than it may bear are left out.
+    or ask a cable for more than it may bear are left out. So is friction of contact, which has no slopes.
 
     Args:
         simulation: the robot's physics.
@@ -66,7 +66,9 @@ def find_reach(
     Raises:
         InputError: a robot without markers or winches, no number of poses, or other physics that remember the way.
     """
-    robot = simulation.robot
+    robot = smooth_robot(simulation.robot)
+    if robot is not simulation.robot:
+        simulation = Simulation(robot, options=simulation.options)
     if not robot.winches or not robot.markers:
         raise InputError("reach is that of markers by winches; the robot needs at least one of each")
     if count < 1:

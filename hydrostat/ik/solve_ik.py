@@ -18,7 +18,7 @@ from hydrostat.ik.search.inverse_search import Descent, InverseSearch, reached_p
 from hydrostat.ik.search.others_stay import others_stayed
 from hydrostat.ik.search.problem import InverseOptions, InverseProblem, InverseState
 from hydrostat.robot import Point, Pose
-from hydrostat.simulation import Simulation, SolvedPose, friction_band, smooth_robot
+from hydrostat.simulation import Simulation, SolvedPose, check_still, friction_band, smooth_robot
 
 Targets = Pose | Mapping[str, Point]  # where markers should go [m]: a pose, or points by name
 
@@ -57,6 +57,7 @@ def solve_ik(
         NotConvergedError: no equilibrium where the search begins.
     """
     target = as_pose(targets)
+    check_still(simulation.robot, "inverse kinematics")
     if (robot := smooth_robot(simulation.robot)) is not simulation.robot:
         begin = None if start is None else replace(start, history=np.zeros(0))
         found = solve_ik(
