@@ -28,7 +28,7 @@ from hydrostat.plot.targets import (
 )
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Obstacle, Pose, Robot
-from hydrostat.simulation import SolvedPose
+from hydrostat.simulation import SolvedPose, as_posed
 from hydrostat.units import counted
 
 
@@ -235,6 +235,7 @@ def _in_pose(
     rings: Sequence[Ring] = (),
 ) -> tuple[PictureSheet, list[Pane], Labels]:
     """A sheet with ghost, posed body, cables by tension and winches, room for rings and for labels off targets [m]."""
+    robot = as_posed(robot, pose.carried)
     rest, carried = robot.body.mesh.nodes, Attachments(robot)
     goals = np.array(list(targets.values())).reshape(-1, robot.body.mesh.dim)
     sheet, panes = open_sheet(

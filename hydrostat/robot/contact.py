@@ -169,6 +169,20 @@ class Obstacle:
             return replace(self, at=(0.0,) * len(self.at), mesh=self.mesh.moved(axes, shift))
         return replace(self, at=at or (), to=to)
 
+    def moved(self, place: Vector, axes: Points) -> "Obstacle":
+        """The same thing with its middle at a place [m], turned to these axes; a box stays along those of the world."""
+        middle, before = self.frame()
+        turn = np.eye(len(self.at)) if self.shape is ObstacleShape.BOX else axes.T @ before
+        if self.mesh is not None:
+            shift = np.array(self.at)
+            mesh = self.mesh.moved(turn, turn @ (shift - middle) + place)
+            return replace(self, at=(0.0,) * len(self.at), mesh=mesh)
+        at, to = (
+            None if end is None else tuple((place + turn @ (np.array(end) - middle)).tolist())
+            for end in (self.at, self.to)
+        )
+        return replace(self, at=at or (), to=to)
+
     def second_moments(self) -> Vector:
         """Mean squares of the coordinates of its mass along its axes [m^2]."""
         return _MOMENTS[ObstacleShape(self.shape)](self)

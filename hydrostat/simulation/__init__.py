@@ -8,7 +8,7 @@ from hydrostat.simulation.filled import FilledMotion, filled_motion, quickly_fil
 from hydrostat.simulation.follow_branch import BranchOptions, follow_branch
 from hydrostat.simulation.friction_band import friction_band
 from hydrostat.simulation.many_poses import ManyPoses
-from hydrostat.simulation.meeting import obstacle_forces, replacing
+from hydrostat.simulation.meeting import as_posed, carried_frames, obstacle_forces, replacing
 from hydrostat.simulation.motion import Motion
 from hydrostat.simulation.motion_file import MotionTable, write_motion
 from hydrostat.simulation.path_dependence import FoundPose, PathDependence, path_dependence
@@ -45,6 +45,8 @@ __all__ = [
     "SolvedPose",
     "StepOptions",
     "Touch",
+    "as_posed",
+    "carried_frames",
     "check_still",
     "filled_motion",
     "follow_branch",

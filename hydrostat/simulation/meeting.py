@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
+from hydrostat.arrays import Points, Vector
 from hydrostat.mechanics import Energy
+from hydrostat.robot import Robot
 from hydrostat.simulation.solved_pose import SolvedPose
 
 if TYPE_CHECKING:
@@ -36,4 +38,27 @@ def replacing(simulation: "Simulation", old: Energy, new: Energy) -> "Simulation
         [new if one is old else one for one in simulation.assembly.energies]
     )
     other.solver = replace(simulation.solver, assembly=other.assembly)
+    return other
+
+
+def carried_frames(robot: Robot, carried: Points | None) -> dict[str, tuple[Vector, Points]]:
+    """Place [m] and axes of each obstacle that moves, by name, from its unknowns."""
+    moving = [obstacle for obstacle in robot.obstacles if obstacle.mass is not None]
+    if carried is None or not moving:
+        return {}
+    parts = carried.reshape(len(moving), -1, carried.shape[1])
+    return {
+        obstacle.name: (rows[0], rows[1:] / np.linalg.norm(rows[1:], axis=1, keepdims=True))
+        for obstacle, rows in zip(moving, parts, strict=True)
+    }
+
+
+def as_posed(robot: Robot, carried: Points | None) -> Robot:
+    """The robot with its obstacles where their unknowns say, for pictures; where they stand is not checked anew."""
+    frames = carried_frames(robot, carried)
+    if not frames:
+        return robot
+    other = copy(robot)
+    places = tuple(one.moved(*frames[one.name]) if one.name in frames else one for one in robot.obstacles)
+    object.__setattr__(other, "obstacles", places)
     return other

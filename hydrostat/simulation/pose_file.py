@@ -10,13 +10,22 @@ import numpy as np
 
 from hydrostat.geometry.files.vtu_file import write_vtu
 from hydrostat.robot import Robot, replace_file, robot_hash
+from hydrostat.simulation.meeting import carried_frames
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.solved_pose import SolvedPose
 
 
 def pose_facts(robot: Robot, pose: SolvedPose) -> dict[str, Any]:
-    """What pose.json holds: SI units, contractions by winch, tensions in the order of the named cables."""
+    """What pose.json holds: SI units, contractions by winch, tensions in the order of the named cables.
+
+    Of each obstacle that moves it holds the place of its middle and its axes.
+    """
+    things = {
+        name: {"place": place.tolist(), "axes": axes.tolist()}
+        for name, (place, axes) in carried_frames(robot, pose.carried).items()
+    }
     return {
+        **({"obstacles": things} if things else {}),
         "robot": robot_hash(robot),
         "contractions": {
             winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)
